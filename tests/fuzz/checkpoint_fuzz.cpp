@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A checkpoint as it lies on a disk, or with a checksum that is right, so that what lies behind it is reached as well:
-// the state that a replica would take.
+// Fuzzes a checkpoint, either as it is on disk or with a correct checksum. The correct checksum lets the fuzzer reach
+// the state behind it, which a replica would load.
 #include <xxhash.h>
 
 #include "master/journal/checkpoint.hpp"

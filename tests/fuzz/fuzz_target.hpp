@@ -16,37 +16,37 @@
 
 namespace fuzz {
 
-/// A fuzzer hands bytes to one parser, which takes or refuses them. Returns 0.
+/// Passes bytes to one parser, which accepts or refuses them. Returns 0.
 using Target = int (*)(const std::uint8_t* data, std::size_t size);
 
-/// Makes a fuzzer known to the program that runs them all (mutate_main.cpp), before its main. Returns false if the name
-/// is taken.
+/// Registers a fuzzer with the program that runs all fuzzers (mutate_main.cpp), before its main(). Returns false if the
+/// name is already used.
 bool add(const char* name, Target target);
 
 using Input = std::span<const std::uint8_t>;
 
 inline std::string_view textOf(Input input) { return {reinterpret_cast<const char*>(input.data()), input.size()}; }
 
-/// The two ways in which a parser may refuse. Anything else that is thrown ends the program.
+/// Runs `parse`, which may throw InputError or FormatError to refuse its input. Any other exception ends the program.
 template <class Parse>
 void takeOrRefuse(const Parse& parse) {
     try {
         parse();
     } catch (const base::InputError& refused) {
-        // A complaint is one line, whatever the input holds.
+        // An error message is one line, whatever the input holds.
         if (std::string_view(refused.what()).find('\n') != std::string_view::npos) {
-            throw std::logic_error("a complaint of more than one line: " + std::string(refused.what()));
+            throw std::logic_error("an error message has more than one line: " + std::string(refused.what()));
         }
     } catch (const base::FormatError&) {
     }
 }
 
-/// A file that lives in memory, for parsers that open theirs.
+/// A file in memory, for parsers that open their files themselves.
 class MemoryFile {
 public:
     explicit MemoryFile(Input bytes) : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
         if (descriptor_ < 0 || write(descriptor_, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) {
-            throw std::runtime_error("no memory file");
+            throw std::runtime_error("cannot make a file in memory");
         }
     }
     ~MemoryFile() { close(descriptor_); }
@@ -58,7 +58,7 @@ private:
     int descriptor_;
 };
 
-/// Cuts an input into pieces, whose lengths it says itself: each begins with a byte pair.
+/// Cuts an input into pieces. Each piece begins with its length in two bytes.
 inline std::vector<Input> piecesOf(Input input) {
     std::vector<Input> pieces;
     while (input.size() >= 2) {
@@ -73,7 +73,7 @@ inline std::vector<Input> piecesOf(Input input) {
 
 }  // namespace fuzz
 
-/// Begins the function of a fuzzer, with the parameters of fuzz::Target.
+/// Begins the function of a fuzzer. Its parameters are those of fuzz::Target.
 #ifdef SANDWALL_LIBFUZZER
 #define SANDWALL_FUZZER(name) extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 #else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An ESRI ASCII grid.
+// Fuzzes an ESRI ASCII grid.
 #include "scene/import/esri_grid.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

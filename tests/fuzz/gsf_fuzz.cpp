@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scan as a Gwyddion Simple Field.
+// Fuzzes a scan as a Gwyddion Simple Field.
 #include "scene/import/gsf_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded hand as CSV, and a list of strokes; and the hand that comes of them.
+// Fuzzes a recorded hand as CSV and a stroke list, and moves the hand that follows them.
 #include <sstream>
 
 #include "haptic_bridge/devices/strokes.hpp"

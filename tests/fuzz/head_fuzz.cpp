@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the head is: packets of opentrack and of DTrack, and a recorded head as CSV.
+// Fuzzes the sources of a head's pose: packets of opentrack and of DTrack, and a recorded head as CSV.
 #include <cmath>
 #include <sstream>
 
@@ -19,7 +19,7 @@ void read(tracking::PacketReader& reader, fuzz::Input input) {
         }
         const tracking::Pose pose = tracking::RoomMapping{}.pose(reading.measured);
         if (!std::isfinite(pose.position.x + pose.position.y + pose.position.z)) {
-            throw std::logic_error("a head that is nowhere");
+            throw std::logic_error("a head has a place that is not finite");
         }
     }
 }

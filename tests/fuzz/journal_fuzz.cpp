@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// A journal as somebody hands it over: as it is, or put together from records whose checksums are right, so that what
-// lies behind them is reached as well.
+// Fuzzes a journal, either as it is or put together from records with correct checksums. The correct checksums let the
+// fuzzer reach the contents of the records.
 #include "master/journal/recording.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
-/// The header of a session of 8 x 8 cells.
+/// Returns the header of a session of 8 x 8 cells.
 base::Bytes header(std::uint64_t& chain) {
     master::JournalHeader header;
     header.session = 1;
@@ -17,7 +17,7 @@ base::Bytes header(std::uint64_t& chain) {
     return master::encodeHeader(header, chain);
 }
 
-/// Pieces of the input as records, the first byte of each its type.
+/// Returns a journal whose records are pieces of the input. The first byte of each piece is the type of its record.
 base::Bytes journalOf(fuzz::Input input) {
     base::ByteWriter writer;
     std::uint64_t chain = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs fuzzers without libFuzzer: every file of a corpus as it is, then a number of changed ones, which are the same in
-// every run unless SANDWALL_SEED gives another seed. An input that ends the program stays in the file crash-input.
+// Runs a fuzzer without libFuzzer. Tries every file of a corpus, then a number of changed inputs. These are the same in
+// every run, unless SANDWALL_SEED gives another seed. An input that ends the program stays in the file crash-input.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -47,10 +47,10 @@ private:
                     bytes[at] ^= static_cast<std::uint8_t>(1U << below(8));
                 }
                 break;
-            case 1:  // something left out
+            case 1:  // some bytes left out
                 bytes.erase(place, place + static_cast<std::ptrdiff_t>(length));
                 break;
-            case 2: {  // something said twice
+            case 2: {  // some bytes repeated
                 const Bytes twice(place, place + static_cast<std::ptrdiff_t>(length));
                 bytes.insert(place, twice.begin(), twice.end());
                 break;
@@ -58,7 +58,7 @@ private:
             case 3:  // cut short
                 bytes.resize(at);
                 break;
-            case 4: {  // a number as large or as odd as can be
+            case 4: {  // a very large or very odd number
                 constexpr std::array<std::uint64_t, 6> kOdd{
                     0, ~0ULL, 0x7fffffffffffffffULL, 0x80000000ULL, 0x7ff8000000000000ULL, 1ULL << 28U};
                 const std::uint64_t odd = kOdd[below(kOdd.size())];
@@ -67,7 +67,7 @@ private:
                 }
                 break;
             }
-            default: {  // the end of another
+            default: {  // the end of another input
                 const Bytes& other = corpus_[below(corpus_.size())];
                 bytes.resize(at);
                 const auto from = static_cast<std::ptrdiff_t>(below(other.size() + 1));
@@ -89,7 +89,7 @@ std::vector<Bytes> corpusOf(const std::vector<std::filesystem::path>& folders) {
             }
         }
     }
-    std::sort(found.begin(), found.end());  // folders list in any order
+    std::sort(found.begin(), found.end());  // folders list their files in any order
     std::vector<Bytes> corpus;
     for (const auto& file : found) {
         std::ifstream stream(file, std::ios::binary);
@@ -100,7 +100,7 @@ std::vector<Bytes> corpusOf(const std::vector<std::filesystem::path>& folders) {
 
 constexpr const char* kCrashInput = "crash-input";
 
-/// Keeps each input before it is tried, so that it is there when the program ends in the middle of it.
+/// Writes each input to a file before it is tried, so that the file shows the input that ended the program.
 class Runner {
 public:
     explicit Runner(fuzz::Target target)
@@ -115,7 +115,7 @@ public:
     void run(const Bytes& input) const {
         if (pwrite(kept_, input.data(), input.size(), 0) != static_cast<ssize_t>(input.size()) ||
             ftruncate(kept_, static_cast<off_t>(input.size())) != 0) {
-            throw std::runtime_error("the input cannot be kept in crash-input");
+            throw std::runtime_error("cannot write the input to the file crash-input");
         }
         target_(input.data(), input.size());
     }

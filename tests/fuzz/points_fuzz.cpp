@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of a survey as text.
+// Fuzzes points of a survey as text.
 #include <cmath>
 
 #include "scene/import/points_file.hpp"
@@ -11,7 +11,7 @@ SANDWALL_FUZZER(points) {
         const scene::Points points = scene::readPoints(file.path());
         for (const auto& [x, y, z] : points) {
             if (points.size() < 3 || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) {
-                throw std::logic_error("a cloud that is no terrain");
+                throw std::logic_error("a cloud has too few points, or a point that is not finite");
             }
         }
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene file, with fields of at most 99 cells a side: larger ones are as right and take long.
+// Fuzzes a scene file, with fields of at most 99 cells per side. Larger fields are also valid, but take long.
 #include <cctype>
 
 #include "sand/replica.hpp"
@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Numbers of three digits and more, or written another way.
+/// Returns true if the text has a number of three digits or more, or a number in another notation.
 bool mayBeLarge(std::string_view text) {
     int digits = 0;
     for (const char c : text) {

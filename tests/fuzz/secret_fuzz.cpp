@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file that says who may come in.
+// Fuzzes the file with the secrets of a haptic link.
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/secret_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -11,7 +11,7 @@ SANDWALL_FUZZER(secret) {
         for (const auto& secret : {secrets.move, secrets.watch}) {
             if (secret && (secret->size() < haptic_bridge::kMinSecret || secret->size() > haptic_bridge::kMaxSecret ||
                            text.find(*secret) == std::string_view::npos)) {
-                throw std::logic_error("a secret that is none");
+                throw std::logic_error("a secret has a bad length or is not in the file");
             }
         }
     });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the corpora of what is no text, as the programs of today write it: FOLDER/wire, journal, checkpoint, state,
+// Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, journal, checkpoint, state,
 // tin, head, wall.
 #include <array>
 #include <filesystem>
@@ -28,7 +28,7 @@ class Folder {
 public:
     Folder(const fs::path& parent, const std::string& name) : path_(parent / name) { fs::create_directories(path_); }
 
-    /// `before` are the bytes by which the fuzzer is told what the rest is.
+    /// Adds a seed to the corpus. The bytes `before` tell the fuzzer how to read the rest.
     void add(const Bytes& seed, std::initializer_list<std::uint8_t> before = {}) {
         Bytes all(before);
         all.insert(all.end(), seed.begin(), seed.end());
@@ -103,7 +103,7 @@ void writeJournal(Folder folder, const fs::path& scratch) {
     std::ifstream stream(scratch, std::ios::binary);
     folder.add(Bytes(std::istreambuf_iterator<char>(stream), {}), {1});
     fs::remove(scratch);
-    // The same records without their checksums.
+    // Two records of a journal without their checksums.
     base::ByteWriter frame;
     frame.put(std::uint8_t{1});
     frame.putVarint(1);
@@ -158,14 +158,14 @@ void writeTin(Folder folder) {
     };
     add();
     surface.drag(tool, std::array{sand::ProbePoint{1000, 1000, 200}, sand::ProbePoint{2000, 1500, 100}});
-    add();  // with an imprint
+    add();  // with an imprint of the tool
     surface.leave(tool);
     surface.sweep(8, nullptr, {});
     add();
     base::ByteWriter start;
     scene.tin->encode(start);
     folder.add(start.take(), {2});
-    sand::Ground walls(6, 6);  // two that touch at a corner
+    sand::Ground walls(6, 6);  // two wall cells that touch at a corner
     walls.setWall(2, 2);
     walls.setWall(3, 3);
     sand::tin::follow(sand::HeightField(6, 6, 1), &walls, {.maxError = 1000}).start.encode(start);

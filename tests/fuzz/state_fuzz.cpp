@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A state sent to a replica, sand that was saved, and the scene that a journal or a master begins with. Compressed or
-// not: behind the compression lies what a flipped bit would never reach.
+// Fuzzes a state that is sent to a replica, saved sand, and the scene at the start of a journal or of a master. The
+// input is compressed first if a bit of it asks for that. A flipped bit of compressed data would never reach the code
+// behind the decompression.
 #include <zstd.h>
 
 #include "sand/grid/snapshot.hpp"

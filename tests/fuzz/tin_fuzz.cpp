@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TIN as a state, saved sand or a scene holds it: its layer, the imprint of a tool that stands in it, its start. What
-// is taken is said again and must be the same, and sand goes on from there: digging, sliding, thinning out.
+// Fuzzes a TIN in a state, in saved sand or in a scene: its layer, its start and the imprint of a tool. An accepted TIN
+// must be equal after it is encoded and decoded. Then its sand moves: digging, sliding and removing vertices.
 #include <zstd.h>
 
 #include <array>
@@ -15,7 +15,7 @@ namespace {
 using sand::ProbePoint;
 using sand::tin::TinSurface;
 
-/// The bytes of a state, of which `plain` holds a TinState and a layer one behind the other.
+/// Returns the bytes of a state. `plain` holds a TinState, and behind it a layer.
 base::Bytes packed(fuzz::Input plain) {
     base::ByteReader reader(plain);
     const auto state = sand::tin::TinState::decode(reader);
@@ -44,7 +44,7 @@ void goOn(TinSurface& surface, const scene::Scene& scene) {
     surface.sweep(2, &tool, path.back());
     surface.leave(tool);
     surface.sweep(4, nullptr, path.back());
-    require(surface.layer().volume() + surface.outflow() == volume + outside, "sand was lost or made");
+    require(surface.layer().volume() + surface.outflow() == volume + outside, "the volume of the sand has changed");
     (void)surface.hash();
 }
 
@@ -52,11 +52,12 @@ void takeState(fuzz::Input bytes) {
     static const scene::Scene kScene = fuzz::tinScene();
     TinSurface surface(kScene.rules, kScene.tin);
     const auto copy = surface.reader()(bytes);
-    require(surface.reader()(copy->encode())->encode() == copy->encode(), "a state that is said otherwise again");
+    require(surface.reader()(copy->encode())->encode() == copy->encode(),
+            "a state differs after it is encoded and decoded");
     surface.replace(*copy);
     const std::uint64_t hash = surface.hash();
     surface.audit(1 << 20);
-    require(surface.hash() == hash, "a hash that is another from memory");
+    require(surface.hash() == hash, "the hash differs after an audit");
     goOn(surface, kScene);
 }
 
@@ -81,7 +82,8 @@ SANDWALL_FUZZER(tin) {
                 base::ByteWriter writer;
                 start.encode(writer);
                 base::ByteReader again(writer.bytes());
-                require(sand::tin::TinStart::decode(again).digest() == start.digest(), "a start that is another again");
+                require(sand::tin::TinStart::decode(again).digest() == start.digest(),
+                        "a start differs after it is encoded and decoded");
                 if (start.places.size() < 1000) {
                     (void)sand::tin::layerOf(start).volume();
                 }

@@ -11,7 +11,7 @@
 
 namespace fuzz {
 
-/// Dunes of 24 x 16 nominal cells as a TIN, for a surface that is made without the module.
+/// Returns a scene with dunes of 24 x 16 nominal cells as a TIN.
 inline scene::Scene tinScene() {
     scene::Scene scene = samples::flatScene(24, 16);
     sand::grid::makeDunes({.bed = 2, .height = 3, .length = 10, .seed = 7}, scene.terrain);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A wall file, and the wall that a master sends its ranks.
+// Fuzzes a wall file, and the wall that a master sends to its ranks.
 #include "tests/fuzz/fuzz_target.hpp"
 #include "walls/wall.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes over the haptic link: a stream cut anywhere, in either direction, states and loads expected or not.
+// Fuzzes a stream of the haptic link, cut anywhere, in either direction, with states and loads expected or not.
 #include "haptic_bridge/link/message_reader.hpp"
 #include "haptic_bridge/link/protocol.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
@@ -19,10 +19,10 @@ SANDWALL_FUZZER(wire) {
             reader.feed(rest.first(count));
             rest = rest.subspan(count);
             while (const auto message = reader.next()) {
-                // What was understood can be said again, and is the same.
+                // An accepted message must be equal after it is encoded and decoded.
                 const base::Bytes again = haptic_bridge::encode(*message);
                 if (haptic_bridge::decode(fuzz::Input(again).subspan(4)) != *message) {
-                    throw std::logic_error("a message that is another when it is said again");
+                    throw std::logic_error("a message differs after it is encoded and decoded");
                 }
             }
         }

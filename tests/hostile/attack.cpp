@@ -40,19 +40,19 @@ public:
         address.sin_port = htons(port);
         return ::connect(descriptor_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     }
-    /// False when the other side has gone.
+    /// Sends bytes. Returns false if the other side has closed the connection.
     [[nodiscard]] bool send(const base::Bytes& bytes, int flags = 0) const {
         return ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | flags) ==
                static_cast<ssize_t>(bytes.size());
     }
-    /// What has come, or nothing when the other side has gone or stays silent.
+    /// Returns the received bytes, or an empty list if the other side has closed the connection or stays silent.
     [[nodiscard]] base::Bytes receive() const {
         std::array<std::uint8_t, 4096> answer{};
         const ssize_t count = recv(descriptor_, answer.data(), answer.size(), 0);
         return {answer.begin(), answer.begin() + std::max<ssize_t>(count, 0)};
     }
     void endSending() const { shutdown(descriptor_, SHUT_WR); }
-    /// Takes whatever is there, and waits for nothing.
+    /// Discards the bytes that have arrived, without waiting.
     void drain() const {
         std::array<std::uint8_t, 4096> answer{};
         while (recv(descriptor_, answer.data(), answer.size(), MSG_DONTWAIT) > 0) {
@@ -65,13 +65,13 @@ private:
 
 namespace {
 
-constexpr int kGuests = 12;  // at once; of more the server sends the oldest away
+constexpr int kGuests = 12;  // at once; with more connections the server closes the oldest one
 constexpr std::uint64_t kPerFlood = 20'000;
 constexpr std::uint32_t kLoopback = 127U << 24U;
 
 int newSocket() { return socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0); }
 
-/// A connection that sends a byte whenever it is asked, and begins anew when it has been cut off.
+/// A connection that sends one byte per call. Connects again when the server has closed it.
 class Drip {
 public:
     Drip(std::uint16_t port, std::uint32_t from, base::Bytes bytes)
@@ -102,12 +102,12 @@ private:
 
 namespace {
 
-/// One frame over a connection of its own, behind whatever it takes to be heard.
+/// One frame over a connection of its own, with TLS and a greeting before it where needed.
 class Visit {
 public:
     Visit(const Socket& socket, const LinkSecurity& security) : socket_(socket), security_(security) {}
 
-    /// TLS, where the other side speaks it.
+    /// Establishes TLS if the link uses it.
     [[nodiscard]] bool agree(bool server = false) {
         if (!security_.tls) {
             return true;
@@ -123,7 +123,7 @@ public:
         }
         return open;
     }
-    /// As one who may watch; whether the server has said welcome.
+    /// Greets the server as a watcher. Returns true if the server has sent its welcome.
     [[nodiscard]] bool greet(const Identity& identity) {
         MasterHandshake handshake(security_, identity, Role::watch, tls_ ? tls_->binding() : base::Bytes());
         bool open = send(encode(handshake.hello()));
@@ -148,13 +148,13 @@ public:
         tls_->seal(bytes, sealed);
         return socket_.send(sealed);
     }
-    /// Says no more, and hears what the other side still says.
+    /// Sends no more, and receives until the other side ends or stays silent.
     void end() {
         socket_.endSending();
         while (receive()) {
         }
     }
-    [[nodiscard]] std::uint64_t heard() const { return heard_; }  // [byte]
+    [[nodiscard]] std::uint64_t heard() const { return heard_; }  // [byte], received so far
     [[nodiscard]] bool refused() {
         while (const auto message = reader_.next()) {
             if (std::holds_alternative<Refusal>(*message)) {
@@ -186,7 +186,7 @@ private:
     std::uint64_t heard_ = 0;
 };
 
-/// What the guests share.
+/// State that all attacking threads share.
 struct Attack {
     std::uint16_t port;
     const LinkSecurity& security;
@@ -210,7 +210,7 @@ struct Attack {
         Visit guest(socket, security);
         bool sent = false, welcome = false, refused = false;
         try {
-            // Raw bytes; a frame in place of the greeting; one behind it.
+            // Sends raw bytes, or a frame in place of the greeting, or a frame after the greeting.
             const bool open = greeting == 0 || (guest.agree() && (greeting == 1 || guest.greet(frames.identity())));
             welcome = greeting == 2 && open;
             const std::uint64_t before = guest.heard();
@@ -218,7 +218,7 @@ struct Attack {
             guest.end();
             refused = guest.refused();
             welcome = welcome || guest.heard() > before;
-        } catch (const std::runtime_error&) {  // an alert of TLS: an answer, too
+        } catch (const std::runtime_error&) {  // a TLS alert also counts as an answer
             welcome = true;
         }
         const std::lock_guard lock(mutex);
@@ -269,7 +269,7 @@ FalseServer::FalseServer(std::uint32_t seed, Identity identity, std::uint64_t fr
     socklen_t size = sizeof address;
     if (bind(listener_, reinterpret_cast<const sockaddr*>(&address), size) != 0 || listen(listener_, 8) != 0 ||
         getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-        throw std::system_error(errno, std::generic_category(), "a false server");
+        throw std::system_error(errno, std::generic_category(), "a false server cannot listen");
     }
     port_ = ntohs(address.sin_port);
     thread_ = std::thread([this] { serve(); });
@@ -311,11 +311,11 @@ void FalseServer::talk(int guest) {
         }
         bad_ += visit.send(frames_.next()) ? 1 : 0;
         visit.end();
-    } catch (const std::exception&) {  // of TLS, or what the master says
+    } catch (const std::exception&) {  // a TLS error, or a bad message of the master
     }
 }
 
-/// The master takes positions, whatever they say.
+/// The master accepts positions with any values.
 void FalseServer::flood(const Socket& socket) {
     bool heard = socket.send(encode(PositionGreeting{kProtocolVersion, "false"}));
     for (std::uint64_t i = 0; heard && i < kPerFlood && !stopping_ && !done(); i += 100) {

@@ -12,23 +12,24 @@
 namespace hostile {
 
 struct Done {
-    std::uint64_t frames = 0;       // that were sent whole, each over a connection of its own
-    std::uint64_t read = 0;         // of those: the server had said welcome, or answered; the rest it closed unread
-    std::uint64_t connections = 0;  // begun; where the greeting before a frame failed, none was sent
-    std::uint64_t refusals = 0;     // Refusal messages that were read
+    std::uint64_t frames = 0;       // frames sent whole, each over a connection of its own
+    std::uint64_t read = 0;         // frames that the server welcomed before or answered; the others it closed unread
+    std::uint64_t connections = 0;  // connections begun; no frame was sent if the greeting before it failed
+    std::uint64_t refusals = 0;     // Refusal messages received
 };
 
-/// Sends so many frames to the server at a port of this machine, from many of its addresses (127.x.y.z), one a
-/// connection, twelve at once: a third as raw bytes, a third in place of a greeting, a third behind one in good order
-/// of somebody who may watch. Two connections drip a byte at a time all the while. `goOn` is asked fifty times a
-/// second; `security` is that of one who may watch.
+/// Sends `count` frames to the server at a port of this machine, one per connection. The connections come from many of
+/// the machine's addresses (127.x.y.z), twelve at once. A third of the frames are raw bytes, and a third replace the
+/// greeting. The last third follow a correct greeting of a watcher. Two more connections send one byte at a time. Calls
+/// `goOn` fifty times a second, and stops when it returns false. `security` holds the secret of a watcher.
 [[nodiscard]] Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count,
                                 const std::function<bool()>& goOn, const haptic_bridge::LinkSecurity& security = {});
 
 class Socket;
 
-/// A server that greets whoever connects with anything and one bad frame, and without a secret floods half of them with
-/// positions that are none; until it has sent so much. A thread of its own.
+/// A server that answers every connection with one bad frame, sometimes after a welcome. Without a secret it first
+/// floods half of the connections with positions that have bad values. It stops after `frames` frames and positions. It
+/// has a thread of its own.
 class FalseServer {
 public:
     FalseServer(std::uint32_t seed, haptic_bridge::Identity identity, std::uint64_t frames,
@@ -39,7 +40,7 @@ public:
 
     [[nodiscard]] std::uint16_t port() const { return port_; }
     [[nodiscard]] std::uint64_t frames() const { return bad_; }
-    [[nodiscard]] std::uint64_t positions() const { return positions_; }  // in good order, of places that are none
+    [[nodiscard]] std::uint64_t positions() const { return positions_; }  // correctly encoded positions with bad values
     [[nodiscard]] std::uint64_t connections() const { return connections_; }
     [[nodiscard]] bool done() const { return bad_ + positions_ >= count_; }
 

@@ -80,7 +80,7 @@ base::Bytes Frames::next() {
             last_ = lying();
             break;
         case 3:
-            break;  // once more
+            break;  // the last message again
         default:
             last_ = real_[below(static_cast<std::uint32_t>(real_.size()))];
     }

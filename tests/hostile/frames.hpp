@@ -8,14 +8,15 @@
 
 namespace hostile {
 
-/// Makes what nobody should send: the same for the same seed.
+/// Makes bad messages, the same ones for the same seed.
 class Frames {
 public:
     Frames(std::uint32_t seed, haptic_bridge::Identity identity);
 
-    /// Random bytes, a changed message, one with a length that lies, one said before, or one out of turn.
+    /// Returns random bytes, a changed message, a message with a wrong length, the last one again, or a message out of
+    /// turn.
     [[nodiscard]] base::Bytes next();
-    /// A message in good order that no session needs, as a master that streams positions takes it.
+    /// Returns a correctly encoded position with useless values. A master accepts it if the server streams positions.
     [[nodiscard]] base::Bytes position();
     [[nodiscard]] std::uint32_t below(std::uint32_t bound) { return static_cast<std::uint32_t>(random_()) % bound; }
 
@@ -28,7 +29,7 @@ private:
 
     std::minstd_rand random_;
     haptic_bridge::Identity identity_;
-    std::vector<base::Bytes> real_;  // one of each message
+    std::vector<base::Bytes> real_;  // one message of each type
     base::Bytes last_;
     std::int64_t time_ = 0;
 };

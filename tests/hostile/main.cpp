@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Somebody who means no good, as a program (scripts/hostile.sh).
+// A hostile end of the haptic link, as a program (scripts/hostile.sh).
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
@@ -15,17 +15,16 @@
 #include "tests/hostile/attack.hpp"
 
 int main(int argc, char** argv) {
-    host::CommandLine line("Sends what nobody should to a haptic server, or to the master that connects.",
-                           "sandwall-hostile");
+    host::CommandLine line("Sends bad messages to a haptic server, or to a master that connects.", "sandwall-hostile");
     std::string scene;
     std::uint16_t server = 0;
     std::uint64_t frames = 1'000'000;
     std::uint32_t seed = 1;
     haptic_bridge::LinkOptions link;
-    line.option("--scene", scene, "scene file, to greet in good order").required();
-    line.option("--server", server, "port of a server on this machine; without, it is a server itself");
-    line.option("--frames", frames, "how many");
-    line.option("--seed", seed, "of all of them");
+    line.option("--scene", scene, "scene file that a correct greeting names").required();
+    line.option("--server", server, "port of a server on this machine; without it, this program is a server");
+    line.option("--frames", frames, "number of frames to send");
+    line.option("--seed", seed, "seed of the random frames");
     link.addTo(line, false);
     return host::runMain(line, argc, argv, [&] {
         prctl(PR_SET_PDEATHSIG, SIGKILL);

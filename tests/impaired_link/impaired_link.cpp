@@ -20,7 +20,7 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// One connection and the one behind it. On the link's thread alone.
+/// A connection and the connection to its target. Used only on the link's thread.
 class ImpairedLink::Passage : public std::enable_shared_from_this<Passage> {
 public:
     Passage(ImpairedLink& link, tcp::socket guest, std::uint32_t number)
@@ -55,10 +55,10 @@ public:
 
 private:
     struct Piece {
-        std::vector<std::uint8_t> bytes;  // none: the end of the stream
+        std::vector<std::uint8_t> bytes;  // empty at the end of the stream
         std::int64_t leavesNs = 0;
     };
-    /// One direction.
+    /// One direction of a connection.
     struct Way {
         Way(ImpairedLink& link, tcp::socket& source, tcp::socket& sink, std::uint32_t stream)
             : from(source), to(sink), schedule(link.impairment_, stream), timer(link.io_) {}

@@ -14,16 +14,16 @@
 
 namespace impaired_link {
 
-/// Listens on loopback and hands every connection on to one address, impaired.
+/// A link that listens on loopback and forwards every connection to one address, impaired.
 ///
-/// Bytes stay whole and in order. Holds at most kMostHeld bytes a direction, then TCP holds the sender back. Has a
-/// thread of its own, which ends with it; connections that still stand are closed.
+/// Bytes stay whole and in order. Each direction holds at most kMostHeld bytes; then TCP holds the sender back. The
+/// link has a thread of its own. The destructor ends the thread and closes open connections.
 class ImpairedLink {
 public:
-    /// Sees all that passes, on the link's thread; `there` when it comes from who has connected.
+    /// Gets all bytes that pass, on the link's thread. `there` is true for bytes from the side that has connected.
     using Tap = std::function<void(std::span<const std::uint8_t> bytes, bool there)>;
 
-    /// Throws boost::system::system_error when it cannot listen. Port 0 takes any free one.
+    /// Listens on `listenPort`; 0 selects a free port. Throws boost::system::system_error if it cannot listen.
     ImpairedLink(const Impairment& impairment, std::string host, std::uint16_t port, std::uint16_t listenPort = 0,
                  Tap tap = {});
     ~ImpairedLink();
@@ -32,11 +32,11 @@ public:
 
     [[nodiscard]] std::uint16_t port() const { return port_; }
 
-    // Any thread may ask; of all connections so far.
+    // Any thread may call these. They count all connections so far.
     [[nodiscard]] int connections() const { return connections_; }
     [[nodiscard]] int resets() const { return resets_; }
     [[nodiscard]] std::uint64_t stalls() const { return stalls_; }
-    [[nodiscard]] std::size_t mostHeld() const { return mostHeld_; }  // [byte], in one direction
+    [[nodiscard]] std::size_t mostHeld() const { return mostHeld_; }  // [byte], the most held in one direction
 
     static constexpr std::size_t kMostHeld = 256 * 1024;  // [byte]
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The impaired link as a program, for sessions that are started by hand or by a benchmark.
+// The impaired link as a program, for sessions started by hand or by a benchmark.
 #include <fmt/format.h>
 #include <sys/prctl.h>
 
@@ -26,15 +26,15 @@ struct Options {
 void addOptions(host::CommandLine& line, Options& options) {
     impaired_link::Impairment& link = options.link;
     constexpr double kMost = 60'000.0;
-    line.option("--to", options.to, "HOST:PORT that connections are handed on to").required();
-    line.option("--port", options.port, "on 127.0.0.1; 0, the default, takes any free one");
-    line.option("--delay", link.delayMs, "[ms] that everything takes at least").range(0.0, kMost);
-    line.option("--jitter", link.jitterMs, "[ms] that it takes longer at most, evenly spread").range(0.0, kMost);
+    line.option("--to", options.to, "HOST:PORT to which connections are forwarded").required();
+    line.option("--port", options.port, "port on 127.0.0.1; 0, the default, selects a free one");
+    line.option("--delay", link.delayMs, "least delay [ms]").range(0.0, kMost);
+    line.option("--jitter", link.jitterMs, "largest additional delay [ms], evenly spread").range(0.0, kMost);
     line.option("--loss", link.stallShare, "share of pieces that are lost once").range(0.0, 1.0);
-    line.option("--stall", link.stallMs, "[ms] until what was lost is sent again").range(0.0, kMost);
-    line.option("--reset-after", link.resetAfter, "bytes after which a connection is reset; 0: never");
-    line.option("--resets", link.resets, "connections to be reset, at most").showDefault();
-    line.option("--seed", link.seed, "of all that is random").showDefault();
+    line.option("--stall", link.stallMs, "time until a lost piece is sent again [ms]").range(0.0, kMost);
+    line.option("--reset-after", link.resetAfter, "number of bytes after which a connection is reset; 0: never");
+    line.option("--resets", link.resets, "largest number of connections to reset").showDefault();
+    line.option("--seed", link.seed, "seed of the random numbers").showDefault();
     line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
 }
 
@@ -63,7 +63,7 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    host::CommandLine line("Hands TCP connections on with delay, jitter, stalls and resets, as a bad network would.",
+    host::CommandLine line("Forwards TCP connections with delay, jitter, stalls and resets, as a bad network would.",
                            "sandwall-impaired-link");
     Options options;
     addOptions(line, options);

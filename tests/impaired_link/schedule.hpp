@@ -4,29 +4,29 @@
 #include <cstdint>
 #include <random>
 
-/// A TCP link that is worse than it is: between two programs on one machine it stands in for a wireless network.
+/// A TCP link that is impaired on purpose. Between two programs on one machine it simulates a wireless network.
 namespace impaired_link {
 
-/// What happens to each direction of a connection. The default does nothing.
+/// The impairment of each direction of a connection. The default changes nothing.
 struct Impairment {
-    double delayMs = 0;            // every piece takes at least as long
-    double jitterMs = 0;           // and up to so much longer, evenly spread
-    double stallShare = 0;         // of all pieces: those that are lost once,
-    double stallMs = 0;            // and wait so much longer, with all that is behind them, until they are sent again
-    std::uint64_t resetAfter = 0;  // [byte], both directions together: then the connection is reset; 0: never
-    int resets = 1;                // so many connections at most
-    std::uint32_t seed = 1;        // of all that is random
+    double delayMs = 0;            // least delay of every piece
+    double jitterMs = 0;           // largest additional delay, evenly spread
+    double stallShare = 0;         // share of the pieces that are lost once
+    double stallMs = 0;            // additional delay of a lost piece and of all pieces behind it
+    std::uint64_t resetAfter = 0;  // [byte], in both directions, after which a connection is reset; 0: never
+    int resets = 1;                // largest number of connections to reset
+    std::uint32_t seed = 1;        // seed of the random numbers
 };
 
-inline constexpr std::size_t kPiece = 1448;  // [byte]: what one Ethernet frame carries of TCP
+inline constexpr std::size_t kPiece = 1448;  // [byte], TCP payload of an Ethernet frame
 
-/// When the pieces of one direction leave: in order, as TCP hands them over, whatever is lost on the way. Knows no
-/// clock.
+/// The times at which the pieces of one direction leave. They leave in order, as with TCP, also if pieces are lost.
+/// Reads no clock.
 class Schedule {
 public:
-    /// `stream` tells the directions of all connections of one link apart.
+    /// `stream` is a different number for each direction of each connection of a link.
     Schedule(const Impairment& impairment, std::uint32_t stream);
-    /// For each piece in turn.
+    /// Returns the time at which the next piece leaves [ns]. Call it once per piece, in their order.
     [[nodiscard]] std::int64_t leaves(std::int64_t arrivedNs);
     [[nodiscard]] std::uint64_t stalls() const { return stalls_; }
 
