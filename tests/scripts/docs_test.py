@@ -70,7 +70,7 @@ def broken_links(repository, name):
         path, _, heading = target.partition("#")
         found = os.path.normpath(os.path.join(os.path.dirname(name), path)) if path else name
         if found not in repository.files and found not in repository.folders:
-            yield f"{name}: links to {target}, which is no file of the project"
+            yield f"{name}: links to {target}, which is not in the project"
         elif heading and heading not in anchors(repository.documents.get(found, "")):
             yield f"{name}: links to {target}; that page has no such heading"
 
@@ -122,7 +122,7 @@ def missing_functions(repository, name):
     """Yields a line for each link that names a function and leads to a source that does not define it."""
     for function, file in linked_functions(repository, name):
         if file not in repository.files:
-            yield f"{name}: links {function} to {file}, which is no file of the project"
+            yield f"{name}: links {function} to {file}, which is not in the project"
         elif not defines(repository.read(file), function):
             yield f"{name}: links {function} to {file}, which does not define it"
 
@@ -131,7 +131,7 @@ def missing_sources(repository, name):
     """Yields a line for each source, script or setting that a document names and the project does not have."""
     for span in CODE.findall(repository.documents[name]):
         if repository.source.match(span) and span not in repository.files:
-            yield f"{name}: names {span}, which is no file of the project"
+            yield f"{name}: names {span}, which is not in the project"
 
 
 def missing_filters(repository, name):
@@ -153,7 +153,7 @@ def missing_tests(repository, name):
                 file = span
             elif TEST_NAME.match(span):
                 if file is None:
-                    yield f"{name}: {span} follows no file of tests"
+                    yield f"{name}: {span} must follow the file of its tests"
                 elif span not in repository.tests.get(file, set()):
                     yield f"{name}: {file} has no test {span}"
 
@@ -222,7 +222,7 @@ class Documents(unittest.TestCase):
     def test_a_source_that_is_gone_is_named(self):
         self.assertEqual(list(missing_sources(self.made_up("`sand/law.cpp` `out/demo/a.toml` `law.cpp`"), "docs/page.md")), [])
         self.assertEqual(list(missing_sources(self.made_up("`sand/rule.cpp`"), "docs/page.md")),
-                         ["docs/page.md: names sand/rule.cpp, which is no file of the project"])
+                         ["docs/page.md: names sand/rule.cpp, which is not in the project"])
 
     def test_the_tour_follows_a_touch_through_twelve_files(self):
         files = [file for _, file in linked_functions(PROJECT, "docs/tour.md")]
@@ -236,7 +236,7 @@ class Documents(unittest.TestCase):
             self.assertEqual(list(missing_functions(self.made_up(link.format(bad)), "docs/page.md")),
                              [f"docs/page.md: links {bad} to sand/law.cpp, which does not define it"])
         self.assertEqual(list(missing_functions(self.made_up("[`f`](../sand/rule.cpp)"), "docs/page.md")),
-                         ["docs/page.md: links f to sand/rule.cpp, which is no file of the project"])
+                         ["docs/page.md: links f to sand/rule.cpp, which is not in the project"])
 
     def test_a_filter_that_runs_nothing_is_named(self):
         self.assertEqual(list(missing_filters(self.made_up("--gtest_filter='Law.*' --gtest_filter=Law.Holds:*Odd*"), "docs/page.md")), [])

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall doctor finds on made-up hosts: this one under other names, reached by a script in ssh's place."""
+"""Tests of scripts/sandwall doctor with made-up hosts. Each is this machine under another name, reached by a script
+in place of ssh."""
 
 import json
 import os
@@ -12,7 +13,7 @@ import unittest
 
 from launcher_fixture import ROOT, LauncherTest
 
-# Every host is this machine but for what its name says.
+# Every host is this machine. The name of a host selects its fault.
 AGENT = """#!/bin/sh
 host=$1; shift
 case $host in
@@ -64,7 +65,7 @@ class Doctor(LauncherTest):
         return [str(ROOT / "scripts" / "sandwall"), "doctor", wall, "--out", str(self.folder), *options]
 
     def examine(self, hosts, *options):
-        """(exit status, {(host, check): (mark, words)}) of a wall with these hosts."""
+        """Runs the doctor on a wall with these hosts. Returns (exit status, {(host, check): (mark, words)})."""
         ended = subprocess.run(self.arguments(hosts, *options), env=self.environment, text=True, capture_output=True,
                                timeout=200, stdin=subprocess.DEVNULL)
         self.assertEqual(ended.stderr, "")
@@ -82,7 +83,7 @@ class Doctor(LauncherTest):
         return sum(mark == "RED" for mark, _ in found.values())
 
     def only_red(self, host, check):
-        """The words of the one red line on a wall with this host and a sound one."""
+        """Returns the words of the only red line, on a wall with this host and a sound one."""
         status, found = self.examine(["-", "sound1", host])
         self.assertEqual(status, 1)
         self.assertEqual([where for where, (mark, _) in found.items() if mark == "RED"], [(host, check)], found)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall film starts, and what it makes of the pictures."""
+"""Tests the processes that scripts/sandwall film starts, and its film of their pictures."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ import unittest
 
 from launcher_fixture import ROOT, LauncherTest
 
-# Writes three frames where --out says, and then what it was started with.
+# Writes three frames to the folder after --out. Then prints its own command line.
 MPIRUN = """#!/bin/sh
 all="$*"
 while [ "$1" != --out ]; do shift; done
@@ -27,7 +27,7 @@ class Film(LauncherTest):
         super().setUp()
         self.write("s.journal", "")
         self.script("mpirun", MPIRUN)
-        # Whether this machine has ffmpeg or not must not matter: only what the launcher itself needs is on the path.
+        # Only programs that the launcher itself needs are on the path, because this machine may have ffmpeg.
         for name in ("env", "python3", "sh", "mkdir", "grep", "cat"):
             for folder in os.environ["PATH"].split(":"):
                 if os.path.exists(f"{folder}/{name}"):

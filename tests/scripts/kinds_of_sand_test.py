@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That few places ask whether sand is a height field or a TIN, and that a further one is noticed.
+"""Tests that few places ask whether sand is a height field or a TIN, and that a further place is found.
 
-Sand is read as sand::SurfaceData. Its two alternatives are told apart where something is made of them or taken from
-them; all other code calls Surface, Replica or DrawnSurface. What a scene begins as is another question: whoever reads,
-checks or encodes a scene asks for its table [tin].
+Sand is read as sand::SurfaceData. The four listed places select one of its two alternatives, to make something of the
+sand
+or to take something from it. All other code calls Surface, Replica or DrawnSurface. Another question is the start of a
+scene: code that reads, checks or encodes a scene asks for its table [tin].
 
 usage: kinds_of_sand_test.py
 """
@@ -14,24 +15,24 @@ import re
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Programs and libraries. Tests, examples and benchmarks know what their sand is made of.
+# Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
 FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "sand", "scene", "tracking", "walls")
 
 # The four places that may ask for the kind.
 PLACES = {
     "sand/surface_factory.cpp": "makes the sand that a replica starts with, and a start of sand",
-    "render_node/surface_factory.cpp": "makes what draws it",
+    "render_node/surface_factory.cpp": "makes the object that draws it",
     "sand/force/surface_patch.cpp": "takes the part that a hand feels",
     "scene/export/results.cpp": "takes rasters and triangles from it",
 }
-# Code of one kind alone: it may take its own alternative, and throws when it is given the other.
+# Code of one kind of sand. It may use its own alternative, and throws if it gets the other one.
 KINDS = {
     "sand/grid/": "Grid|Cell",
     "sand/tin/": "Tin",
     "render_node/grid/": "Grid|Cell",
     "render_node/tin/": "Tin",
 }
-# Where it matters whether a scene has a table [tin]: files, and folders that end in a slash.
+# Files, and folders that end in a slash, that ask whether a scene has a table [tin].
 STARTS = {
     "haptic_bridge/hand/hand_mapping.cpp": "interpolates a height field between its cells",
     "master/": "the memory that ranks need, and the volume that a session begins with",
@@ -39,7 +40,7 @@ STARTS = {
     "sand/start.cpp": "the mean height",
     "sand/surface_factory.cpp": "makes the sand",
     "scene/load/memory.cpp": "the memory that a scene needs",
-    "scene/load/scene_file.cpp": "refuses a scheme that a TIN has not",
+    "scene/load/scene_file.cpp": "refuses a scheme that a TIN does not have",
     "scene/load/terrain.cpp": "columns and rows",
     "scene/load/tin_settings.cpp": "the spacing of points",
     "scene/load/tin_table.cpp": "reads the table",
@@ -48,10 +49,10 @@ STARTS = {
 
 ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Grid|Tin)(?:Data|Change)\b|"
                          r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Cell)Change\b")
-# Of any variant: only in files that speak of these.
+# Questions to any std::variant. They count only in files that name these types.
 OF_DATA = re.compile(r"\b(?:SurfaceData|SurfaceChange|GridData|TinData|CellChange|TinChange)\b|\bsurface(?:\(\)|_)(?:\.|->)data\(\)|\btakeChange\(\)")
 ANY_VARIANT = re.compile(r"\bstd::(?:visit\s*\(|get_if\s*<\s*\d|get\s*<\s*\d)|\bholds_alternative\s*<|\.index\(\)")
-# A class of one kind, or its module's old questions.
+# A class of one kind of sand, or a former function that asked for the kind.
 CLASS = re.compile(r"\b(?:GridSurface|TinSurface|SandMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
 START = re.compile(r"\btin\s*(?:==|!=)\s*nullptr|\bnullptr\s*(?:==|!=)\s*[\w.>-]*\btin\b|"
                    r"(?:\bif\s*\(|&&|\|\||!|\()\s*!?(?:\w+(?:\.|->))+tin\s*(?:\)|&&|\|\||\?)")
@@ -84,7 +85,7 @@ def asking(files):
 
 
 def starting(files):
-    """Files that ask for the start's TIN, or the listed folder that they are in."""
+    """Returns the files that ask for the TIN of a start, or the listed folders that hold them."""
     folders = [path for path in STARTS if path.endswith("/")]
     return {next((folder for folder in folders if path.startswith(folder)), path)
             for path, text in files.items() if START.search(text)}
@@ -96,8 +97,8 @@ class KindsOfSand(unittest.TestCase):
     def test_four_places_tell_a_height_field_from_a_tin(self):
         found = {path: questions(path, text) for path, text in self.files.items() if questions(path, text)}
         more = {path: asked for path, asked in found.items() if path not in PLACES}
-        self.assertEqual(more, {}, "call Surface, Replica or DrawnSurface, which know what the sand is made of")
-        self.assertEqual(sorted(found), sorted(PLACES), "a place that asks no more: take it from the list")
+        self.assertEqual(more, {}, "call Surface, Replica or DrawnSurface, which know the kind of sand")
+        self.assertEqual(sorted(found), sorted(PLACES), "remove a place that no longer asks from the list PLACES")
 
     def test_a_scene_is_asked_for_its_tin_where_it_is_read_or_begins(self):
         self.assertEqual(sorted(starting(self.files)), sorted(STARTS))

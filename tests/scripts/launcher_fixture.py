@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/sandwall among made-up programs, which only say how they were started."""
+"""scripts/sandwall with made-up programs, which only print how they were started."""
 
 import os
 import pathlib
@@ -20,8 +20,8 @@ exit 2
 SAY = """#!/bin/sh
 echo "rank ${OMPI_COMM_WORLD_RANK:-none} on ${MADE_UP_HOST:-here} threads ${LP_NUM_THREADS:-none}: ${0##*/} $*"
 """
-# In ssh's place: the host is the first word. Open MPI's daemons make the same folders and map the same files on one
-# machine, and now and then one fails over that: each made-up host has its own.
+# Replaces ssh: the host is the first word. Open MPI's daemons would make the same folders and map the same files on one
+# machine, and sometimes a daemon fails because of that. So each made-up host has a folder of its own.
 AGENT = """#!/bin/sh
 host=$1; shift
 case $host in
@@ -35,7 +35,7 @@ exec env MADE_UP_HOST="$host" sh -c "$*"
 
 
 class LauncherTest(unittest.TestCase):
-    """A wall file here is the list of hosts that sandwall-check would print of it."""
+    """Tests of the launcher. A wall file of these tests is the list of hosts that sandwall-check would print."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="sandwall-launcher-")
@@ -71,13 +71,13 @@ class LauncherTest(unittest.TestCase):
                               timeout=120, **{"stdin": subprocess.DEVNULL, **popen})
 
     def printed(self, hosts, *options):
-        """What --print-command prints of a session."""
+        """Returns the commands that --print-command prints for a session."""
         ended = self.start(hosts, "--print-command", *options)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         return ended.stdout.replace(str(self.folder / "bin") + "/", "").replace(str(self.folder) + "/", "")
 
     def refused(self, hosts, *options):
-        """The one line that a session is refused with."""
+        """Returns the error line with which a session is refused."""
         ended = self.start(hosts, *options)
         self.assertEqual((ended.returncode, ended.stdout), (2, ""), ended.stderr)
         self.assertEqual(ended.stderr.count("\n"), 1, ended.stderr)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall starts, refuses and hands on."""
+"""Tests the programs that scripts/sandwall starts, the input that it refuses, and the lines that it passes on."""
 
 import contextlib
 import os
@@ -19,7 +19,7 @@ import session_folder
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"
 """
-# Prints what it is told on standard input, until "stop".
+# Prints the lines of its standard input, until "stop".
 LISTENING_MPIRUN = """#!/bin/sh
 while read -r line; do echo "told: $line"; [ "$line" = stop ] && exit 0; done
 exit 9
@@ -164,7 +164,7 @@ class Refusals(LauncherTest):
 
 class OneFolder(LauncherTest):
     def start_waiting(self):
-        """A session that waits for its end."""
+        """Starts a session that runs until a line is written to its input."""
         self.script("mpirun", "#!/bin/sh\ntouch \"$STARTED\"; read -r line\n")
         started = self.folder / "started"
         process = subprocess.Popen(self.command(["-"], "--journal", "off"), env={**self.environment, "STARTED": started},
@@ -190,7 +190,7 @@ class OneFolder(LauncherTest):
 
 
 class FolderInUse(unittest.TestCase):
-    """Two launchers that want one folder, by a clock that waits for nobody."""
+    """Two launchers that need the same folder, with a clock that the test moves."""
 
     def setUp(self):
         self.folder = self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-folder-"))
@@ -207,7 +207,7 @@ class FolderInUse(unittest.TestCase):
             self.first.close()
 
     def enter(self):
-        """Seconds that the second one has waited until the folder was its own."""
+        """Enters the folder as the second launcher. Returns the seconds that it has waited."""
         began = self.now
         with session_folder.held(self.folder):
             return self.now - began
@@ -240,7 +240,7 @@ class Input(LauncherTest):
         self.assertEqual((ended.returncode, ended.stdout), (0, "told: stop\n"))
 
     def test_the_end_of_our_input_means_nothing(self):
-        # Were it handed on, this mpirun would end with status 9 before it is told to stop.
+        # If the end of input were passed on, this mpirun would end with status 9 before it reads "stop".
         started = self.folder / "started"
         self.script("mpirun", LISTENING_MPIRUN.replace("while", f"touch {started}; while"))
         process = subprocess.Popen(self.command(["-"]), env=self.environment, stdin=subprocess.DEVNULL,

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That no folder includes what it may not, and that the check would notice.
+"""Tests that each folder includes only folders that it may include, and that the check finds a wrong include.
 
 usage: layers_test.py BUILD_FOLDER
 """
@@ -19,7 +19,7 @@ PROJECT = layers.Project.of(ROOT, BUILD)
 
 
 def changed(more):
-    """The faults of the project with other or further sources; None takes one away."""
+    """Returns the faults of the project with changed or additional sources. A text of None removes a source."""
     project = copy.deepcopy(PROJECT)
     sources = {**project.sources, **more}
     sources = {path: text for path, text in sources.items() if text is not None}
@@ -32,7 +32,7 @@ def including(path, name):
 
 
 def linked(name):
-    """All that a target links, PRIVATE links of its libraries included."""
+    """Returns all libraries that a target links, with the PRIVATE links of its libraries."""
     found, waiting = set(), [name]
     while waiting:
         target = PROJECT.targets.get(waiting.pop(), {"link_libraries": []})
@@ -76,7 +76,7 @@ class Layers(unittest.TestCase):
                          ["dust/grain.cpp: no library of the project holds it; add it to a CMakeLists.txt"])
 
     def test_the_force_loop_and_a_replay_of_it_link_no_network(self):
-        network = {"haptic_link", "haptic_client", "haptic_server"}  # asio also lends host/ its pool of threads
+        network = {"haptic_link", "haptic_client", "haptic_server"}  # without asio, because host/ uses its thread pool
         for name in ("haptic_loop", "sandwall-replay"):
             self.assertIn("haptic_hand", linked(name))
             self.assertEqual(linked(name) & network, set(), name)
@@ -84,7 +84,7 @@ class Layers(unittest.TestCase):
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()
-        self.assertTrue(drawn, "draw it again: scripts/layers.py build/release --svg docs/layers.svg")
+        self.assertTrue(drawn, "run scripts/layers.py build/release --svg docs/layers.svg")
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That scripts/lint.sh sees every folder of the project.
+"""Tests that scripts/lint.sh checks every folder of the project.
 
 usage: lint_test.py BUILD_FOLDER, of a build with CMAKE_EXPORT_COMPILE_COMMANDS
 """
@@ -17,13 +17,13 @@ BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT /
 
 
 def tracked(*patterns):
-    """Paths in the repository, relative to its root."""
+    """Returns tracked paths, relative to the root of the repository."""
     listed = subprocess.run(["git", "ls-files", "-z", *patterns], cwd=ROOT, capture_output=True, check=True, text=True)
     return [pathlib.PurePath(name) for name in listed.stdout.split("\0") if name]
 
 
 def linted():
-    """The sources that run-clang-tidy selects: compiled ones that match the pattern in scripts/lint.sh."""
+    """Returns the sources that run-clang-tidy selects: compiled ones that match the pattern in scripts/lint.sh."""
     script = (ROOT / "scripts" / "lint.sh").read_text()
     pattern = re.search(r'^every_source="([^"]+)"$', script, re.MULTILINE)[1].replace("$PWD", re.escape(str(ROOT)))
     compiled = json.loads((BUILD / "compile_commands.json").read_text())

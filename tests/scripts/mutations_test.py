@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""That every patch of tests/mutations still applies, and names a test program and tests that exist.
+"""Tests that every patch of tests/mutations applies, and names a test program and tests that exist.
 
 usage: mutations_test.py
 """
@@ -20,16 +20,16 @@ PROGRAMS = {name for file in tracked("tests/*CMakeLists.txt")
 def faults(name, text, tests, applies):
     header = HEADER.match(text)
     if header is None:
-        yield f"{name}: begins with no lines '# What is wrong.' and '# tests: PROGRAM FILTER'"
+        yield f"{name}: must begin with the lines '# What is wrong.' and '# tests: PROGRAM FILTER'"
         return
     if header["program"] not in PROGRAMS:
         yield f"{name}: there is no test program {header['program']}"
     for pattern in header["filter"].split(":"):
-        # Of a test with parameters the instance stands before, and the parameter behind.
+        # The full name of a test with parameters has an instance in front and a parameter at the end.
         if not any(fnmatch.fnmatchcase(test, pattern) or fnmatch.fnmatchcase(f"x/{test}/x", pattern) for test in tests):
             yield f"{name}: the filter {pattern} runs no test"
     if not applies(text):
-        yield f"{name}: does not apply any more; make it again from the line as it is now"
+        yield f"{name}: no longer applies; make it again from the current source"
 
 
 def applies(text):

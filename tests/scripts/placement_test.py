@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Where the real mpirun puts ranks; the other hosts are this one under other names, reached by a script in ssh's place."""
+"""Tests the hosts on which the real mpirun puts ranks. The other hosts are this machine under other names, reached
+by a script in place of ssh."""
 
 import re
 import unittest

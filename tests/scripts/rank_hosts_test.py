@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which rank runs on which machine."""
+"""Tests on which machine each rank runs."""
 
 import socket
 import tempfile
@@ -71,7 +71,7 @@ class Network(unittest.TestCase):
 
 class Programs(unittest.TestCase):
     def test_every_change_of_host_is_a_program_of_its_own(self):
-        # mpirun numbers ranks program by program, so rank r is where the list says.
+        # mpirun numbers ranks program by program. So rank r must be on the r-th host of the list.
         words = rank_hosts.programs(["a", "a", HERE, "b", "a"], ["master"], ["node"])
         self.assertEqual(" ".join(words), "-n 1 --host localhost master : -n 2 --host a:2 node : "
                          "-n 1 --host localhost:1 node : -n 1 --host b:1 node : -n 1 --host a:1 node")

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall run does when a rank or mpirun dies: names it, starts again, and gives up at last."""
+"""Tests how scripts/sandwall run names a rank or mpirun that has ended, starts the session again, and finally gives
+up."""
 
 import re
 import subprocess
@@ -49,7 +50,7 @@ class Restarts(Supervised):
     def test_what_the_master_has_written_down_goes_before_what_mpirun_noticed(self):
         self.tries("""progress 7 6; told '{"what": "hung", "rank": 1, "host": "x", "tile": "a", "message": "in other words"}'; ends 0 1""", "exit 0")
         self.assertIn("sandwall: rank 1 (tile a) on x hung; starting again", self.ended(["-"])[2])
-        self.assertFalse((self.folder / "out" / "failure.json").exists(), "it would be found again")
+        self.assertFalse((self.folder / "out" / "failure.json").exists(), "the next try would find it again")
 
     def test_a_failure_that_could_not_be_written_is_read_from_its_event(self):
         failure = '{"what":"broken","rank":1,"host":"x","tile":"a","message":"rank 1 sent garbage"}'

@@ -52,7 +52,7 @@ def load(name):
 
 
 def validator(name):
-    """Of a schema by name; its references are files beside it."""
+    """Returns the validator of the schema with this name. The files that it references are in the same folder."""
     schema = load(name)
     return jsonschema.Draft7Validator(schema, resolver=jsonschema.RefResolver(f"{SCHEMAS.as_uri()}/{name}.schema.json", schema))
 
@@ -67,7 +67,7 @@ class SchemaTest(unittest.TestCase):
 
 
 class SessionTest(SchemaTest):
-    """Sessions of two render ranks on this machine."""
+    """Tests with sessions of two render ranks on this machine."""
 
     def setUp(self):
         temporary = tempfile.TemporaryDirectory(prefix="sandwall-schema-")
@@ -99,7 +99,8 @@ class SessionTest(SchemaTest):
         return event
 
     def events_by_name(self):
-        """All events of the session, each of which its schema describes; they may come from several processes."""
+        """Returns all events of the session by name, and checks each against its schema. They may come from several
+        processes."""
         found = {}
         for line in self.log.read_text().splitlines():
             if events.TAG in line:

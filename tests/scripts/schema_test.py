@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Whether docs/schemas describe what real sessions write, and whether scripts refuse a summary of another version."""
+"""Tests that docs/schemas describe the files of real sessions, and that scripts refuse a summary of another version."""
 
 import copy
 import json
@@ -73,7 +73,7 @@ class RealSessions(SessionTest):
             self.reject_all("event", found[name][-1])
 
     def reject_all(self, name, value):
-        """A field that is missing, or that no page documents, is a fault."""
+        """The schema must reject `value` without one of its fields, and `value` with an undocumented field."""
         optional = {"head_tracking"} if name == "summary" else set()
         for field in set(value) - optional:
             self.invalid(name, {key: other for key, other in value.items() if key != field})
@@ -101,7 +101,7 @@ class Schemas(SchemaTest):
         for name in ("event", "failure", "status", "summary"):
             schema = load(name)
             definitions = schema.get("definitions", {})
-            definitions.pop("count", None)  # what refers to it describes it
+            definitions.pop("count", None)  # each reference to it has a description
             for part in (schema.get("properties", {}), definitions):
                 for key, value in part.items():
                     for inner in (value.get("properties", {}) if name == "event" else {key: value}).items():
@@ -134,7 +134,7 @@ class Schemas(SchemaTest):
         self.invalid("event", {"event": "head_tracking", "state": "lost", "port": 4242})
 
     def test_an_event_that_a_short_session_does_not_emit(self):
-        """Divergences, spares and given-up sessions have their own tests; these are the fields that they check."""
+        """Checks the fields of events that have their own tests elsewhere: divergences and given-up sessions."""
         odd = {"rank": 2, "state_hash": "00000000000000ff", "hash_tile": 3, "columns": [0, 31], "rows": [32, 63], "cells": 9}
         divergence = {"event": "divergence", "frame": 30, "step": 29, "state_hash": "0123456789abcdef", "judge": "majority",
                       "agreeing": 2, "ranks": 3, "odd": [odd], "reproduce": ["sandwall-replay", "session.journal"]}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall run does when the haptic server dies."""
+"""Tests how scripts/sandwall run starts the haptic server again after it has ended or hung."""
 
 import tempfile
 import unittest
@@ -52,7 +52,7 @@ until [ $(wc -l < "$folder/servers") = 2 ]; do sleep 0.05; done; exit 0""")
             self.assertIn("--haptic 127.0.0.1:4711 ", command)
 
     def test_one_that_dies_too_often_ends_the_session_in_order(self):
-        # A read with a time limit of its own would lose a word that arrives in two parts.
+        # mpirun reads without a time limit of its own, because it would lose a line that arrives in two parts.
         self.tries("""progress 5 4; while sleep 0.1; do kill -KILL $(cat "$folder/server.pid"); done &
 read -r line; kill $!; echo "told: $line"; exit 0""")
         status, printed, error = self.ended(["-"], "--device", "script:gis", "--restarts", "2", "--restart-window", "600")
@@ -62,7 +62,7 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
 
 
 class HungServer(unittest.TestCase):
-    """A server that runs and is not linked, by a clock that the test moves."""
+    """A server that runs but is not linked, with a clock that the test moves."""
 
     def setUp(self):
         self.now = 1000.0
@@ -81,7 +81,8 @@ class HungServer(unittest.TestCase):
         self.log.read_event({"event": name, **fields})
 
     def wall_goes_on(self, seconds, hand="no hand"):
-        """Progress every second, as the master says it, while the launcher looks; whether the server was killed."""
+        """Lets the wall run for `seconds` seconds: each has a progress event and one look of the launcher. Returns
+        true if the server was killed."""
         for _ in range(seconds):
             self.now += 1
             self.event("progress", frame=1, step=1, fps=60.0, skew_us=0.0, hand=hand)
@@ -89,13 +90,13 @@ class HungServer(unittest.TestCase):
         return self.server.process.kill.called
 
     def end(self):
-        """The killed process has gone, and is started again after the wait for it."""
+        """Lets the killed process end, and starts the server again after the wait for it."""
         self.server.process.kill.reset_mock()
         self.server.process.poll.return_value = -9
         self.watched.look_after_server()
         self.assertTrue(self.watched.failures[-1].text.endswith("was hung"))
         self.now = self.watched.server_due
-        self.watched.look_after_server()  # starts it
+        self.watched.look_after_server()  # starts the server
         self.server.start.assert_called_once()
         self.server.process.poll.return_value = None
 
@@ -127,7 +128,7 @@ class HungServer(unittest.TestCase):
         self.assertTrue(self.wall_goes_on(11))
         self.server.listens.return_value = False
         self.end()
-        self.assertFalse(self.wall_goes_on(120), "a large scene takes its time before the server listens")
+        self.assertFalse(self.wall_goes_on(120), "a server may need a long time to load a large scene before it listens")
         self.server.listens.return_value = True
         self.assertFalse(self.wall_goes_on(11))
         self.assertTrue(self.wall_goes_on(1))

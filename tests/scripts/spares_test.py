@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Which spare host takes the place of one that is lost."""
+"""Tests which spare host replaces a lost one."""
 
 import re
 import unittest
@@ -13,7 +13,7 @@ class Spares(Supervised):
         return ["--hosts", self.write("hosts", "\n".join(lines) + "\n")]
 
     def placed(self):
-        """On which host each try had its ranks."""
+        """Returns the hosts of the ranks of each try."""
         return [re.findall(r"--host (\S+):\d+", command) for command in self.commands()]
 
     def test_a_host_that_cannot_be_reached_at_the_start_is_replaced(self):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""scripts/sandwall run with an mpirun that dies as it is told."""
+"""scripts/sandwall run with a made-up mpirun that fails as a test asks."""
 
 import socket
 import subprocess
@@ -7,7 +7,7 @@ import time
 
 from launcher_fixture import LauncherTest
 
-# Writes down its command, and does in its n-th start what try_n says.
+# Records its command. Runs the script try_n at its n-th start.
 MPIRUN = """#!/bin/bash
 folder=$(dirname "$0")/..
 n=$(($(cat "$folder/tries" 2>/dev/null || echo 0) + 1)); echo $n > "$folder/tries"
@@ -36,7 +36,7 @@ class Supervised(LauncherTest):
         self.script("mpirun", MPIRUN)
 
     def tries(self, *texts):
-        """What mpirun does at its first, second, ... start."""
+        """Sets the scripts that mpirun runs at its first, second and later starts."""
         for number, text in enumerate(texts, start=1):
             self.write(f"try_{number}", text)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What scripts/sandwall run passes on of what its programs say, and how it is stopped."""
+"""Tests which output of its programs scripts/sandwall run passes on, and how it is stopped."""
 
 import pathlib
 import signal
@@ -33,8 +33,8 @@ exit 0""")
 
     def test_where_no_log_can_be_written_the_master_has_the_word(self):
         (self.folder / "out").write_text("a file")
-        self.tries("complain 0 'out: is no folder'; exit 2")
-        self.assertEqual(self.ended(["-"]), (2, "", "out: is no folder\n"))
+        self.tries("complain 0 'out: cannot make this folder'; exit 2")
+        self.assertEqual(self.ended(["-"]), (2, "", "out: cannot make this folder\n"))
 
 
 def environments():
@@ -56,7 +56,7 @@ class Stopping(Supervised):
         self.assertEqual((process.returncode, len(self.commands())), (137, 1))
 
     def test_ctrl_c_ends_a_wait_between_two_tries(self):
-        # From the second on, a restart waits.
+        # From the second restart on, the launcher waits before a restart.
         self.tries(*["progress 1 1; dies 1 host 9"] * 9)
         process = self.begin(["-"], "--restarts", "9")
         while "(5 of --restarts 9" not in process.stderr.readline():
@@ -72,7 +72,7 @@ class Stopping(Supervised):
         self.wait_for("journal", (self.folder / "out/session.journal").exists)
         process.kill()
         process.wait(60)
-        # Its input has ended, and nobody starts it again.
+        # The input of mpirun has ended, and it is not started again.
         self.wait_for("end", lambda: not any(f"SANDWALL_JOB={process.pid}-" in text for text in environments()))
         self.assertEqual(len(self.commands()), 1)
 
