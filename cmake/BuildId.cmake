@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# The build id: one hash over everything that a rank runs. Ranks compare it at the start, and modules carry it, so that
-# no two builds run together. It follows sources, flags and compiler, and no path and no time: clones of one commit have
-# one id.
+# The build id: one hash over all code that a rank runs. Ranks compare it at the start, and modules carry it. So
+# different builds cannot run together. It depends on sources, flags and compiler, but not on paths or times: clones of
+# one commit have the same id.
 
-# Appends to `list` the targets of this project that `target` links, itself first.
+# Appends `target`, and then the targets of this project that it links, to `list`.
 function(sandwall_linked_targets list target)
     set(found ${${list}})
     if(NOT TARGET ${target} OR target IN_LIST found)
@@ -28,8 +28,8 @@ function(sandwall_linked_targets list target)
     set(${list} ${found} PARENT_SCOPE)
 endfunction()
 
-# Leaves in `list` the flags that can change an instruction: without warnings, debug information, paths and folders.
-# `-Wp,-D...` stays, because distributions define _FORTIFY_SOURCE and _GLIBCXX_ASSERTIONS in this way.
+# Removes warnings, debug information, paths and folders from the flags in `list`, because they cannot change an
+# instruction. `-Wp,-D...` stays, because distributions define _FORTIFY_SOURCE and _GLIBCXX_ASSERTIONS in this way.
 function(sandwall_keep_code_flags list)
     set(dropped -W -g -fdiagnostics -I -isystem -iquote -idirafter --sysroot "-f[a-z]+-(prefix-map|compilation-dir)=")
     list(JOIN dropped "|" dropped)
@@ -49,8 +49,9 @@ function(sandwall_keep_code_flags list)
     set(${list} "${kept}" PARENT_SCOPE)
 endfunction()
 
-# Writes what the targets are made of: a line `flags ...` of each, and a line `file PATH` for each source and
-# for each header in their folders, relative to the project. Warnings and debug information change no instruction.
+# Writes the inputs of the targets to a file. There is a line `flags ...` for each target. There is a line `file PATH`
+# for each source and for each header in its folders, relative to the project. Warnings and debug information are left
+# out, because they change no instruction.
 function(sandwall_write_manifest file)
     set(targets "")
     foreach(target IN LISTS ARGN)
@@ -113,8 +114,8 @@ function(sandwall_write_manifest file)
     set(identified_files ${files} PARENT_SCOPE)
 endfunction()
 
-# Defines build_id, with host::buildId(), and module_id, with the same for a module (host/module.hpp), from what the
-# targets in ARGN link. After all targets.
+# Defines the library build_id, with host::buildId(), and module_id, with the same id for a module (host/module.hpp).
+# The id follows the libraries that the targets in ARGN link. Call it after all targets.
 function(sandwall_define_build_id)
     set(folder ${PROJECT_BINARY_DIR}/host)
     set(present "")

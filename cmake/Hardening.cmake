@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# What makes a fault that somebody finds harder to use, in every program and module. None of it changes a value that is
-# computed; what it costs the sand is in docs/security.md.
+# Options that make faults harder to exploit, in every program and module. They change no computed value.
+# docs/security.md lists their cost for the sand.
 include(CheckCXXCompilerFlag)
 foreach(flag -fstack-protector-strong -fstack-clash-protection -fcf-protection)
     string(MAKE_C_IDENTIFIER "SANDWALL_HAS${flag}" has)
@@ -9,8 +9,8 @@ foreach(flag -fstack-protector-strong -fstack-clash-protection -fcf-protection)
         add_compile_options(${flag})
     endif()
 endforeach()
-# It needs an optimiser, and sanitizers look at the same calls by themselves.
+# Only in Release builds, because _FORTIFY_SOURCE needs optimisation. Sanitizers check the same calls themselves.
 add_compile_definitions($<$<CONFIG:Release>:_FORTIFY_SOURCE=2>)
-# Position-independent objects are Debian's default for g++ and clang; the programs must not fall back unnoticed.
+# Debian's g++ and clang make position-independent objects by default. If they do not, these options make the link fail.
 add_link_options($<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>
     LINKER:-z,relro LINKER:-z,now LINKER:-z,noexecstack)

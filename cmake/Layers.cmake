@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes layers.json for scripts/layers.py: each target of the project with its sources and what it links. After all
-# targets.
+# Writes layers.json for scripts/layers.py: each target of the project with its sources and the libraries that it links.
+# Call it after all targets.
 function(sandwall_add_targets list folder)
     set(found ${${list}})
     get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
@@ -31,7 +31,7 @@ function(sandwall_write_layers file)
             foreach(value IN LISTS values)
                 string(REGEX REPLACE "^\\$<TARGET_OBJECTS:(.*)>$" "\\1" value "${value}")
                 if(value MATCHES "^\\$")
-                    continue()  # only for the linker, or of a library from elsewhere
+                    continue()  # an option of the linker, or a library of another project
                 elseif(property STREQUAL "SOURCES" AND NOT TARGET ${value})
                     cmake_path(ABSOLUTE_PATH value BASE_DIRECTORY ${folder} NORMALIZE)
                     cmake_path(RELATIVE_PATH value BASE_DIRECTORY ${PROJECT_SOURCE_DIR})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Hashes what MANIFEST lists (cmake/BuildId.cmake), with paths relative to ROOT. Writes build_id.cpp and module_id.cpp
-# into the folder OUTPUT; without OUTPUT, prints the id.
+# Hashes the flags and files in MANIFEST (cmake/BuildId.cmake), with paths relative to ROOT. Writes build_id.cpp and
+# module_id.cpp into the folder OUTPUT. Prints the id if OUTPUT is not set.
 file(STRINGS "${MANIFEST}" lines)
 set(all "")
 foreach(line IN LISTS lines)

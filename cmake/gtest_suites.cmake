@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes OUTPUT, a file for ctest with one test for each suite of PROGRAM: starting a process for each of hundreds of tests
-# that take a millisecond costs more than the tests. `;` in PROPERTIES separates names and values.
+# Writes OUTPUT, a file for ctest with one test per suite of PROGRAM. Hundreds of tests take a millisecond each, and a
+# process for each test would cost more time. `;` in PROPERTIES separates names and values.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "(^|\n)[A-Za-z_][A-Za-z0-9_/]*\\." suites "${listed}")
 set(text "")
