@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 A master and three render ranks meet at the barrier of some frames. In some
-// frames one of them does something wrong. The master prints a line for each frame: the verdict, the rank that sent
-// nonsense and its bytes, and the arrivals.
+// SPDX-License-Identifier: Apache-2.0
+// A master and three render ranks meet at the barrier of some frames. In some frames one of them does something wrong.
+// The master prints a line for each frame: the verdict, the rank that sent nonsense and its bytes, and the arrivals.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The barrier between ranks that MPI has started, and its verdict on each thing
-// that a rank may do wrong.
+// SPDX-License-Identifier: Apache-2.0
+// The barrier between ranks that MPI has started, and its verdict on each thing that a rank may do wrong.
 #include <gtest/gtest.h>
 
 #include <map>

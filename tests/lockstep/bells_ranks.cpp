@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Each rank counts the bells that it has, sleeps until the rank before it rings,
-// and rings the bell of the next rank.
+// SPDX-License-Identifier: Apache-2.0
+// Each rank counts the bells that it has, sleeps until the rank before it rings, and rings the bell of the next rank.
 #include <fmt/format.h>
 #include <mpi.h>
 

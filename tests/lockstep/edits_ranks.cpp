@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Ten thousand edits on every rank. Each rank sweeps in another way, and all
-// compare the hashes after every edit. They compare a hundred hashes at a time, because on few cores a meeting of
-// twelve ranks after each edit takes longer than the sand. With "tools", a thousand edits with tools of every shape.
-// With "tin", a thousand edits on a TIN.
+// SPDX-License-Identifier: Apache-2.0
+// Ten thousand edits on every rank. Each rank sweeps in another way, and all compare the hashes after every edit. They
+// compare a hundred hashes at a time, because on few cores a meeting of twelve ranks after each edit takes longer than
+// the sand. With "tools", a thousand edits with tools of every shape. With "tin", a thousand edits on a TIN.
 #include <fmt/format.h>
 #include <mpi.h>
 

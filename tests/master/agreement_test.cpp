@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The master and ranks that differ, without MPI. Each rank is a replica in this
-// process.
+// SPDX-License-Identifier: Apache-2.0
+// The master and ranks that differ, without MPI. Each rank is a replica in this process.
 #include "master/agreement.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The begin of frames with a clock that the test moves, and a simulated monitor.
+// SPDX-License-Identifier: Apache-2.0
+// The begin of frames with a clock that the test moves, and a simulated monitor.
 #include "master/frame_clock.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 The memory that a journal's sand needs is checked before the sand is made.
+// SPDX-License-Identifier: Apache-2.0
+// The memory that a journal's sand needs is checked before the sand is made.
 #include <gtest/gtest.h>
 
 #include <filesystem>

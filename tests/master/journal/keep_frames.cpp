@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Writes three frames to FOLDER/session.journal under a policy, as a session does.
-// After each frame it appends a line to the file that SANDWALL_SYNC_LOG names, with the length of the journal or the
-// error of the disk. Exit status 3 if the disk refuses a required journal, 2 if the journal cannot be made.
+// SPDX-License-Identifier: Apache-2.0
+// Writes three frames to FOLDER/session.journal under a policy, as a session does. After each frame it appends a line
+// to the file that SANDWALL_SYNC_LOG names, with the length of the journal or the error of the disk. Exit status 3 if
+// the disk refuses a required journal, 2 if the journal cannot be made.
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0 Steps are on disk before they are shown: fdatasync follows the journal's records
-// before the session continues.
+// SPDX-License-Identifier: Apache-2.0
+// Steps are on disk before they are shown: fdatasync follows the journal's records before the session continues.
 #include <gtest/gtest.h>
 
 #include <filesystem>
