@@ -213,6 +213,11 @@ class Documents(unittest.TestCase):
         self.assertEqual(faults_of(README="[a](more/part.md)", more__part=""),
                          ["docs/more/part.md: its folder has no README.md that lists it"])
 
+    def test_the_citation_names_the_version_that_is_built(self):
+        built = re.search(r"^project\(sandwall VERSION ([\d.]+) ", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)[1]
+        cited = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)[1]
+        self.assertEqual(cited, built)
+
     def test_a_link_to_nothing_is_named(self):
         good = "[a](other.md) [b](images/a.png) [c](other.md#the-law-how-it-holds) [d](https://no.where/x) [e](../sand) [f](#page)\n# Page\n"
         self.assertEqual(list(broken_links(self.made_up(good), "docs/page.md")), [])
