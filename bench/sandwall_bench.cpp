@@ -66,7 +66,7 @@ std::vector<Curve> allCurves() {
          10,
          bench::stability},
         {"guarded-sweep",
-         "the first paper's constants on every arm, guarded and literal; one run: a corner of it",
+         "the constants of Dorjgotov et al. 2007 on every arm, guarded and literal; one run: a corner of it",
          {0},
          10,
          bench::guardedSweep},

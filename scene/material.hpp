@@ -22,7 +22,7 @@ struct Material {
     double cohesionLength = 0;       // [scene unit], how high a bank stands at w = 1
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
-    double toolRadius = 0.01;        // [scene unit], half of its length; the default is the first paper's sphere
+    double toolRadius = 0.01;        // [scene unit], half of its length; default: the sphere of Dorjgotov et al. 2007
     sand::ToolKind toolKind = sand::ToolKind::sphere;
     std::optional<double> toolWidth;  // over its length; none: the kind's usual one
     double toolHeading = 0;           // [deg] from east, counter-clockwise; where a footprint's toes point

@@ -42,7 +42,7 @@ BAD_INPUT = 2
 class Wall:
     name: str
     file: str
-    nodes: int  # in the paper
+    nodes: int  # in Dorjgotov et al. 2007
     paper: dict  # by link: mean and standard deviation [ms]
 
 
@@ -232,8 +232,8 @@ def pm(mean, deviation, digits=1):
     return f"{mean:.{digits}f} ± {deviation:.{digits}f}"
 
 
-HEADER = ["wall, nodes in the paper", "link", "shows", "Dorjgotov et al. 2007", "wall has swapped", "master has it", "floor: message",
-          "floor: broadcast + barrier", "floor: sum, medians", "frame", "tests"]
+HEADER = ["wall, nodes in Dorjgotov et al. 2007", "link", "shows", "Dorjgotov et al. 2007", "wall has swapped", "master has it",
+          "floor: message", "floor: broadcast + barrier", "floor: sum, medians", "frame", "tests"]
 
 
 def cells(row):

@@ -90,7 +90,7 @@ def main():
     ticks = sum(count for _, count in found["period"])
     print(f"\n- {missed(found['period']):.2f} per mille of {ticks} deadlines missed: each passed before the tick of the deadline before it had come")
     print(f"- {latency.processor()}, {len(os.sched_getaffinity(0))} cores shared by the haptic server (force loop, sand), the master and a render rank; "
-          f"load average {before:.1f} before and {os.getloadavg()[0]:.1f} after; {summary['steps']} steps of sand dug by the paper's tool")
+          f"load average {before:.1f} before and {os.getloadavg()[0]:.1f} after; {summary['steps']} steps of sand dug by the tool of Dorjgotov et al. 2007")
     return 0
 
 

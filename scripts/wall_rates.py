@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures how a whole wall keeps up, on this machine alone: 12 ranks, 24 views of 1024 x 768, drawn by the processor.
 
-Runs sessions one after another and prints a table: a still wall, digging with the first paper's tool and with one of 12
+Runs sessions one after another and prints a table: a still wall, digging with the tool of Dorjgotov et al. 2007 and one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
 With --tin: digging in a height field and in TINs in turns. Frames a second of sessions at a display's pace, of a wall of
 one of the tiles, whose rank has a core as on a cluster, and of all; then what a frame takes of a rank with a core of its

@@ -101,8 +101,8 @@ void updateDamage(benchmark::State& state) {
 }
 BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
-/// The paper's tool digs under one eye of a tile that shows all of it. Argument 0: 1 draws what changed, 0 everything.
-/// Argument 1: cells on a side. The time of a step of sand is not in it.
+/// Measures a frame in which the tool of Dorjgotov et al. 2007 digs, for one eye of a tile that shows the whole field.
+/// Argument 0: 1 draws what changed, 0 everything. Argument 1: cells on a side. The step of sand is not timed.
 void dig(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const int side = static_cast<int>(state.range(1));

@@ -16,7 +16,7 @@ namespace {
 
 using sand::force::Vec3;
 
-constexpr double kRadius = 0.01;  // [scene unit], the first paper's
+constexpr double kRadius = 0.01;  // [scene unit], the tool of Dorjgotov et al. 2007
 constexpr int kCells = 10;        // per radius
 constexpr int kTicks = 3000;      // a thousand a second
 constexpr int kSettled = 200;     // [tick], until the error counts: the start is no model's fault

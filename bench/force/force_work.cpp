@@ -13,7 +13,7 @@ namespace {
 
 using sand::force::Vec3;
 
-constexpr double kTurnRadius = 0.01;  // [scene unit], the first paper's
+constexpr double kTurnRadius = 0.01;  // [scene unit], the tool of Dorjgotov et al. 2007
 constexpr int kTurnCells = 10;        // per radius
 constexpr int kTurnTicks = 20000;     // of a turn: twenty seconds
 

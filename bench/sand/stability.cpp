@@ -97,7 +97,9 @@ void stability(const Settings& settings, Csv& csv) {
 
 void guardedSweep(const Settings& settings, Csv& csv) {
     csv.note(
-        "The first paper's constants on level sand: depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held by a hand.");
+        "The constants of Dorjgotov et al. 2007 on level sand: depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held "
+        "by "
+        "a hand.");
     csv.note(
         "rest: share of the trials below 1 mm/s within 3 s, or within what a heavy arm's damping takes; force: the");
     csv.note(

@@ -15,8 +15,8 @@ inline constexpr std::array<std::string_view, 4> kArmPresets{"touch", "falcon", 
 /// kArmPresets.
 [[nodiscard]] std::optional<ArmPhysics> armPreset(std::string_view name);
 
-/// Returns the physics of a Touch, the kind of device of the first paper. Its limits also apply to a recording, which
-/// has no body.
+/// Returns the physics of a Touch, which succeeds the Phantom Omni of Purchart et al. 2012. Its limits also apply to a
+/// recording, which has no body.
 [[nodiscard]] ArmPhysics touchPreset();
 inline constexpr double kTouchField = 0.16;  // [m], shorter side of a field over which a Touch reaches
 

@@ -85,7 +85,7 @@ Response contactForce(const ForceConstants& constants, const Contour& tool, cons
     if (!(contact.depth.value > 0)) {
         return felt;
     }
-    // expm1 is the bracket that the paper's print lost: without it the force at depth 0 would be k_s.
+    // expm1 is the bracket that the print of equation 1 lost: without it the force at depth 0 would be k_s.
     const Dual size = contact.share * constants.stiffness * expm1(constants.depthExponent * contact.depth);
     const Dual scale = size / length;
     const Dual forceX = scale * x, forceY = scale * y, forceZ = scale * z;

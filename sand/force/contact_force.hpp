@@ -10,8 +10,8 @@
 /// What the hand feels. Forces read the sand and never change it; they may use libm.
 namespace sand::force {
 
-/// What the first paper's law reads off the ring from one to two reaches around the tool, outside its outline whatever
-/// its shape: nothing overlaps, for the tool has pushed the sand aside.
+/// What the law of Dorjgotov et al. 2007 reads off the sand: depth and slope in the ring from one to two reaches around
+/// the tool. The tool has pushed aside the sand under it.
 struct Contact {
     Dual depth;           // [scene unit] of the tool's lowest point under the ring's mean height; below 0 over it
     Dual slopeX, slopeY;  // of the ring's plane
@@ -24,8 +24,9 @@ struct Contact {
 };
 [[nodiscard]] Contact measureContact(const SurfacePatch& patch, Vec3 centre /* [scene unit] */, const Contour& tool);
 
-/// First paper, section 3: |F_r| = k_s (e^(k_c d) − 1) along the normal, which turns from the surface's at depth 0 to
-/// the vertical at depth R; friction k_f k_a v |F_r|. Equation 1 is printed without its bracket. Not bounded.
+/// Returns the force of Dorjgotov et al. 2007, section 3: the push |F_r| = k_s (e^(k_c d) − 1) along a normal, and the
+/// friction k_f k_a v |F_r|. The normal turns from the surface's at depth 0 to the vertical at depth R. Equation 1 is
+/// printed without its bracket. The force is not bounded.
 [[nodiscard]] Response contactForce(const ForceConstants& constants, const Contour& tool, const Contact& contact);
 
 inline constexpr double kDeviceLimit = 3.3;     // [N], of a Touch

@@ -9,14 +9,16 @@
 
 namespace sand::force {
 
-/// The tool as forces know it, turned as it is now: the second paper's control points, around its centre.
+/// The outline of the tool as forces use it, turned to the present heading: the control points of Purchart et al. 2012,
+/// relative to the tool's centre.
 struct Contour {
     static constexpr int kPoints = 32;
     std::array<Vec3, kPoints> points{};  // [scene unit] on the outline, counter-clockwise; z is the underside's there
     double reach = 0;                    // [scene unit], of the farthest of them in the plane; 0: no tool
     double lowest = 0;                   // [scene unit], of the underside, ≤ 0
 
-    /// The first paper's sphere, whose control points lie on its equator's shadow at the height of its lowest point.
+    /// Returns the contour of a sphere, the tool of Dorjgotov et al. 2007. Its points lie on a circle of `radius`,
+    /// level with the sphere's lowest point.
     [[nodiscard]] static Contour sphere(double radius /* [scene unit] */) {
         Contour contour{{}, radius, -radius};
         for (int i = 0; i < kPoints; ++i) {

@@ -6,9 +6,10 @@
 #include "sand/force/response.hpp"
 #include "sand/force/surface_patch.hpp"
 
-/// The second paper's law. Lengths are in units of ForceConstants::unitLength here, for the paper normalises them.
+/// The law of Purchart et al. 2012. Lengths are in units of ForceConstants::unitLength, because the paper normalises
+/// them.
 ///
-/// Of its equations 2, 4, 5 and 6 only the prose is left; they are reconstructed:
+/// Equations 2, 4, 5 and 6 are reconstructed, because only their prose is left:
 ///   (3) dh_i = z_ci − z_tool, how far the sand at control point i stands over the tool there   [as printed]
 ///   (4) dir_i = (c_i − P) / |c_i − P|, horizontal                                              [reconstructed]
 ///   (5) F_ri = −dh_i dir_i F_M: sand that stands higher on one side pushes to the other        [reconstructed]

@@ -8,28 +8,28 @@
 
 namespace sand {
 
-/// Whose law the hand feels: the first paper's, or the second's.
+/// The law that the hand feels: `repulse` of Dorjgotov et al. 2007, `controlPoints` of Purchart et al. 2012.
 enum class ForceLaw : std::uint8_t { repulse, controlPoints };
 /// What is felt between two steps of the sand (sand/force/force_model.hpp).
 enum class Between : std::uint8_t { local, hold, interpolate };
-/// What of the velocity friction is against. The first paper calls it vertical and describes a drag.
+/// The part of the velocity that friction acts against. Dorjgotov et al. 2007 calls it vertical and describes a drag.
 enum class FrictionDirection : std::uint8_t { tangential, full, vertical };
 
 /// Constants of both papers' force laws (docs/forces.md). Forces are no state of the sand: never part of a digest.
 struct ForceConstants {
-    // First paper.
+    // Dorjgotov et al. 2007.
     double stiffness = 1000;     // k_s [N]
     double depthExponent = 0.5;  // k_c [1/scene unit]
     double friction = 10;        // k_f [frame/scene unit], a frame being 1/60 s
     double frictionArea = 1;     // k_a [sphere's]: the printed k_f holds with 1
     FrictionDirection frictionDirection = FrictionDirection::tangential;
-    // Second paper, in coordinates of which 1 is unitLength.
+    // Purchart et al. 2012, in coordinates of which 1 is unitLength.
     double maxForce = 10;            // F_M [N]
     double tolerance = 1e-3;         // z_tol [unitLength]
     double unitLength = 1;           // [scene unit]; a scene file's default is the longer side of its field
     double frictionCoefficient = 0;  // mu [1]; 0: friction does not depend on the speed
     double frictionSpeed = 0.5;      // [scene unit/s], at which that friction is mu times the normal force
-    // Either.
+    // Both laws.
     ForceLaw law = ForceLaw::repulse;
     bool literal = false;  // as printed, jumps and all; for comparison
     Between between = Between::local;

@@ -19,7 +19,7 @@ namespace sand::force {
 /// two surfaces:
 /// - Between::local follows the tangent of the last surface at the tool (LocalModel).
 /// - Between::hold repeats the response that the law gave when the last surface arrived.
-/// - Between::interpolate applies equation 9 of the second paper (Interpolation).
+/// - Between::interpolate applies equation 9 of Purchart et al. 2012 (Interpolation).
 ///
 /// Threads: use it from one thread. It allocates no memory after construction.
 class ForceModel {

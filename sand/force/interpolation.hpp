@@ -7,12 +7,13 @@
 
 namespace sand::force {
 
-/// The second paper's equation 9, of which only the prose is left: F_out = F_old + (F − F_old) min(it/itp, 1).
+/// Equation 9 of Purchart et al. 2012, reconstructed from its prose: F_out = F_old + (F − F_old) min(it/itp, 1).
 ///
 /// F is the law's at the last surface's arrival, F_old the one before. `it` counts the haptic frames since, this
-/// one included, `itp` those between the two surfaces before: 16 or 17 at either paper's rates. It is a delay of a
-/// whole frame of the sand. Printed, F_old is F before the update; where the last frame was short that jumps by what it
-/// had left to go, so that only `literal` starts there and otherwise F_old is what was sent last.
+/// one included, `itp` those between the two surfaces before: 16 or 17 at 60 and 1000 a second, the rates of both
+/// papers. It is a delay of a whole frame of the sand. Printed, F_old is F before the update; where the last frame was
+/// short that jumps by what it had left to go, so that only `literal` starts there and otherwise F_old is what was sent
+/// last.
 class Interpolation {
 public:
     /// Once a tick. `next` is looked at when `replaced`.

@@ -21,7 +21,7 @@ sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& chec
     const host::TomlTable field = file.requiredTable("field");
     const int columns = field.integerOr("columns", 512, 1, sand::kMaxSide);
     const int rows = field.integerOr("rows", columns, 1, sand::kMaxSide);
-    const double width = field.numberOr("width", 2.0, host::kPositive);  // the paper's (-1, 1)
+    const double width = field.numberOr("width", 2.0, host::kPositive);  // (-1, 1) as in Dorjgotov et al. 2007
     field.finish();
     if (checks.field) {
         checks.field(columns, rows, file.has("tin"));

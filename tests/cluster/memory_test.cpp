@@ -42,7 +42,8 @@ protected:
         server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"2048x1536x24"});
         environment_ = {"DISPLAY=" + server_->display(), "MESA_SHADER_CACHE_DISABLE=true"};
     }
-    /// Starts a session on one tile as large as those of the papers' wall. A hand digs until the session is stopped.
+    /// Starts a session on one tile as large as those of Dorjgotov et al. 2007. A hand digs until the session is
+    /// stopped.
     std::unique_ptr<support::ChildProcess> dig(const std::string& stereo) {
         const std::string file = write("wall.toml", "[viewer]\neye = [0.0, 1.6, 2.0]\n[stereo]\nmode = \"" + stereo +
                                                         "\"\n[grid]\nrows = 1\ncolumns = 1\ntile_size = [1.024, "

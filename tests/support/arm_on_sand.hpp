@@ -20,7 +20,7 @@ using sand::force::Vec3;
 inline constexpr double kScale = haptic_bridge::kTouchField > 0 ? 2 / haptic_bridge::kTouchField : 0;  // [unit/m]
 inline constexpr double kPapersRadius = 0.01;                                                          // [scene unit]
 
-/// Returns a scene of level sand, by default the first paper's field (−1,1)². The tool's radius is 0.01.
+/// Returns a scene of level sand, by default the field (−1,1)² of Dorjgotov et al. 2007. The tool's radius is 0.01.
 inline scene::Scene levelSand(const sand::ForceConstants& force = {}, int cells = 512, double side = 2) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(cells, cells, side / cells);

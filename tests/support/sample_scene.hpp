@@ -15,7 +15,7 @@
 /// Scenes and cameras that tests and benchmarks of drawing share. One scene unit is a metre in the room.
 namespace sample {
 
-inline constexpr double kWidth = 2;  // [scene unit], as in the first paper
+inline constexpr double kWidth = 2;  // [scene unit], as in Dorjgotov et al. 2007
 
 inline scene::Scene flatScene(int columns, int rows, double toolRadius = 0.04) {
     scene::Scene scene;

@@ -39,8 +39,8 @@ TEST(Eyes, LieHalfTheSeparationToEitherSide) {
 }
 
 TEST(Projection, IsThePapersShiftedFrustum) {
-    // First paper, section 5.3: glFrustum(l + d, r + d, bot, top, near, far), d positive for the left eye. Seen from
-    // half a separation to the left, the screen lies that much to the right, scaled down to the near plane.
+    // Dorjgotov et al. 2007, section 5.3: glFrustum(l + d, r + d, bot, top, near, far), d positive for the left eye.
+    // Seen from half a separation to the left, the screen lies that much to the right, scaled down to the near plane.
     const double toNear = kNear / kDistance;
     const double l = -0.4 * toNear, r = 0.4 * toNear, bottom = -0.3 * toNear, top = 0.3 * toNear;
     for (const auto& [eye, sign] : {std::pair{Eye::left, 1.0}, {Eye::right, -1.0}, {Eye::middle, 0.0}}) {

@@ -9,8 +9,8 @@
 
 namespace haptic_bridge {
 
-/// Demands of a scene's law on a device at a depth of one tool radius. The first paper's constants are meant for that
-/// depth.
+/// Demands of a scene's law on a device at a depth of one tool radius. The constants of Dorjgotov et al. 2007 are meant
+/// for that depth.
 struct LawAtRadius {
     double stiffness = 0;  // [N/scene unit]
     double drag = 0;       // [N · frame/scene unit]

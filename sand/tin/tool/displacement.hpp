@@ -17,9 +17,9 @@ namespace sand::tin {
 
 using Volume = Wide;  // [volume unit of VertexSand]
 
-/// Moves a tool through the sand of a TIN (second paper). The edges of its outline become constraints. The surface
-/// inside takes the tool's shape and depth, and the sand above is pushed away. The result depends only on sand,
-/// imprint and path. Not thread-safe.
+/// Moves a tool through the sand of a TIN (Purchart et al. 2012). The edges of its outline become constraints. The
+/// surface inside takes the tool's shape and depth, and the sand above is pushed away. The result depends only on
+/// sand, imprint and path. Not thread-safe.
 class Displacement {
 public:
     /// Code that decodes steps and rules must refuse poses beyond kMaxProbe and shapes beyond kLargestToolRadius.

@@ -12,7 +12,7 @@
 
 namespace sand::tin {
 
-/// A tool as control points and edges between them (second paper), for insertion into a mesh.
+/// A tool as control points and edges between them (Purchart et al. 2012), for insertion into a mesh.
 ///
 /// An ellipse has 32 points, a rectangle has 8 per side, and a footprint has the outline of the union of its pieces. A
 /// smaller tool has fewer points, and a tool of a tenth of a cell has no points. If the underside is curved, rings of

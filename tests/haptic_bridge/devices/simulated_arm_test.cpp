@@ -161,8 +161,8 @@ TEST(SampledLoop, DamperBearsTwiceTheMassOverTheTickAndASixthOfThatWithAWindow) 
     EXPECT_GT(growth(textbookArm(0.5, 1), damper(44, 1)), 1);
 }
 
-/// Returns the largest speed after about three seconds of an arm that is pressed into the first paper's sand, with the
-/// force of a depth of one radius.
+/// Returns the largest speed after about three seconds of an arm that is pressed into the sand of Dorjgotov et al.
+/// 2007, with the force of a depth of one radius.
 double lastSpeedInSeedSand(double damping) {
     SimulatedArm arm(textbookArm(damping));
     arm.start({0, 0, -0.01 / kPapersScale}, {0, 0, 0.05});

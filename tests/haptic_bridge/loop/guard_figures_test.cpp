@@ -17,8 +17,8 @@ using sand::force::Response;
 using sand::force::Vec3;
 using test::kTick;
 
-/// The first paper's law at a depth of one radius on its field, 2 scene units over 0.16 m: 500 N and 50 N·frame per
-/// scene unit.
+/// The law of Dorjgotov et al. 2007 at a depth of one radius on its field, 2 scene units over 0.16 m: 500 N and 50
+/// N·frame per scene unit.
 constexpr double kFieldScale = 12.5;  // [scene unit/m]
 constexpr LawAtRadius kFieldLaw{500, 50, 5};
 
@@ -118,7 +118,7 @@ TEST(GuardFigures, FrictionRunsAlongASlope) {
     EXPECT_NEAR(force.z, 0.8 + 4.090909 * 0.0072, 1e-8);
 }
 
-/// Guards of a Touch over the first paper's field whose hand has been in the air for longer than the ramp.
+/// Guards of a Touch over the field of Dorjgotov et al. 2007, whose hand has been in the air for longer than the ramp.
 struct Warm {
     Guards guards{figuresOf(touchPreset())};
     Guards::Reading reading;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole hands on level sand under a virtual clock: the first paper's constants, as the guards limit them, on real arms.
+// Whole hands on level sand under a virtual clock: the constants of Dorjgotov et al. 2007, as the guards limit them, on
+// real arms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +53,7 @@ TEST(GuardedLoop, RestsOnEveryArmWithThePapersConstantsWhereTheLiteralOneDoesNot
                         ++trials;
                         if (damping == 0.5 && delay == 1 && depth == 3 && !held) {
                             trial.mode = Guards::Mode::literal;
-                            EXPECT_FALSE(run(trial, papersSand()).settles()) << "the papers' constants without guards";
+                            EXPECT_FALSE(run(trial, papersSand()).settles()) << "without guards";
                             ++diverged;
                         }
                     }
@@ -67,7 +68,7 @@ TEST(GuardedLoop, RestsOnEveryArmWithThePapersConstantsWhereTheLiteralOneDoesNot
 }
 
 TEST(GuardedLoop, IsTheLiteralOneWhereNothingLimitsIt) {
-    // A hundredth of the paper's stiffness is 62 N/m. A Touch can bear 117 N/m.
+    // A hundredth of the stiffness of Dorjgotov et al. 2007 is 62 N/m. A Touch can bear 117 N/m.
     sand::ForceConstants soft;
     soft.stiffness = 10;
     const scene::Scene scene = test::levelSand(soft);

@@ -72,7 +72,7 @@ private:
     SandThread thread_;
 };
 
-/// The first paper's field and tool, of 2.5 cells. West of x = -0.3 the sand is 0.02 higher.
+/// The field and the tool of Dorjgotov et al. 2007, of 2.5 cells. West of x = -0.3 the sand is 0.02 higher.
 scene::Scene terraced() {
     scene::Scene scene = levelSand({}, 500);
     for (int row = 0; row < 500; ++row) {
@@ -92,8 +92,8 @@ struct Terrace {
 };
 constexpr double kWest = -0.6, kEast = 0.2;  // in hand space: on the terrace, and far below it
 
-// At half a radius the paper's law gives 1000 (e^0.0025 - 1) = 2.503128 N, and heights are floats. On the sand around
-// cell (0, 0), which is as high as the terrace, it would be 1000 (e^0.0125 - 1) = 12.6 N.
+// At half a radius the law of Dorjgotov et al. 2007 gives 1000 (e^0.0025 - 1) = 2.503128 N, and heights are floats.
+// On the sand around cell (0, 0), which is as high as the terrace, it would be 1000 (e^0.0125 - 1) = 12.6 N.
 constexpr double kHalfRadius = 2.503128, kFloat = 1e-4;  // [N]
 
 TEST(SandThread, TheFirstSurfaceIsTheSandUnderTheHand) {

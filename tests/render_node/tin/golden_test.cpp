@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second paper's figures 1 and 3 on a TIN, drawn in one process.
+// Figures 1 and 3 of Purchart et al. 2012 on a TIN, drawn in one process.
 #include "tests/render_node/golden.hpp"
 
 #include <gtest/gtest.h>

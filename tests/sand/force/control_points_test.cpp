@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second paper's law, against figures derived by hand.
+// The law of Purchart et al. 2012, against figures derived by hand.
 #include <gtest/gtest.h>
 
 #include "sand/force/interpolation.hpp"
@@ -11,7 +11,7 @@ namespace {
 using namespace sand::force;
 using namespace samples;
 
-constexpr double kUnit = 2;  // [scene unit]: of the first paper's field
+constexpr double kUnit = 2;  // [scene unit]: of the field of Dorjgotov et al. 2007
 
 sand::ForceConstants paper(bool literal = false) {
     sand::ForceConstants constants;
@@ -109,7 +109,7 @@ TEST(ControlPoints, BesideTheFieldAreOutOfTouch) {
     EXPECT_EQ(norm(felt(rim, {-0.5, kMiddle, -1}, paper()).push), 0);
 }
 
-// Equation 9 with both papers' rates: 16 or 17 haptic frames between two surfaces.
+// Equation 9 at 60 and 1000 a second, the rates of both papers: 16 or 17 haptic frames between two surfaces.
 TEST(Interpolation, ArrivesAfterAsManyFramesAsTheLastSurfaceLasted) {
     Interpolation equation9;
     const auto at = [&](bool replaced, bool literal, double force) {

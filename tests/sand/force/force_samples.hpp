@@ -9,7 +9,7 @@
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
-/// Sand and tools for tests of the forces, at the first paper's scale: a sphere of radius 0.01.
+/// Sand and tools for tests of the forces, at the scale of Dorjgotov et al. 2007: a sphere of radius 0.01.
 namespace samples {
 
 using sand::force::Contour;

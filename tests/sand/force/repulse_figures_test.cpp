@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first paper's law against figures that were derived on paper.
+// The law of Dorjgotov et al. 2007 against figures that were derived by hand.
 //
 // Most slopes here rise by three in four to the east: their normal is (-3, 0, 4) / 5. With s = 3t² - 2t³ of the depth
 // t in radii, the push goes along (1 - s) (-3, 0, 4) / 5 + s (0, 0, 1):

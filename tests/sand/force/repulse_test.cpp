@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first paper's law on sand that lies still.
+// The law of Dorjgotov et al. 2007 on sand that lies still.
 #include <gtest/gtest.h>
 
 #include "sand/force/law.hpp"

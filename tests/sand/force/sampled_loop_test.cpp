@@ -41,8 +41,8 @@ bool settles(Between between, double stiffness) {
     return fastest < 1e-3;
 }
 
-// The paper's interpolation is a delay of a frame of the sand, and holding one of half: a device of b = 0.5 bears
-// 2 b / T of either's T, or of the local model's, which is the tick.
+// The interpolation of Purchart et al. 2012 is a delay of a frame of the sand, and holding one of half: a device of
+// b = 0.5 bears 2 b / T of either's T, or of the local model's, which is the tick.
 TEST(SampledLoop, BearsAsMuchAsWhatLiesBetweenSurfacesAllows) {
     EXPECT_TRUE(settles(Between::interpolate, 28));
     EXPECT_FALSE(settles(Between::interpolate, 35));
@@ -61,7 +61,7 @@ struct Session {
     double sandMoved = 0;             // [scene unit], the greatest change of any height
 };
 
-constexpr double kMetres = 0.08;  // of a scene unit: the first paper's field is two units and 0.16 m wide
+constexpr double kMetres = 0.08;  // of a scene unit: the field of Dorjgotov et al. 2007 is two units and 0.16 m wide
 constexpr double kWeight = 0.3;   // [N]
 constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
 

@@ -52,8 +52,7 @@ struct Bowl {
                ((1 - v) * ((1 - u) * field.height(i, j) + u * field.height(i + 1, j)) +
                 v * ((1 - u) * field.height(i, j + 1) + u * field.height(i + 1, j + 1)));
     }
-    /// The second paper's push upwards: F_M / N Σ dh of 32 points. The sand stands far above all of
-    /// them.
+    /// Returns the push upwards of Purchart et al. 2012: F_M / N Σ dh of 32 points. The sand is far above all of them.
     [[nodiscard]] double pointsByCells(const sand::ForceConstants& constants) const {
         double sum = 0;
         for (int i = 0; i < 32; ++i) {
@@ -62,7 +61,7 @@ struct Bowl {
         }
         return constants.maxForce / 32 * sum / constants.unitLength;
     }
-    /// The first paper's depth, as the mean of many places of the ring.
+    /// Returns the depth of Dorjgotov et al. 2007, as the mean of many places of the ring.
     [[nodiscard]] double depthByCells() const {
         constexpr int kCircles = 60, kRays = 360;
         double sum = 0;
@@ -97,7 +96,7 @@ sand::Replica finelyMeshed(const Bowl& bowl) {
     return sand::Replica(start);
 }
 
-/// Returns the relative error of the second paper's push, at the worst of several places between cells.
+/// Returns the relative error of the push of Purchart et al. 2012, at the worst of several places between cells.
 double worstOfPoints(int cells) {
     double worst = 0;
     for (const double aside : kAsides) {
