@@ -10,8 +10,8 @@
 /// What the hand feels. Forces read the sand and never change it; they may use libm.
 namespace sand::force {
 
-/// What the law of Dorjgotov et al. 2007 reads off the sand: depth and slope in the ring from one to two reaches around
-/// the tool. The tool has pushed aside the sand under it.
+/// Depth and slope of the sand in the ring from one to two reaches around the tool, for the law of Dorjgotov et al.
+/// 2007. The tool has pushed aside the sand under it.
 struct Contact {
     Dual depth;           // [scene unit] of the tool's lowest point under the ring's mean height; below 0 over it
     Dual slopeX, slopeY;  // of the ring's plane

@@ -9,8 +9,8 @@
 
 namespace sand::force {
 
-/// The outline of the tool as forces use it, turned to the present heading: the control points of Purchart et al. 2012,
-/// relative to the tool's centre.
+/// The outline of the tool as forces use it, turned to the present heading. Its points are the control points of
+/// Purchart et al. 2012, relative to the tool's centre.
 struct Contour {
     static constexpr int kPoints = 32;
     std::array<Vec3, kPoints> points{};  // [scene unit] on the outline, counter-clockwise; z is the underside's there

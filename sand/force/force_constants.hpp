@@ -23,7 +23,7 @@ struct ForceConstants {
     double friction = 10;        // k_f [frame/scene unit], a frame being 1/60 s
     double frictionArea = 1;     // k_a [sphere's]: the printed k_f holds with 1
     FrictionDirection frictionDirection = FrictionDirection::tangential;
-    // Purchart et al. 2012, in coordinates of which 1 is unitLength.
+    // Purchart et al. 2012; lengths are in unitLength.
     double maxForce = 10;            // F_M [N]
     double tolerance = 1e-3;         // z_tol [unitLength]
     double unitLength = 1;           // [scene unit]; a scene file's default is the longer side of its field

@@ -25,8 +25,8 @@ struct Obstacle {
     }
 };
 
-/// Moves a tool through the sand of a grid: takes out the sand above the tool's underside and puts it down ahead
-/// (Dorjgotov et al. 2007, section 3).
+/// Moves a tool through the sand of a grid (Dorjgotov et al. 2007, section 3). Takes out the sand above the tool's
+/// underside and puts it down ahead.
 class Displacement {
 public:
     /// `v3`: with instructions of x86-64-v3, for the same results.

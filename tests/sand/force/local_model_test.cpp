@@ -48,7 +48,7 @@ TEST(LocalModel, FollowsTheLawToFirstOrderAndHoldDoesNot) {
                 const Vec3 there = model.at(rough, 2, tool, placeAt(0.7 * kRadius) + step, 2 * kTick).push;
                 return norm(there - respond(constantsOf(law), rough, tool, placeAt(0.7 * kRadius) + step).push);
             };
-            // A secant across, of the second law, and no tangent.
+            // The law of Purchart et al. 2012 has a secant across, and no tangent.
             const double share = law == sand::ForceLaw::repulse ? 0.02 : 0.2;
             EXPECT_LT(error(Between::local), share * error(Between::hold)) << size;
         }
