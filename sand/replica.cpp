@@ -13,7 +13,7 @@
 namespace sand {
 namespace {
 
-/// The finaliser of MurmurHash3: every bit of the input reaches every bit of the result.
+/// Finaliser of MurmurHash3. Every bit of the input affects every bit of the result.
 std::uint64_t mix(std::uint64_t value) {
     value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;
     value = (value ^ (value >> 33)) * 0xc4ceb9fe1a85ec53ULL;
@@ -43,7 +43,8 @@ Replica& Replica::operator=(const Replica& other) { return *this = Replica(other
 
 std::int64_t Replica::leastBytes(const Start& start) {
     if (start.tin != nullptr) {
-        // Of 66 thousand to a million vertices 329 to 401 were measured, by the layout of the mesh.
+        // Replicas of 66 thousand to a million vertices took 329 to 401 bytes per vertex, depending on the layout of
+        // the mesh.
         constexpr std::int64_t kPerVertex = 320;
         return kPerVertex * static_cast<std::int64_t>(start.tin->places.size());
     }
@@ -51,7 +52,7 @@ std::int64_t Replica::leastBytes(const Start& start) {
 }
 
 std::int64_t Replica::leastBytes(int columns, int rows) {
-    // The scene's heights, the replica's, and a flux through two faces of every cell.
+    // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
     constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
     return kPerCell * columns * rows;
 }
@@ -71,14 +72,15 @@ void Replica::apply(const Step& step) {
     }
     if (!step.path.empty()) {
         if (step.engaged) {
-            // A hand that has just engaged comes from nowhere: its first point presses and does not drag.
+            // A tool that has just engaged only presses at its first point. It does not drag from the place where it
+            // hovered.
             std::vector<ProbePoint> path{wasEngaged ? probe_ : step.path.front()};
             path.insert(path.end(), step.path.begin(), step.path.end());
             surface_->drag(tool(), path);
         }
         probe_ = step.path.back();
     } else if (turned && wasEngaged && step.engaged) {
-        press();  // turned on the spot
+        press();  // the tool turned without moving
     }
     engaged_ = step.engaged;
     stepNumber_ = step.number;
@@ -91,7 +93,7 @@ void Replica::apply(const Step& step) {
         return;
     }
     if (wasEngaged && (!engaged_ || turned || probe_ != before)) {
-        // Sand that the tool held back may flow again.
+        // Sand that the tool held back may flow now.
         surface_->release(toolBefore, before);
     }
     if (wasEngaged && !engaged_) {
@@ -102,7 +104,7 @@ void Replica::apply(const Step& step) {
 }
 
 void Replica::tune(const Tuning& tuning) {
-    // A hand that has turned its tool keeps it turned, unless the operator turns it.
+    // A tool that a hand has turned keeps its heading, unless the operator turns the tool.
     heading_ = tuning.toolHeading != rules_.toolHeading ? tuning.toolHeading : heading_;
     const bool otherTool = tuning.tool() != rules_.tuning().tool();
     rules_.tune(tuning);
@@ -126,12 +128,12 @@ bool Replica::putBack(const Edit& edit) {
         try {
             surface_->replace(*surface_->reader()(*edit.sand));
         } catch (const base::FormatError&) {
-            return false;  // alike in every replica; who asked for it has looked before
+            return false;  // same in every replica; the program that requested the load has checked the bytes
         }
     } else {
         return false;
     }
-    // A hand that is still in the sand goes on with its stroke, which now begins here.
+    // The stroke of a tool that is still engaged continues. It now begins with the restored sand.
     if (engaged_) {
         surface_->keep();
     } else {
@@ -150,7 +152,7 @@ std::uint64_t Replica::stateHash() {
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         fold(static_cast<std::uint32_t>(coordinate));
     }
-    if (rules_ != startRules_) {  // only then: sessions in which nobody tuned keep the hashes they always had
+    if (rules_ != startRules_) {  // only then, so that sessions without tuning keep the hashes of earlier versions
         const Tuning now = rules_.tuning();
         for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.toolRadius}) {
             fold(static_cast<std::uint32_t>(number));
@@ -161,7 +163,8 @@ std::uint64_t Replica::stateHash() {
             fold(now.toolHeading.bits());
         }
     }
-    if (heading_ != startRules_.toolHeading) {  // likewise
+    if (heading_ !=
+        startRules_.toolHeading) {  // only then, so that sessions without turns keep the hashes of earlier versions
         fold(heading_.bits());
     }
     return hash;
@@ -207,10 +210,10 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const Tuning tuning = Tuning::decode(reader);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
-    // Now, and not when somebody wants to undo: then it would be too late to refuse it.
+    // Decode the kept sand now, because at the undo it would be too late to refuse it.
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());
-    // Nothing below throws.
+    // The statements below do not throw.
     rules_.tune(tuning);
     surface_->changeRules(rules_);
     surface_->replace(*sand);

@@ -9,11 +9,11 @@
 
 namespace sand {
 
-/// The sand that a replica starts with. `options` say how the sand of a height field is swept, not what comes of it;
-/// their ground is that of `start`.
+/// Returns the sand that a replica begins with. `options` choose how a height field is swept; they never change the
+/// result. The ground of `start` replaces `options.ground`.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options = {});
 
-/// Has `start` begin with the sand as it is on `surface`, which was made from it.
+/// Makes `start` begin with the current sand of `surface`, which makeSurface() made from `start`.
 void startFrom(const Surface& surface, Start& start);
 
 }  // namespace sand

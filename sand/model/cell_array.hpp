@@ -8,22 +8,23 @@
 
 namespace sand {
 
-/// Cells of a half-open rectangle: columns [x0, x1), rows [y0, y1).
+/// Rectangle of cells: columns [x0, x1) and rows [y0, y1).
 struct CellRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
-    /// The part of it that lies in `other`.
+    /// Returns the part of the rectangle that lies in `other`.
     [[nodiscard]] CellRect clippedTo(const CellRect& other) const;
-    /// The smallest around both; an empty one counts for nothing.
+    /// Returns the smallest rectangle that contains both. Ignores an empty rectangle.
     [[nodiscard]] CellRect joinedWith(const CellRect& other) const;
-    /// With `margin` more cells on every side.
+    /// Returns the rectangle with `margin` more cells on every side.
     [[nodiscard]] CellRect grownBy(int margin) const { return {x0 - margin, y0 - margin, x1 + margin, y1 + margin}; }
     friend bool operator==(const CellRect&, const CellRect&) = default;
 };
 
-/// A 32-bit number per cell, with ghost cells around: rows -1 and `rows`, columns -1 and `columns`.
+/// Array of one 32-bit number per cell. Ghost cells surround it: rows -1 and `rows`, columns -1 and `columns`.
 ///
-/// Cell (0,0) is the south-west corner; columns run east, rows north. Starts as zeros. Not thread-safe.
+/// Cell (0,0) is the south-west corner; columns run east and rows run north. All numbers are 0 at first. Not
+/// thread-safe.
 class CellArray {
 public:
     CellArray(int columns, int rows)
@@ -35,19 +36,21 @@ public:
     [[nodiscard]] int rows() const { return rows_; }
     [[nodiscard]] CellRect bounds() const { return {0, 0, columns_, rows_}; }
 
-    /// Cell 0 of a row in [-1, rows]; cells -1 and columns are ghosts.
+    /// Returns a pointer to cell 0 of `row`, which is in [-1, rows()]. Cells -1 and columns() are ghost cells.
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.data() + offset(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.data() + offset(row); }
 
-    /// From a row to the next [cell]. Whoever reads a row by vectors may read kPadding cells beyond either end.
+    /// Returns the distance from one row to the next [cell]. Code that reads a row by vectors may read kPadding cells
+    /// beyond either end.
     [[nodiscard]] std::ptrdiff_t stride() const {
         return 2 * kPadding + (columns_ + kPadding - 1) / kPadding * kPadding;
     }
     [[nodiscard]] std::size_t bytes() const { return cells_.size() * sizeof cells_[0]; }
 
 private:
-    // A row: a vector of padding that ends in a ghost, the cells up to a whole vector, a vector that begins with a
-    // ghost or holds the last of it.
+    // A row has three parts: a vector of padding whose last cell is the western ghost cell, the cells rounded up to
+    // whole vectors, and another vector of padding. The eastern ghost cell follows the last cell. It lies in that
+    // padding if the cells fill whole vectors.
     static constexpr int kPadding = 16;  // [cell], one cache line
 
     [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * stride() + kPadding; }

@@ -6,11 +6,12 @@
 
 namespace sand {
 
-/// Appends these cells, ghosts among them if wanted, compressed without loss: for scenes, states and the journal.
+/// Appends the numbers of `cells` to `writer`, compressed without loss. `cells` may include ghost cells. Scenes, states
+/// and the journal use this format.
 void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer);
 
-/// Reads them into the same cells of a grid of the same size. Throws base::FormatError for anything else, or a number
-/// beyond ±`most`.
+/// Reads what encodeCells() wrote for the same `cells` of a grid of the same size. Throws base::FormatError for other
+/// bytes, or if a number is beyond ±`most`.
 void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid);
 
 }  // namespace sand

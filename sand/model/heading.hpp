@@ -8,21 +8,21 @@
 
 namespace sand {
 
-/// Which way a tool is turned about the vertical: a direction in the plane, in whole numbers, so that no replica ever
-/// computes with an angle. x runs east, y north.
+/// Direction in which a tool points, seen from above. It is a vector of whole numbers, so that no replica computes with
+/// angles. x runs east and y runs north.
 struct Heading {
-    static constexpr int kLength = 1 << 14;  // of the vector, but for the rounding of its ends
+    static constexpr int kLength = 1 << 14;  // length of the vector before x and y are rounded
 
-    std::int16_t x = kLength, y = 0;  // east, unless somebody turns it
-    bool mirrored = false;            // left and right exchanged: the left foot of a pair
+    std::int16_t x = kLength, y = 0;  // east, until the tool is turned
+    bool mirrored = false;            // whether left and right are exchanged, as for a left foot
 
-    /// Whether it is the rounded end of such a vector.
+    /// Returns whether the length of the vector is kLength, except for rounding.
     [[nodiscard]] bool valid() const {
         const std::int64_t square = std::int64_t{x} * x + std::int64_t{y} * y;
         return square >= std::int64_t{kLength - 1} * (kLength - 1) &&
                square <= std::int64_t{kLength + 1} * (kLength + 1);
     }
-    /// In whole numbers, for hashes.
+    /// Returns the heading as one whole number, for hashes.
     [[nodiscard]] std::uint64_t bits() const {
         return std::uint64_t{static_cast<std::uint16_t>(x)} | std::uint64_t{static_cast<std::uint16_t>(y)} << 16 |
                std::uint64_t{mirrored ? 1U : 0U} << 32;
@@ -31,24 +31,26 @@ struct Heading {
         writer.put(x);
         writer.put(y);
     }
-    /// Without `mirrored`, for which others have a bit left. Throws base::FormatError for what is no direction.
+    /// Reads x and y. The caller stores `mirrored` in a spare bit of its own data. Throws base::FormatError if the
+    /// vector is not valid().
     static Heading decode(base::ByteReader& reader, bool mirrored) {
         Heading heading;
         heading.x = reader.get<std::int16_t>();
         heading.y = reader.get<std::int16_t>();
         heading.mirrored = mirrored;
         if (!heading.valid()) {
-            throw base::FormatError("a tool's heading that is no direction");
+            throw base::FormatError("a tool's heading of the wrong length");
         }
         return heading;
     }
     friend bool operator==(const Heading&, const Heading&) = default;
 };
 
-/// Asked once, by whoever reads a scene, an operator's command or a device: libm's last digit differs from host to
-/// host. Degrees count from east, counter-clockwise as seen from above. Nothing for a number that is none.
+/// Returns the heading for an angle, or nullopt if `degrees` is not finite. Degrees count from east, counter-clockwise
+/// as seen from above. Only the process that reads a scene file, an operator's command or a device calls this function.
+/// It sends the heading to the other processes, because the last digit of libm's results differs between hosts.
 [[nodiscard]] std::optional<Heading> headingOf(double degrees, bool mirrored = false);
-/// For people to read, within (-180, 180].
+/// Returns the angle of `heading` for display, in (-180, 180] [degree].
 [[nodiscard]] double degreesOf(const Heading& heading);
 
 }  // namespace sand

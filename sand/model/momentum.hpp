@@ -5,14 +5,16 @@
 
 namespace sand {
 
-// How much of the last sweep's flux goes on: it begins without, grows, and stays below 1, on a grid and on a TIN.
-inline constexpr int kMostDamping = 25;  // [sweep], what overshoots no pile of 64 cells or more
+// Momentum is the share of the last sweep's flux that continues. It begins at 0, grows with each sweep, and stays below
+// 1. Height fields and TINs use the same values.
+inline constexpr int kMostDamping = 25;  // [sweep]; no pile of 64 cells or more overshoots with it
 inline constexpr double kMostMomentum = 0.9;
 
-/// Of so many sweeps in a row: few end before anything overshoots, and may gather momentum sooner.
+/// Returns the damping for `sweeps` sweeps in a row [sweep]. A short run ends before anything overshoots, so that its
+/// momentum may grow sooner.
 constexpr int dampingOf(int sweeps) { return std::clamp(sweeps / 3, 3, kMostDamping); }
 
-/// After n sweeps of something, the same for every machine in either type.
+/// Returns the momentum after `n` sweeps. Every machine computes the same number, for float and for double.
 template <class Real>
 constexpr Real momentumAfter(int n, int damping) {
     return std::min(static_cast<Real>(n) / static_cast<Real>(n + damping), static_cast<Real>(kMostMomentum));

@@ -9,7 +9,8 @@
 namespace sand {
 namespace {
 
-constexpr unsigned kTinFlag = 0x80;  // beside the scheme: the rules of height fields are the bytes they always were
+constexpr unsigned kTinFlag =
+    0x80;  // bit beside the scheme; a height field's rules do not have it and keep their old bytes
 
 Scheme schemeOf(unsigned number) {
     const auto* const found = std::ranges::find_if(

@@ -8,7 +8,7 @@
 namespace sand {
 namespace {
 
-// Beside the edit in a step's flags.
+// Flags of a step. The bits between them hold the kind of the edit.
 constexpr int kEngaged = 0x01, kTurned = 0x40, kMirrored = 0x80;
 
 int flagsOf(const Step& step) {
@@ -49,7 +49,7 @@ Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
         return Edit::tuned(Tuning::decode(reader));
     }
     if (kind == Edit::load) {
-        // What it holds is judged where it is put in the sand's place: that knows the field.
+        // Replica::apply() checks the sand itself, because only the replica knows the field.
         const auto sand = reader.getBlock();
         if (sand.size() > kMaxSandBytes) {
             throw base::FormatError("sand of " + std::to_string(sand.size()) + " bytes");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every x86-64 and once for x86-64-v3, as the sweeps are: roots are taken four at a time.
+// Compiled once for every x86-64 and once for x86-64-v3, like the sweeps. The version for x86-64-v3 computes four roots
+// at a time.
 #include "sand/model/tool_kernel.hpp"
 
 #include <algorithm>
@@ -9,7 +10,8 @@
 
 namespace sand::SANDWALL_CODE_PATH {
 
-// All numbers but the root are whole and below 2^53, and the root is IEEE's: what TurnedShape::underside() computes.
+// All numbers except the root are whole numbers below 2^53, and the root is IEEE's. The results therefore equal those
+// of TurnedShape::underside().
 void undersidesOfSphere(const SphereRow& row, std::int32_t* __restrict undersides) {
     const auto most = static_cast<double>(row.square), centre = static_cast<double>(row.centre);
     const auto first = static_cast<double>(row.first);

@@ -5,18 +5,19 @@
 
 namespace sand {
 
-/// Cells side by side under a sphere.
+/// Row of neighbouring cells under a sphere.
 struct SphereRow {
-    std::int64_t square;  // of the radius, less that of the row's distance from the centre [probe unit²]; below 2^50
-    std::int64_t first;   // of the first cell from the centre [probe unit]
-    std::int64_t centre;  // [unit]
+    std::int64_t square;  // radius² minus the squared distance of the row from the centre [probe unit²]; below 2^50
+    std::int64_t first;   // offset of the first cell from the centre [probe unit]
+    std::int64_t centre;  // height of the centre [unit]
     int count;
 };
 
-// One source, compiled twice (sand/CMakeLists.txt), for the same integers. Undersides as TurnedShape's.
+// These functions are compiled twice from one source (sand/CMakeLists.txt). Both versions return the same integers. The
+// undersides equal those of TurnedShape::undersides().
 namespace baseline {
 void undersidesOfSphere(const SphereRow& row, std::int32_t* undersides);
-/// What lies above them [unit]; heights within kMaxHeight.
+/// Returns the sum of the sand above the undersides [unit]. Heights must be within ±kMaxHeight.
 std::int64_t sandAbove(const std::int32_t* undersides, const std::int32_t* heights, int count);
 }  // namespace baseline
 namespace v3 {

@@ -12,11 +12,11 @@ namespace {
 constexpr std::array<std::string_view, kToolKinds> kNames{"sphere",  "circle",    "rectangle",
                                                           "ellipse", "ellipsoid", "footprint"};
 
-constexpr double kBeside = 4;  // more than any level within a piece's rectangle
+constexpr double kBeside = 4;  // level of a place beside a piece; larger than any level within the piece's rectangle
 
 constexpr std::array<SolePiece, 1> kPlate{{{0, 0, 1, 1, 0, 0}}};
 
-// Heel; outer side, which the arch leaves on the ground; ball, inner and outer; toes from the great one on.
+// Heel; outer side, which the arch leaves on the ground; inner and outer ball; the five toes, the big toe first.
 constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
                                           {-0.13, -0.33, 0.52, 0.42, 0.06, 0.05},
                                           {0.43, 0.38, 0.27, 0.56, 0.005, 0.06},
@@ -50,7 +50,8 @@ TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, bool v3
       east_(shape.radius),
       north_(shape.radius) {
     if (hasHeading()) {
-        // Of the rectangle around it. A probe unit more, for a heading that is a little short.
+        // Half sides of the upright rectangle around the turned tool. They are a little too large, because rounding may
+        // have made the heading a little short.
         const std::int64_t x = std::abs(heading.x), y = std::abs(heading.y);
         const auto reach = [&](std::int64_t along, std::int64_t across) {
             const std::int64_t whole = along * shape.radius + across * shape.halfWidth;
@@ -85,7 +86,7 @@ double TurnedShape::levelOf(const SolePiece& piece, const Place& place, double g
     const double along = place.along - piece.along * length_, across = place.across - piece.across * width_;
     const double length = piece.halfLength * length_ + grown, width = piece.halfWidth * width_ + grown;
     if (std::abs(along) > length || std::abs(across) > width) {
-        return kBeside;  // without a division: of nine pieces, most are far away
+        return kBeside;  // without a division, because most of the nine pieces are far away
     }
     return along / length * (along / length) + across / width * (across / width);
 }
@@ -130,7 +131,6 @@ bool TurnedShape::longTakes(const Offset& offset) const {
     return near >= 1 && beside <= 1;
 }
 
-/// Of the outline beside a place, of any length.
 TurnedShape::Place TurnedShape::normalAt(const Place& place) const {
     if (shape_.kind == ToolKind::rectangle) {
         const bool end = std::abs(place.along) - length_ > std::abs(place.across) - width_;
@@ -156,7 +156,7 @@ std::int64_t TurnedShape::longShare(const Offset& offset, const Offset& ahead) c
     if (!(length > 0)) {
         return 0;
     }
-    // The normal in 1024ths, cut towards zero; the drag below 2^24: the product stays below 2^36.
+    // The normal is in 1024ths, rounded towards zero, and the drag is below 2^24. The product stays below 2^36.
     const WholePlace drag = turnedBack(ahead);
     const auto part = [length](double side) { return static_cast<std::int64_t>(1024 * side / length); };
     return part(normal.along) * drag.along + part(normal.across) * drag.across;
@@ -168,7 +168,7 @@ bool TurnedShape::before(const Offset& a, const Offset& b) const {
 }
 
 CellRect TurnedShape::cellsAround(std::int64_t x, std::int64_t y, std::int64_t margin) const {
-    // Rounds down, below zero too.
+    // Rounds down, also below zero.
     const auto cell = [](std::int64_t coordinate) { return static_cast<int>(coordinate >> kProbeBits); };
     return {cell(x - east_ - margin), cell(y - north_ - margin), cell(x + east_ + margin) + 1,
             cell(y + north_ + margin) + 1};

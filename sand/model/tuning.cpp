@@ -11,7 +11,7 @@ bool within(std::int32_t number, std::int32_t most) { return number >= 0 && numb
 void ToolRules::encode(base::ByteWriter& writer) const {
     writer.put(plain() ? shape.radius : -1 - shape.radius);
     if (!plain()) {
-        // The kind takes three bits of its byte.
+        // The kind takes three bits of its byte. The highest bit says whether the tool is mirrored.
         writer.put(static_cast<std::uint8_t>(static_cast<int>(shape.kind) + (heading.mirrored ? 0x80 : 0)));
         writer.put(shape.halfWidth);
         heading.encode(writer);

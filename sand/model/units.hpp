@@ -5,8 +5,8 @@
 
 namespace sand {
 
-inline constexpr int kMaxSide = 16384;               // [cell]
-inline constexpr std::int32_t kMaxHeight = 1 << 28;  // [unit], of either sign
+inline constexpr int kMaxSide = 16384;               // [cell], longest side of a field
+inline constexpr std::int32_t kMaxHeight = 1 << 28;  // [unit], largest magnitude of a height
 inline constexpr int kHeightBits = 16;               // one height unit is cellSize / 2^16
 inline constexpr int kProbeBits = 8;                 // one probe unit is cellSize / 2^8
 inline constexpr std::int32_t kUnitsPerCell = 1 << kHeightBits;
