@@ -9,15 +9,15 @@
 
 namespace sand::grid {
 
-/// A set of blocks out of all blocks of a field, numbered row by row from the south-west. What it costs to take them
-/// out grows with the rectangle around them and not with the field: on a large one most hold none. Not thread-safe.
+/// Set of blocks of a field, numbered row by row from the south-west. Taking them out takes time in proportion to the
+/// rectangle around them, because most blocks of a large field are not in the set. Not thread-safe.
 class BlockMarks {
 public:
     BlockMarks(int across, int down);
 
-    void add(const CellRect& blocks);  // within all blocks
+    void add(const CellRect& blocks);  // `blocks` must lie within the field
     [[nodiscard]] bool empty() const { return around_.empty(); }
-    /// Calls visit(int block) for each in ascending order, and leaves the set empty. `visit` may add none.
+    /// Calls visit(int block) for each block in ascending order, and empties the set. `visit` must not add blocks.
     template <class Visit>
     void takeAll(const Visit& visit) {
         for (int y = around_.y0; y < around_.y1; ++y) {
@@ -30,14 +30,14 @@ public:
         }
         around_ = {};
     }
-    /// Returns its blocks as runs, each within one row, row by row from the south-west, and leaves the set empty.
+    /// Returns the blocks as runs, each within one row, row by row from the south-west, and empties the set.
     [[nodiscard]] std::vector<CellRect> takeRuns();
     [[nodiscard]] std::size_t bytes() const { return marks_.size(); }
 
 private:
     int across_;
     std::vector<std::uint8_t> marks_;
-    CellRect around_;  // holds every mark
+    CellRect around_;  // contains every mark
 };
 
 }  // namespace sand::grid

@@ -14,7 +14,7 @@ using Faces = QuadEnergy::Faces;
 
 double dot(const Faces& a, const Faces& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
 
-/// Fluxes as the quads of a field share them: faces that lie in two quads give half to each.
+/// Fluxes through the faces of each quad. A face that lies in two quads gives half of its flux to each.
 class QuadFluxes {
 public:
     QuadFluxes(const NetFlux& flux, const Rules& rules, double northing)
@@ -25,7 +25,7 @@ public:
     }
 
 private:
-    /// What a quad is given of the flux from cell (x, y) to its eastern neighbour.
+    /// Returns the quad's part of the flux from cell (x, y) to its eastern neighbour.
     [[nodiscard]] double east(int x, int y) const {
         const int rows = flux_.rows();
         if (open_) {
@@ -45,7 +45,7 @@ private:
 
     const NetFlux& flux_;
     bool open_;
-    double northing_;  // V·D stays what it is
+    double northing_;  // divides the northern fluxes, so that V·D does not change
 };
 
 double squaredDistance(const HeightField& a, const HeightField& b) {
@@ -69,10 +69,10 @@ Certificate certify(const HeightField& start, const HeightField& rest, const Net
     double gap = 0;
     stable.forEach([&](int x, int y) {
         const Faces v = fluxes(x, y);
-        // Sand flows downhill: a flux east belongs to a difference below zero.
+        // Sand flows downhill, so that a flux to the east belongs to a negative difference.
         gap += rules.threshold * std::numbers::sqrt2 * std::sqrt(dot(v, v)) + dot(v, stable.differences(x, y));
     });
-    gap = std::max(gap / asIs.images(), 0.0);  // negative by rounding at most
+    gap = std::max(gap / asIs.images(), 0.0);  // only rounding can make it negative
     const double squaredStep = stable.squaredDistanceTo(asIs) / asIs.images();
     const double distance = 0.5 * (std::sqrt(squaredStep) + std::sqrt(squaredStep + 4 * gap));
     return {.squaredDistance = distance * distance, .squaredMoved = squaredDistance(start, rest)};

@@ -7,32 +7,33 @@
 
 namespace sand::grid {
 
-/// How far a field at rest can at most be from the right one.
+/// Upper bound of the distance between a field at rest and the right field.
 ///
-/// "Right" is the projection of the start onto the fields in which no quad is steeper than the threshold, a quad being
-/// the square between four cell centres and its slope the root of half the sum of its four squared differences. The
-/// bound is computed from the fluxes alone and needs no knowledge of that projection.
+/// The right field is the projection of the start onto the fields in which no quad is steeper than the threshold. A
+/// quad is the square between four cell centres. Its slope is the square root of half the sum of its four squared
+/// differences. The bound is computed from the fluxes alone, without that projection.
 struct Certificate {
-    double squaredDistance = 0;  // [unit²], summed over the cells: at least the squared distance to the projection
-    double squaredMoved = 0;     // [unit²], summed over the cells: squared distance from start to rest
+    double squaredDistance = 0;  // upper bound of the squared distance to the projection, summed over the cells [unit²]
+    double squaredMoved = 0;     // squared distance from start to rest, summed over the cells [unit²]
 
-    /// The bound as a share of what was moved: shrinks with the cell size where the rest state is the right one.
+    /// Returns the bound as a share of the squared distance moved; 0 if no sand moved. It shrinks with the cell size if
+    /// the field at rest is the right one.
     [[nodiscard]] double relative() const { return squaredMoved > 0 ? squaredDistance / squaredMoved : 0; }
 };
 
-/// The certificate of a relaxation from `start` to `rest` whose faces let `flux` pass: the start less its divergence
-/// must be the rest, which an assertion in the tests checks and this does not. Heights at an open rim must not lie
-/// below 0. Sums are taken in a fixed order.
+/// Returns the certificate of a relaxation from `start` to `rest`, in which `flux` passed the faces. `rest` must be
+/// `start` minus the divergence of `flux`. This function does not check that; an assertion in the tests does. Heights
+/// at an open rim must not be below 0. Sums are taken in a fixed order.
 ///
-/// Why it holds: let S(w) be the sum over quads of threshold·√2·|V| - V·Dw, where V are half the fluxes through the
-/// quad's four faces and Dw the falls of w across them. S(w) ≥ 0 where no quad of w is too steep, and (start - rest)·(w
-/// - v) = S(v) - S(w), since the start less the divergence is the rest. The projection p satisfies (start - p)·(w - p)
-/// ≤ 0 for every such w. The rest may be a little too steep; let w be a field near it that is not
-/// (QuadEnergy::flatten). Then with x = |p - rest| and e = |w - rest|
+/// Proof: let S(w) be the sum over quads of threshold·√2·|V| - V·Dw. Here V are half the fluxes through the quad's four
+/// faces, and Dw are the falls of w across them. S(w) ≥ 0 if no quad of w is too steep. Moreover, (start - rest)·(w -
+/// v) = S(v) - S(w), because the rest is the start minus the divergence. The projection p satisfies (start - p)·(w - p)
+/// ≤ 0 for every such w. The field at rest may be a little too steep. Let w be a field near it that is not too steep
+/// (QuadEnergy::flatten). Then, with x = |p - rest| and e = |w - rest|,
 ///     x² = (start - p)·(rest - p) + (start - rest)·(p - rest)
 ///        ≤ (start - p)·(rest - w) + S(rest) - S(p)
 ///        ≤ (start - rest)·(rest - w) + x·e + S(rest) = S(w) + x·e,
-/// and hence x ≤ (e + √(e² + 4 S(w))) / 2.
+/// and therefore x ≤ (e + √(e² + 4 S(w))) / 2.
 [[nodiscard]] Certificate certify(const HeightField& start, const HeightField& rest, const NetFlux& flux,
                                   const Rules& rules);
 

@@ -16,7 +16,7 @@ Offset offsetOf(ProbePoint at, int column, int row) {
             std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
 }
 
-/// A cell that takes some of the sand the tool pushes away.
+/// Cell that takes some of the sand that the tool pushes away.
 struct Receiver {
     int column, row;
     std::int64_t weight;
@@ -24,8 +24,9 @@ struct Receiver {
     std::int64_t share = 0;  // [unit]
 };
 
-/// The cells around the tool that take sand. With a drag direction, those ahead; without one, all of them
-/// alike. Walls and cells beyond a closed rim do not count; beyond an open one they swallow.
+/// Returns the cells around the tool that take sand. If `ahead` is not zero, these are the cells ahead of the tool. If
+/// it is zero, these are all cells around the tool, with equal weights. Wall cells and cells beyond a closed rim take
+/// no sand. Sand for cells beyond an open rim leaves the field.
 std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* ground, ProbePoint at,
                                 const TurnedShape& shape, const Offset& ahead) {
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
@@ -38,13 +39,13 @@ std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* g
         for (int x = around.x0; x < around.x1; ++x) {
             const Offset offset = offsetOf(at, x, y);
             if (offset.x < 0 && !shape.hasHeading() && shape.covers(offset)) {
-                // What is round covers the row until the same distance on the other side: under a tool as large as may
-                // be lie millions of cells.
+                // A round tool covers the row up to the same distance on the other side. The loop skips these cells,
+                // because the largest tool covers millions of cells.
                 x += static_cast<int>(-2 * offset.x / kProbePerCell);
                 continue;
             }
             if (!shape.hasHeading() && !everywhere && shape.share(offset, ahead) <= 0) {
-                continue;  // half of them are behind, and of what is round that is soonest seen
+                continue;  // half of the cells are behind, and for a round tool this test is the fastest
             }
             const bool outside = x < bounds.x0 || x >= bounds.x1 || y < bounds.y0 || y >= bounds.y1;
             if ((outside && rim == Rim::closed) || shape.covers(offset) || !shape.takes(offset) ||
@@ -60,7 +61,7 @@ std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* g
     return ring;
 }
 
-/// amount · weight / total, cut to an integer; all positive, an amount below 2^56 and a weight below 2^36.
+/// Returns amount · weight / total, rounded down. All are positive; `amount` is below 2^56 and `weight` below 2^36.
 std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total) {
     std::int64_t product = 0;
     if (!__builtin_mul_overflow(amount, weight, &product)) {
@@ -70,8 +71,9 @@ std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total
     return static_cast<std::int64_t>(static_cast<Product>(amount) * weight / total);
 }
 
-/// Gives `amount` to the receivers by weight. The remainder of the division, fewer units than there are receivers, goes
-/// one unit each to the first of them: by rows, or in the order of a tool that has a heading, which turns with it.
+/// Gives `amount` to the receivers by weight. The remainder of the division is smaller than the number of receivers.
+/// The first receivers get one unit of it each. For a round tool, these are the first by rows. For a tool with a
+/// heading, they are the first in an order that turns with the tool.
 void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, const TurnedShape& shape) {
     std::int64_t total = 0;
     for (const Receiver& receiver : ring) {
@@ -113,8 +115,8 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
     const auto across = static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0));
     const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
     std::int64_t taken = 0;
-    std::vector<int> cuts;                     // rows: a tool that is dragged cuts few
-    std::vector<std::int32_t> lowest(across);  // of those, side by side, and of one more
+    std::vector<int> cuts;                     // rows in which the tool cuts sand; few for a drag
+    std::vector<std::int32_t> lowest(across);  // lowest heights of these rows, one row after another, and of one more
     for (int y = cells.y0; y < cells.y1; ++y) {
         const std::span<std::int32_t> ofRow = std::span(lowest).last(across);
         findLowest(ground, at, cells.x0, y, ofRow);
@@ -128,16 +130,16 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
         return {};
     }
     std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, shape_, ahead);
-    if (ring.empty()) {  // dragged against a closed rim: it escapes to the sides and behind
+    if (ring.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
         ring = receivers(field.bounds(), rim, ground, at, shape_, {0, 0});
     }
-    if (ring.empty()) {  // the tool is larger than the field: there is nowhere to put the sand
+    if (ring.empty()) {  // the tool is larger than the field, so that no cell can take the sand
         return {};
     }
     shareOut(ring, taken, at, shape_);
     for (const Receiver& receiver : ring) {
         if (!receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight) {
-            return {};  // no room left in 32 bits: the sand stays, and the tool passes through it
+            return {};  // a height would exceed kMaxHeight: the sand stays, and the tool passes through it
         }
     }
     for (std::size_t i = 0; i < cuts.size(); ++i) {
@@ -173,7 +175,7 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
         if (cells(field, at).empty()) {
             continue;
         }
-        // A direction in whole probe units of one sub-step would lose its angle when the hand is slow.
+        // The direction of one sub-step, in whole probe units, would lose its angle if the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
         const Work one = press(field, rim, ground, at, {dx / scale, dy / scale});
         if (!one.cells.empty()) {

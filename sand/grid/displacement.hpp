@@ -14,13 +14,13 @@
 
 namespace sand::grid {
 
-/// The underside of the tool while it stands in the sand: no flux may raise a cell above it.
+/// Underside of the tool while it is in the sand. No flux may raise a cell above it.
 struct Obstacle {
-    CellRect cells;                       // where the underside is defined
+    CellRect cells;                       // cells for which the underside is defined
     std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
     static constexpr std::int32_t kFree = TurnedShape::kFree;
 
-    [[nodiscard]] const std::int32_t* row(int row) const {  // from cells.x0 on
+    [[nodiscard]] const std::int32_t* row(int row) const {  // begins at column cells.x0
         return underside.data() + std::ptrdiff_t{row - cells.y0} * (cells.x1 - cells.x0);
     }
 };
@@ -29,28 +29,29 @@ struct Obstacle {
 /// underside and puts it down ahead.
 class Displacement {
 public:
-    /// `v3`: with instructions of x86-64-v3, for the same results.
+    /// `v3` selects code with the instructions of x86-64-v3. The results are the same without it.
     explicit Displacement(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
         : shape_(shape, heading, v3), v3_(v3) {}
 
-    /// What one drag did to the sand.
+    /// Effect of one drag on the sand.
     struct Work {
-        CellRect cells;            // may have changed
-        std::int64_t outflow = 0;  // [unit · cell] pushed over an open rim
+        CellRect cells;            // cells that may have changed
+        std::int64_t outflow = 0;  // volume pushed over an open rim [unit · cell]
     };
 
-    /// Sweeps the tool from `from` to `to` in sub-steps of at most a cell. Where no cell could take the sand, it stays.
-    /// Rock and walls of `ground`, which may be null, stay where they are.
+    /// Moves the tool from `from` to `to` in sub-steps of at most one cell, and displaces the sand. Sand that no cell
+    /// can take stays where it is. `ground` may be null; its rock and walls do not move.
     Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
 
-    /// The tool at rest at `at`, as seen by flowing sand.
+    /// Returns the obstacle of a tool whose centre is at `at`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint at) const;
-    /// The cells that its underside may cover there.
+    /// Returns the cells of the field that may be below the tool while its centre is at `at`.
     [[nodiscard]] CellRect cells(const HeightField& field, ProbePoint at) const;
 
 private:
     Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
-    /// How low the tool takes the cells of a row, whatever lies there: its underside, or the rock beneath.
+    /// Fills `lowest` with the heights to which the tool lowers the cells of a row: its underside, or the rock where
+    /// that is higher [unit]. `column` is the first cell of the row.
     void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;
 
     TurnedShape shape_;

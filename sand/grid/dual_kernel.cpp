@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every x86-64 and once for x86-64-v3, like erosion_kernel.cpp and for the same reason.
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3, because g++ 12 does not vectorise these loops at
+// -O2.
 #include "sand/grid/dual_kernel.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
 
-/// One row of quads.
+/// Row of quads.
 struct QuadRow {
     double *x, *y, *twist;
 };
@@ -21,8 +22,8 @@ void extrapolate(const double* __restrict now, const double* __restrict before, 
     }
 }
 
-/// A row of heights: the start less the divergence of the quads below and above it. A quad of index i lies east of
-/// cell i.
+/// Computes a row of heights: the start minus the divergence of the quads below and above it. Quad i lies east of cell
+/// i.
 void heights(const double* __restrict start, const double* __restrict xBelow, const double* __restrict yBelow,
              const double* __restrict twistBelow, const double* __restrict xAbove, const double* __restrict yAbove,
              const double* __restrict twistAbove, double northing, double twist, int count, double* __restrict result) {
@@ -34,8 +35,8 @@ void heights(const double* __restrict start, const double* __restrict xBelow, co
     }
 }
 
-/// A step up the gradient, which is the slope, then the shrinkage by the threshold. Four cells make a quad: one row of
-/// them below, one above.
+/// Takes a step up the gradient, which is the slope, and then shrinks the result by the threshold. Each quad has two
+/// cells in the row `below` and two in the row `above`.
 void step(const DualIteration& it, const double* __restrict below, const double* __restrict above,
           const double* __restrict x, const double* __restrict y, const double* __restrict twist,
           const double* __restrict xNow, const double* __restrict yNow, const double* __restrict twistNow, int count,
@@ -88,8 +89,8 @@ void measureCells(const double* __restrict start, const double* __restrict heigh
     }
 }
 
-/// Walks up the rows once: quads are extrapolated, cells follow from the quads on either side, and the quads below
-/// from the cells on either side of them.
+/// One pass up the rows. It extrapolates a row of quads and computes the cells below it from the quads on both sides.
+/// Then it computes the quads below these cells from the cells on both sides.
 class Iteration {
 public:
     explicit Iteration(const DualIteration& it)
@@ -145,7 +146,7 @@ private:
         }
     }
 
-    /// The quads between the two rows of cells; those behind the last hold nothing but what whole vectors left.
+    /// Computes the quads between the two rows of cells, then clears what whole vectors wrote behind the last quad.
     void stepQuads(std::ptrdiff_t offset) {
         const int count = it_.columns - 1;
         if (it_.measure) {
@@ -161,7 +162,7 @@ private:
     }
 
     const DualIteration& it_;
-    const int whole_;  // columns, up to a whole vector
+    const int whole_;  // columns, rounded up to whole vectors
     QuadRow quadsBelow_{}, quads_{};
     double* cellsBelow_;
     double* cells_;

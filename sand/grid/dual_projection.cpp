@@ -11,17 +11,19 @@
 namespace sand::grid {
 namespace {
 
-constexpr double kRelativeExcess = 0.03;  // of the talus, so that a gap that only changes its sign does not
-// count; at 0.01 the sweeps after it were as many
-constexpr double kIterationsPerCell = 40;  // of width and height of the box; the slowest start known needed 4
-// Fluxes round to a unit, slopes then by up to 4: at just the talus that would set the whole slope creeping, and with
-// this allowance 18 sweeps end a pile at 512² instead of 1100.
+// Largest excess of a quad's slope at the end, as a share of the talus. A gap may be small only because it changes its
+// sign. With 0.01, as many sweeps followed.
+constexpr double kRelativeExcess = 0.03;
+constexpr double kIterationsPerCell = 40;  // per cell of the box's width and height; the slowest known start needed 4
+// Fluxes are rounded to one unit, so that slopes change by up to 4 units. If the slope were exactly the talus, the
+// whole slope would creep. With this allowance, a pile at 512² rests after 18 sweeps instead of 1100.
 constexpr double kSlack = 1.0 / 16384;
-constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], what the sweeps leave standing
+constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], excess that the sweeps leave
 
 std::int64_t rounded(double flux) { return static_cast<std::int64_t>(flux < 0 ? flux - 0.5 : flux + 0.5); }
 
-/// A field one cell wide is solved beside its mirror image, for quads need two.
+/// Returns the cells of the projection. A field one cell wide is solved beside its mirror image, because quads need two
+/// cells.
 CellRect domainOf(const HeightField& field, Rim rim) {
     if (rim == Rim::open) {
         return field.bounds().grownBy(1);
@@ -177,7 +179,7 @@ bool DualProjection::nearEdge() const {
         }
         return false;
     };
-    CellRect inner = box_;  // an edge of the domain is no edge: nothing lies beyond
+    CellRect inner = box_;  // no cell lies beyond an edge of the domain, so that it needs no margin
     inner.x0 += box_.x0 == domain_.x0 ? 0 : kMargin;
     inner.y0 += box_.y0 == domain_.y0 ? 0 : kMargin;
     inner.x1 -= box_.x1 == domain_.x1 ? 0 : kMargin + 1;

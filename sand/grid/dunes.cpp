@@ -6,7 +6,7 @@
 namespace sand::grid {
 namespace {
 
-/// A number in [0, 1) per lattice point (an integer hash after Wang).
+/// Returns a number in [0, 1) for each lattice point: an integer hash after Wang.
 double lattice(std::int64_t x, std::int64_t y, std::uint32_t seed) {
     std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9e3779b1U ^ static_cast<std::uint32_t>(y) * 0x85ebca77U ^ seed;
     h = (h ^ 61U ^ (h >> 16)) * 9U;
@@ -18,7 +18,7 @@ double smooth(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
 double mixed(double a, double b, double t) { return a + (b - a) * t; }
 
-/// Smooth noise in [0, 1), with features of size one.
+/// Returns smooth noise in [0, 1), with features of size 1.
 double noise(double x, double y, std::uint32_t seed) {
     const double x0 = std::floor(x);
     const double y0 = std::floor(y);
@@ -29,7 +29,7 @@ double noise(double x, double y, std::uint32_t seed) {
                  mixed(lattice(i, j + 1, seed), lattice(i + 1, j + 1, seed), tx), smooth(y - y0));
 }
 
-/// One dune over a phase in [0, 1): three quarters rise, one quarter falls.
+/// Returns the height of one dune at a phase in [0, 1): three quarters rise, one quarter falls.
 double profile(double phase) {
     constexpr double kCrest = 0.75;
     return phase < kCrest ? smooth(phase / kCrest) : smooth((1 - phase) / (1 - kCrest));

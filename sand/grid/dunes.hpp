@@ -7,15 +7,16 @@
 
 namespace sand::grid {
 
-/// A field of transverse dunes: long windward slopes from the west, steep lee sides, crests that wind and fade.
+/// Field of transverse dunes. They have long windward slopes in the west and steep lee sides; their crests wind and
+/// fade.
 struct Dunes {
-    double bed = 0;        // [scene unit], the ground between the dunes
-    double height = 0.04;  // [scene unit], of the highest crest over the bed
-    double length = 0.4;   // [scene unit], from crest to crest
+    double bed = 0;        // height of the ground between the dunes [scene unit]
+    double height = 0.04;  // height of the highest crest above the bed [scene unit]
+    double length = 0.4;   // distance from crest to crest [scene unit]
     std::uint32_t seed = 1;
 };
 
-/// Fills the field. Uses + - * / only, so that every machine gets the same dunes.
+/// Fills `field` with dunes. Uses only + - * /, so that every machine computes the same dunes.
 void makeDunes(const Dunes& dunes, HeightField& field);
 
 }  // namespace sand::grid

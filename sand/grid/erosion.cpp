@@ -13,7 +13,8 @@
 namespace sand::grid {
 namespace {
 
-/// Beyond the rim the ground goes on as it came: the slope along the rim is then that of the cell's one neighbour.
+/// Continues the slope of the ground into the ghost cells. The slope along the rim at a cell then equals the slope to
+/// its one neighbour along this axis.
 void extrapolate(const std::int32_t* edge, const std::int32_t* inner, std::ptrdiff_t stride, int count,
                  std::int32_t* ghost) {
     for (int i = 0; i < count; ++i, edge += stride, inner += stride, ghost += stride) {
@@ -21,15 +22,15 @@ void extrapolate(const std::int32_t* edge, const std::int32_t* inner, std::ptrdi
     }
 }
 
-/// The law's numbers for faces across which the cells are `ratio` times as long as along them; thresholds in [unit]
-/// from cell to cell.
+/// Returns the law's constants for the faces across one axis. `ratio` is the length of a cell across these faces,
+/// divided by its length along them. The thresholds are differences from cell to cell [unit].
 AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double ratio) {
-    // At 0.5 the proofs end; 0.4998 leaves room for the rounding of float products. Near it a chequerboard swings
-    // without damping, and with inertia a steep needle would fall too flat: 17 % of its sand misplaced, and 0.8 % with
-    // 0.46.
+    // The proofs end at 0.5; 0.4998 leaves room for the rounding of float products. Near 0.5 a chequerboard oscillates
+    // without damping. With inertia, a steep needle would become too flat: 17 % of its sand would be misplaced, and 0.8
+    // % with 0.46.
     const double limit = (scheme == Scheme::isotropic ? 0.46 : 0.4998) / (ratio * ratio + 1);
-    // As strong as linear stability allows, less a tenth (near the threshold 1 - t²/m² is twice 1 - t/m); the same flux
-    // per slope along either axis.
+    // As strong as linear stability allows, minus a tenth. Near the threshold, 1 - t²/m² is twice 1 - t/m. The same
+    // slope gives the same flux along both axes.
     const double push = 0.225 * std::min(1.0, 1 / (ratio * ratio));
     return {static_cast<float>(threshold), static_cast<float>(startThreshold), static_cast<float>(limit),
             static_cast<float>(push), static_cast<float>(0.25 * ratio)};
@@ -80,7 +81,7 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
         }
         ++sweepsDone_;
         const bool still = marked_.empty();
-        if (!still) {  // a replica that joins settled sand visits it once, and must not be the older for it
+        if (!still) {  // a replica that joins settled sand visits it once, which must not change its age
             undisturbed_ = std::min(undisturbed_ + 1, Inertia::kMostCounted);
         }
         collectMarked();
@@ -155,7 +156,7 @@ void Erosion::addFluxes(NetFlux& sum) const {
             to[i] += flux[i];
         }
     };
-    // Outside the patches of that sweep nothing flowed.
+    // Outside the patches of the last sweep, no sand flowed.
     forEachPatch([&](int i) {
         const CellRect cells = cellsOf(patches_[static_cast<std::size_t>(i)]);
         for (int y = cells.y0; y < cells.y1; ++y) {
@@ -195,12 +196,12 @@ void Erosion::refreshGhosts(HeightField& field, const CellRect& cells) const {
 
 Inertia Erosion::inertia() const {
     Inertia inertia(undisturbed_);
-    // Also at an age of zero, at which they have no momentum: a band asks where sand slid.
+    // Keeps the fluxes even at age 0, when they carry no momentum: a band depends on where sand slid.
     for (const int block : active_) {
         const int x = block % across_;
         const int y = block / across_;
         CellRect cells = cellsOf({x, y, x + 1, y + 1});
-        cells.x0 -= x == 0 ? 1 : 0;  // what flows over the western rim
+        cells.x0 -= x == 0 ? 1 : 0;  // flux over the western rim
         cells.y0 -= y == 0 ? 1 : 0;
         inertia.keep(east_, north_, cells);
     }
@@ -208,7 +209,7 @@ Inertia Erosion::inertia() const {
 }
 
 void Erosion::resume(const Inertia& inertia) {
-    // Only active blocks hold anything, but their rows are as quickly cleared whole.
+    // Only active blocks hold fluxes, but clearing whole rows is as fast.
     for (CellArray* flux : {&east_, &north_}) {
         for (int y = -1; y < flux->rows(); ++y) {
             std::fill(flux->row(y) - 1, flux->row(y) + flux->columns(), 0);
@@ -250,7 +251,7 @@ void Erosion::changeRules(const Rules& rules) {
 
 bool Erosion::amiss(const CellRect& cells) const {
     for (int y = cells.y0; y < cells.y1; ++y) {
-        std::int32_t flows = 0;  // all of memory is asked, and nearly nowhere does anything
+        std::int32_t flows = 0;  // joins the whole row, because nearly all memory holds 0
         for (int x = cells.x0; x < cells.x1; ++x) {
             flows |= east_.row(y)[x] | north_.row(y)[x] | (sliding_ ? sliding_->row(y)[x] : 0);
         }

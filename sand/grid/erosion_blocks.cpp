@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which blocks are swept, and in what patches.
+// Choice of the blocks that are swept, and their division into patches.
 #include <algorithm>
 #include <numeric>
 
@@ -9,7 +9,7 @@
 namespace sand::grid {
 namespace {
 
-constexpr int kSharedPatch = 32;  // [cell], height of a patch where several threads want some
+constexpr int kSharedPatch = 32;  // [cell], height of a patch if several threads share the work
 
 }  // namespace
 
@@ -75,7 +75,8 @@ CellRect Erosion::takePatch(int block) {
     };
     CellRect blocks{x0, y0, x0 + 1, y0};
     const int longest = x0 + kMaxPatch / blockSize_;
-    // A column of patches as high as 2048 cells runs through the whole field once for each: a third slower.
+    // Higher patches are slower: a column of patches that are 2048 cells high runs through the whole field once per
+    // patch, which takes a third longer.
     const int high = options_.executor != nullptr ? kSharedPatch : kMaxBlock;
     const int highest = std::min(y0 + std::max(high / blockSize_, 1), down_);
     while (blocks.x1 < longest && waiting(blocks.x1, y0)) {
@@ -107,7 +108,7 @@ void Erosion::markAroundMoved(const CellRect& blocks) {
                 ++x;
             }
             if (x > first) {
-                // What they give changes the blocks behind their eastern and northern faces too.
+                // Their fluxes also change the blocks beyond their eastern and northern faces.
                 moved_.add(CellRect{first, y, x + 1, y + 1}.clippedTo(all));
                 moved_.add(CellRect{first, y, x, y + 2}.clippedTo(all));
             }
@@ -120,7 +121,7 @@ void Erosion::markAroundMoved(const CellRect& blocks) {
 
 void Erosion::markBeside(const std::uint8_t* flowed, int side, const CellRect& row) {
     const CellRect all{0, 0, across_, down_};
-    CellRect run;  // side by side, as one
+    CellRect run;  // neighbouring blocks, as one rectangle
     for (int x = row.x0; x < row.x1; ++x) {
         if ((flowed[x] & side) == 0) {
             continue;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every x86-64 and once for x86-64-v3, with -O3: g++ 12 does not vectorise these loops at -O2.
+// Compiled once for every x86-64 and once for x86-64-v3, with -O3, because g++ 12 does not vectorise these loops at
+// -O2.
 #include "sand/grid/erosion_kernel.hpp"
 
 #include <algorithm>
@@ -9,19 +10,23 @@
 namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
 
-/// A number per cell of a row of the patch, and one before and one behind; left uninitialised, since rows are long.
+/// Buffer of one number per cell of a patch's row, and one more before and behind. It is left uninitialised, because
+/// rows are long.
 template <class Number>
 struct alignas(64) Row {
     std::array<Number, kMaxPatch + 2 * kKernelMargin> values;
     Number* data() { return values.data() + kKernelMargin; }
 };
 
-// Free functions on restricted pointers, and laws as copies: with members in reach g++ keeps the loops scalar.
+// The functions are free, take restricted pointers, and get laws as copies. With members in reach, g++ keeps the loops
+// scalar.
 
-/// Scheme G with inertia: what flowed in the last sweep goes on, pushed by the excess of the slope over the threshold
-/// and braked by its lack; never uphill, and never more than the share that keeps all proofs. Squares of slopes are
-/// compared: a root would cost a quarter of the sweep. With a band, a face between two cells in which no sand slid
-/// carries nothing up to the start threshold; in the last sweep it carried nothing either.
+/// Scheme G with inertia. The flux of the last sweep continues. A slope above the threshold pushes it; a slope below
+/// the threshold brakes it. A flux never runs uphill, and never exceeds the share that all proofs need. The code
+/// compares squares of slopes, because a root would cost a quarter of the sweep.
+///
+/// With a band, a face whose two cells have no sliding sand carries no flux up to the start threshold. Its flux in the
+/// last sweep was 0, too.
 template <bool kWithBand>
 struct Inertial {
     static constexpr bool kBand = kWithBand;
@@ -37,25 +42,26 @@ struct Inertial {
     float threshold, startThreshold;  // [unit²]
     float limit, push, along, momentum;
 
-    /// `sliding`: of the two cells of the face, joined.
+    /// Returns the flux across a face. `sliding` joins the masks of the two cells.
     std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last, std::int32_t sliding) const {
         const auto across = static_cast<float>(difference);
         const float mean = along * alongSum;
-        // At least the smallest slope there is: 0 · (threshold / 0) would be no number.
+        // At least the smallest possible slope, because 0 · (threshold / 0) is not a number.
         const float slope = std::max(across * across + mean * mean, 0.0625F);
         const float driven = push * (1.0F - threshold / slope);
         const float most = limit * across;
         const float forth = std::max(most, 0.0F);
         const float back = std::min(most, 0.0F);
-        // What goes on is cut by itself first: else a flux that has just turned would rest for a sweep, and a face at
-        // which nothing flows could not be left alone.
+        // The flux that continues is limited first. Otherwise a flux that has just reversed would be 0 for one sweep,
+        // and a sweep could not skip a face without flux.
         const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
         const auto flux = static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
         return kBand ? flux & (sliding | -static_cast<std::int32_t>(slope > startThreshold)) : flux;
     }
 };
 
-/// The law without inertia: slope across the face from its two cells, slope along it as the mean of four differences.
+/// The law without inertia. The slope across the face comes from its two cells. The slope along it is the mean of four
+/// differences.
 template <bool kWithBand>
 struct Isotropic {
     static constexpr bool kBand = kWithBand;
@@ -71,8 +77,8 @@ struct Isotropic {
     }
 };
 
-/// Differences as the slope along a face sees them: a step counts at most the sand of its upper cell, or a bare cliff
-/// beside it would turn stable sand liquid.
+/// Computes the differences for the slope along a face. A step counts at most the sand of its upper cell. Otherwise a
+/// bare cliff would make stable sand beside it slide.
 void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
                      const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
                      std::int32_t* __restrict result) {
@@ -87,7 +93,7 @@ void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, in
     }
 }
 
-/// In which cells of two parallel runs sand slides; read with a band only.
+/// Masks of sliding cells in two parallel runs of cells; read only with a band.
 struct SlidingPair {
     const Sliding* behind;
     const Sliding* ahead;
@@ -101,7 +107,8 @@ std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
     return 0;
 }
 
-/// The fluxes between two parallel runs of cells, given the sum of the two differences along the faces of either cell.
+/// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` give, for each cell, the sum of its
+/// two differences along the faces.
 template <class Law>
 void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
                    const float* __restrict alongA, const float* __restrict alongB, const SlidingPair& sliding,
@@ -113,7 +120,7 @@ void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::i
     }
 }
 
-/// The fluxes from a row of cells to their eastern neighbours; `south` and `north` are the rows beside it.
+/// Computes the fluxes from a row of cells to their eastern neighbours. `south` and `north` are the rows beside it.
 template <class Law>
 void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
                const std::int32_t* __restrict north, const Sliding* __restrict sliding, int count,
@@ -125,7 +132,7 @@ void eastwards(const Law law, const std::int32_t* __restrict south, const std::i
     }
 }
 
-/// The fluxes from a row of cells to the row north of it.
+/// Computes the fluxes from a row of cells to the row north of it.
 template <class Law>
 void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north,
                 const SlidingPair& sliding, int count, std::int32_t* __restrict flux) {
@@ -138,7 +145,7 @@ void northwards(const Law law, const std::int32_t* __restrict row, const std::in
     }
 }
 
-/// Lets no flux bring more than there is room for, behind it or ahead.
+/// Limits each flux to the room of the cell that receives it.
 void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
                  std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
@@ -146,7 +153,8 @@ void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __re
     }
 }
 
-/// Lets no cell give more than its sand through four faces: thickness never goes negative.
+/// Limits each flux to a quarter of the sand in the cell that gives it. Its four faces then never take more than it
+/// has, so that the thickness never becomes negative.
 void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
                  std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
@@ -154,7 +162,7 @@ void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __re
     }
 }
 
-/// `kSandAlong`: the slope along a face counts sand alone, and not the ground that it lies on.
+/// Fluxes of one patch. With `kSandAlong`, the slope along a face counts only the sand and not the ground below it.
 template <class Law, bool kSandAlong>
 class Fluxes {
 public:
@@ -176,28 +184,30 @@ public:
     }
 
 private:
-    /// The patch's first cell in row y.
+    /// Returns a pointer to the patch's first cell in row y.
     [[nodiscard]] const std::int32_t* heights(int y) const {
         return patch_.heights + (y - patch_.cells.y0) * patch_.heightStride;
     }
     [[nodiscard]] std::int32_t* east(int y) const { return patch_.east + y * patch_.fluxStride + patch_.cells.x0; }
     [[nodiscard]] std::int32_t* north(int y) const { return patch_.north + y * patch_.fluxStride + patch_.cells.x0; }
-    /// The cell `ahead` of the patch's first cell in row y; null without a band.
+    /// Returns a pointer to the cell that is `ahead` cells after the patch's first cell in row y; null without a band.
     [[nodiscard]] const Sliding* sliding(int y, int ahead = 0) const {
         return Law::kBand ? patch_.sliding + y * patch_.slidingStride + patch_.cells.x0 + ahead : nullptr;
     }
-    /// The patch's first cell in row y of `room` or `sand`.
+    /// Returns a pointer to the patch's first cell in row y of `room` or `sand`.
     [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
         return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
     }
 
-    /// How much higher the eastern neighbour of each cell of row y is than the western one, as the sand goes.
+    /// Computes for each cell of row y how much higher its eastern neighbour is than its western one, counting only
+    /// sand.
     void riseEast(int y) {
         const std::int32_t* sand = held(patch_.sand, y) - 1;
         sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
         sums(steps_[0].data(), steps_[0].data() + 1, width_, riseEast_[static_cast<unsigned>(y) % 2].data());
     }
-    /// How much higher the northern neighbour of each cell of row y is than the southern one, one cell more than wide.
+    /// Computes for each cell of row y, and for one more, how much higher its northern neighbour is than its southern
+    /// one, counting only sand.
     void riseNorth(int y) {
         const int count = width_ + 1;
         const std::int32_t* sand = held(patch_.sand, y);
@@ -207,7 +217,7 @@ private:
         sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
     }
 
-    /// Limits the fluxes from the cells of row y to those `ahead` cells further in `room` and `sand`.
+    /// Limits the fluxes from the cells of row y to the cells that are `ahead` places further in `room` and `sand`.
     void hold(int y, int ahead, std::int32_t* flux) const {
         if (patch_.room != nullptr) {
             limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, width_, flux);
@@ -217,7 +227,7 @@ private:
         }
     }
 
-    /// Fluxes from row y to row y + 1.
+    /// Computes the fluxes from row y to row y + 1.
     void northFluxes(int y) {
         if constexpr (kSandAlong) {
             riseEast(y + 1);
@@ -230,11 +240,11 @@ private:
         hold(y, width_ + 2, north(y));
     }
 
-    /// Fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
+    /// Computes the fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
     void eastFluxes(int y) {
         std::int32_t* flux = east(y);
-        // The face at the rim is computed like the others and put right below: a row of a multiple of eight faces has
-        // no rest, which would take longer than all of them.
+        // The face at the rim is computed like the others and corrected below. A row whose number of faces is a
+        // multiple of eight then has no remainder, which would take longer than all other faces.
         const std::int32_t lastAtRim = flux[width_ - 1];
         if constexpr (kSandAlong) {
             riseNorth(y);
@@ -266,7 +276,7 @@ private:
         }
     }
 
-    /// Of one cell, as riseEast() and riseNorth() find it for all cells of a row.
+    /// Returns for one cell the number that riseEast() computes for all cells of a row.
     [[nodiscard]] float riseEastOf(int y, int i) const {
         if constexpr (kSandAlong) {
             return riseEast_[static_cast<unsigned>(y) % 2].values[static_cast<unsigned>(i + kKernelMargin)];
@@ -274,6 +284,7 @@ private:
             return static_cast<float>(heights(y)[i + 1] - heights(y)[i - 1]);
         }
     }
+    /// Returns for one cell the number that riseNorth() computes for all cells of a row.
     [[nodiscard]] float riseNorthOf(int y, int i) const {
         if constexpr (kSandAlong) {
             return riseNorth_[static_cast<unsigned>(i)];
@@ -282,7 +293,8 @@ private:
         }
     }
 
-    /// Over an open rim sand falls to height 0 and never comes back. `rise`: along the rim, beside the cell.
+    /// Returns the flux over an open rim, where sand falls to height 0 and never comes back. `rise` is the difference
+    /// along the rim beside the cell.
     std::int32_t overRim(const Law& law, int y, int i, float rise, std::int32_t last) {
         const std::int32_t slides = Law::kBand ? sliding(y)[i] : 0;
         std::int32_t flux = std::max(law(heights(y)[i], 2 * rise, last, slides), 0);
@@ -297,7 +309,7 @@ private:
     const Law eastLaw_, northLaw_;
     const int width_;
     std::int64_t outflow_ = 0;
-    // Of odd and even rows; none where slopes are taken from the heights as they are.
+    // Numbers for even and odd rows. The arrays are empty if slopes are taken from the heights themselves.
     std::array<Row<float>, kSandAlong ? 2 : 0> riseEast_;
     std::array<Row<std::int32_t>, kSandAlong ? 2 : 0> steps_;
     std::array<float, kSandAlong ? kMaxPatch + 2 * kKernelMargin : 0> riseNorth_;
@@ -319,8 +331,8 @@ std::int64_t runWithBand(const FluxPatch& patch) {
     return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
 }
 
-/// `moved` collects in each column what is true of the rows in which sand flows, so that blocks are looked at once and
-/// not in every row.
+/// Adds the fluxes to the heights of a row. `moved` collects in each column the bits of all rows in which sand flows.
+/// Blocks are then inspected once, not once per row.
 void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
            const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
            std::int32_t* __restrict moved) {
@@ -330,7 +342,7 @@ void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict s
     }
 }
 
-/// The same with a band, for which it marks where sand slid.
+/// Adds the fluxes to the heights of a row like addUp(), and marks where sand slid. Only a band needs the marks.
 void addUpAndMark(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
                   const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
                   std::int32_t* __restrict moved, Sliding* __restrict sliding) {
@@ -355,12 +367,12 @@ void markRow(const BalancePatch& patch, int y) {
             patch.cells.x1 - patch.cells.x0, patch.sliding + y * patch.slidingStride + patch.cells.x0);
 }
 
-/// What is true of a row of a block, of rows [first, end), in which sand flows.
+/// Returns the bits of `flow` for a row in which sand flows, in a block of rows [first, end).
 std::int32_t flowIn(int row, int first, int end) {
     return flow::kSomewhere | (row == first ? flow::kSouth : 0) | (row >= end - 2 ? flow::kNorth : 0);
 }
 
-/// Tells where in the blocks of a row of blocks sand flows, and begins the next.
+/// Writes where sand flows in each block of a row of blocks, and clears `moved` for the next row of blocks.
 void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
     const int width = patch.cells.x1 - patch.cells.x0;
     std::uint8_t* flags = patch.moved + blockRow * patch.blocksAcross;
@@ -394,7 +406,7 @@ void balance(const BalancePatch& patch) {
     const int width = patch.cells.x1 - patch.cells.x0;
     Row<std::int32_t> moved;
     std::fill_n(moved.data(), width, 0);
-    if (patch.cells.y0 == 0) {  // the faces at the southern rim are no cell's northern ones
+    if (patch.cells.y0 == 0) {  // the faces at the southern rim are not northern faces of any cell
         const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
         std::transform(south, south + width, moved.data(), [](int flux) { return flux != 0 ? flow::kSomewhere : 0; });
     }

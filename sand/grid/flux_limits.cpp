@@ -6,8 +6,9 @@
 namespace sand::grid {
 namespace {
 
-/// Heights as the slope law shall see them. Beyond the rim the ground goes on as it came, where a step counts at most
-/// the sand of its upper cell: behind a cliff it goes on level. A wall goes on as a wall.
+/// Returns the height that the slope law uses for a cell. Beyond the rim the slope of the ground continues. There a
+/// step counts at most the sand of its upper cell, so that the ground behind a cliff continues level. A wall continues
+/// as a wall.
 std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, int y) {
     const int edgeX = std::clamp(x, 0, field.columns() - 1);
     const int edgeY = std::clamp(y, 0, field.rows() - 1);
@@ -22,7 +23,8 @@ std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, i
     return ground.isWall(innerX, innerY) ? edge : edge + std::clamp(edge - inner, least, most);
 }
 
-/// The cells of a row that lie in the field, a loop without a branch: with rock, this is most of what a sweep costs.
+/// Copies the cells of a row that lie in the field. The loop has no branch, because with rock it is most of a sweep's
+/// cost.
 void copyRow(const std::int32_t* __restrict field, const std::int32_t* __restrict bed, int count,
              std::int32_t* __restrict heights, std::int32_t* __restrict sand, std::int32_t* __restrict room) {
     for (int i = 0; i < count; ++i) {
@@ -33,7 +35,8 @@ void copyRow(const std::int32_t* __restrict field, const std::int32_t* __restric
     }
 }
 
-/// Four faces may each bring a quarter of what fits under the tool; beside it as much as may be. As above.
+/// Limits the room of the cells below the tool. Each of a cell's four faces may bring a quarter of what fits under the
+/// tool. Cells beside the tool have no limit. The loop has no branch, because with rock it is most of a sweep's cost.
 void keepRowBelow(const std::int32_t* __restrict undersides, const std::int32_t* __restrict heights, int count,
                   std::int32_t* __restrict room) {
     for (int i = 0; i < count; ++i) {
@@ -78,7 +81,7 @@ void FluxLimits::extendBeyondRim(const HeightField& field, const Ground& ground)
         const bool rowInside = y >= 0 && y < field.rows();
         for (int x = grown_.x0; x < grown_.x1; ++x) {
             if (rowInside && x >= 0 && x < field.columns()) {
-                x = std::min(grown_.x1, field.columns()) - 1;  // the last of those that copyField() did
+                x = std::min(grown_.x1, field.columns()) - 1;  // the last cell that copyField() has copied
                 continue;
             }
             const int edgeX = std::clamp(x, 0, field.columns() - 1);

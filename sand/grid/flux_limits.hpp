@@ -9,13 +9,14 @@
 
 namespace sand::grid {
 
-/// What limits the fluxes of one patch: the tool above it, rock and walls. Copies of a few numbers per cell, made only
-/// for a patch that needs them, for one sweep. Each covers the patch's cells and one more on every side, row by row.
+/// Limits of the fluxes of one patch: the tool above it, rock and walls. They are copies of a few numbers per cell,
+/// made for one sweep and only for a patch that needs them. Each array covers the patch's cells and one more on every
+/// side, row by row.
 class FluxLimits {
 public:
-    std::vector<std::int32_t> heights;  // [unit], walls raised above everything; only with a ground
-    std::vector<std::int32_t> sand;     // [unit]; only with a ground
-    std::vector<std::int32_t> room;     // [unit] a cell may receive through one face
+    std::vector<std::int32_t> heights;  // [unit], with walls raised above everything; only with a ground
+    std::vector<std::int32_t> sand;     // thickness of the sand [unit]; only with a ground
+    std::vector<std::int32_t> room;     // what a cell may receive through one face [unit]
 
     FluxLimits(const HeightField& field, const CellRect& cells, const Ground* ground, const Obstacle* obstacle);
 

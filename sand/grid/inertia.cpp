@@ -9,9 +9,9 @@
 namespace sand::grid {
 namespace {
 
-constexpr int kPiece = 64;  // [cell], side of the pieces of what was read
+constexpr int kPiece = 64;  // [cell], side of a piece after decode()
 
-/// With what flows over the western and southern rim.
+/// Returns the field's cells, and the column and row of fluxes over the western and southern rim.
 CellRect withRim(int columns, int rows) { return {-1, -1, columns, rows}; }
 
 std::vector<std::int32_t> copyOf(const CellArray& grid, const CellRect& cells) {
@@ -65,12 +65,12 @@ void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
 Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
     const auto undisturbed = reader.get<std::int32_t>();
     if (undisturbed < 0 || undisturbed > kMostCounted) {
-        throw base::FormatError("sand with an inertia of no age");
+        throw base::FormatError("sand whose inertia has an invalid age");
     }
     Inertia inertia(undisturbed);
     const auto flows = reader.get<std::uint8_t>();
     if (flows > 1) {
-        throw base::FormatError("sand that neither flows nor rests");
+        throw base::FormatError("sand with an invalid mark of its fluxes");
     }
     if (flows == 1) {
         CellArray east(columns, rows);

@@ -10,25 +10,25 @@
 
 namespace sand::grid {
 
-/// What the next sweeps depend on beside the heights: the fluxes of the last one, which also say in which cells sand
-/// slid, and for how long sand has slid undisturbed. Holds the cells in which sand flowed and no others: of sand at
-/// rest nothing.
+/// Everything except heights that the next sweeps depend on: the fluxes of the last sweep, and the age of the inertia.
+/// The fluxes also show in which cells sand slid. Only areas in which sand flowed are held, so that sand at rest takes
+/// no memory.
 class Inertia {
 public:
-    static constexpr int kMostCounted = 1000;  // [sweep]; the momentum is at its most long before
+    static constexpr int kMostCounted = 1000;  // [sweep]; the momentum reaches its maximum long before
 
     Inertia() = default;
     explicit Inertia(int undisturbed) : undisturbed_(undisturbed) {}
 
-    /// Copies the fluxes of these cells, unless all of them are zero. Cells are to be given once.
+    /// Copies the fluxes of `cells`, unless all of them are 0. Pass each cell only once.
     void keep(const CellArray& east, const CellArray& north, const CellRect& cells);
-    /// Writes what was kept into fluxes that are zero.
+    /// Writes the kept fluxes into `east` and `north`, whose fluxes must be 0.
     void putInto(CellArray& east, CellArray& north) const;
-    [[nodiscard]] int undisturbed() const { return undisturbed_; }  // [sweep]
+    [[nodiscard]] int undisturbed() const { return undisturbed_; }  // age of the inertia [sweep]
 
-    /// As two whole grids of a field of this size, whatever the pieces were.
+    /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
     void encode(int columns, int rows, base::ByteWriter& writer) const;
-    /// Throws base::FormatError.
+    /// Reads what encode() wrote. Throws base::FormatError for invalid bytes.
     static Inertia decode(base::ByteReader& reader, int columns, int rows);
 
 private:

@@ -7,12 +7,14 @@
 namespace sand::grid {
 namespace {
 
-constexpr int kLeastSide = 32;  // [cell]; a field as small as this is projected at once
-// Closer than the fine cells' own: an iteration there costs four times as much, and one that must move a whole slope
-// takes many. A tilted plane of 256² cells needed 800 after this gap and 1120 after 1e-4, and a sixth of the sweeps.
+constexpr int kLeastSide = 32;  // [cell]; a field this small is projected at once
+// Smaller than the gap of the fine cells. An iteration there costs four times as much, and moving a whole slope takes
+// many. A tilted plane of 256² cells needed 800 iterations after this gap and 1120 after 1e-4, and a sixth of the
+// sweeps.
 constexpr double kCoarseGap = 1e-6;
 
-/// Mean heights of two by two cells in units of the wider cell. A last column or row without a partner stands alone.
+/// Returns the mean heights of 2 × 2 cells in units of the wider cell. A last column or row without a partner is
+/// averaged alone.
 HeightField coarser(const HeightField& field) {
     HeightField result((field.columns() + 1) / 2, (field.rows() + 1) / 2, 2 * field.cellSize());
     for (int y = 0; y < result.rows(); ++y) {
@@ -60,10 +62,11 @@ void DualProjection::startFrom(const DualProjection& coarse) {
         return;
     }
     allocateFor(coarse);
-    // A pressure is an area, so four times as large in cells half as wide. It points along the slope with its twist,
-    // and that is a second difference: beside the slope it is half as large there.
+    // A pressure is an area, so that it is four times as large in cells half as wide. Its third component acts along
+    // the twist of a quad. The twist is a second difference: compared with the slope, it is half as large in the
+    // narrower cells.
     constexpr std::array<double, 3> kScales{4, 4, 2};
-    // Every second quad lies where four wide cells meet, the others half-way between two such places.
+    // Every second quad lies where four wide cells meet. The others lie half-way between two such places.
     const auto before = [](int i) { return (i + 1) / 2 - 1; };
     const auto after = [](int i) { return (i + 2) / 2 - 1; };
     for (std::size_t i = 0; i < kScales.size(); ++i) {
@@ -81,7 +84,7 @@ void DualProjection::startFrom(const DualProjection& coarse) {
 }
 
 double DualProjection::pressureBeyond(std::size_t component, int column, int row) const {
-    // At a closed rim nothing passes, but along it the sand slides as it does next to it.
+    // No sand passes a closed rim. Along the rim, sand slides as it does in the row or column beside it.
     if (rules_.rim == Rim::closed && component == 0) {
         row = std::clamp(row, domain_.y0, domain_.y1 - 2);
     }

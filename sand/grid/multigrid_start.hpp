@@ -6,13 +6,13 @@
 
 namespace sand::grid {
 
-/// Lets a projection of `field` start near its end: projects the mean heights of two by two cells, which starts in the
-/// same way, down to a few cells, and hands on those pressures. What they miss is mostly local, and that is what the
-/// iterations on the fine cells are quick at.
+/// Makes a projection of `field` start near its end. It projects the mean heights of 2 × 2 cells, which starts in the
+/// same way, down to a few cells. It hands on the pressures of that projection. These miss mostly local detail, which
+/// iterations on the fine cells find quickly.
 ///
-/// A field has one projection, whatever the iteration starts from: this changes how soon it is near, and neither what
-/// it is nor how near is near enough. Call it before projection.run(), with the arguments the projection was made from.
-/// While it runs, the coarser projections take a third as much memory as the one they serve.
+/// A field has one projection, whatever the iterations start from. This function changes only how soon they come near
+/// it. It changes neither the projection nor the accuracy. Call it before projection.run(), with the arguments from
+/// which the projection was made. While it runs, the coarser projections take a third as much memory as `projection`.
 void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules,
                       CodePath path = CodePath::automatic);
 

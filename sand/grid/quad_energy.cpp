@@ -11,11 +11,12 @@
 namespace sand::grid {
 namespace {
 
-// Of a quad that is too steep more is taken than it has too much, for its neighbours give some back: a fifth of the
-// passes that 1 takes.
+// Correction of a quad that is too steep, as a multiple of its excess. It is more than 1, because the quad's neighbours
+// undo a part. It takes a fifth of the passes that 1 takes.
 constexpr double kOverrelaxation = 1.8;
-constexpr double kNearlyFlat = 1e-4;  // share of the threshold at which iterating ends: shrinking does the rest
-constexpr int kMostPasses = 1000;     // as many as rough ground of a thousand cells may take; then it shrinks by more
+constexpr double kNearlyFlat = 1e-4;  // [threshold], excess at which iterating ends; shrinking does the rest
+constexpr int kMostPasses =
+    1000;  // rough ground of a thousand cells may take this many; then the heights shrink by more
 
 double slopeOf(const QuadEnergy::Faces& d) {
     return std::sqrt(0.5 * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2] + d[3] * d[3]));
@@ -54,7 +55,8 @@ double QuadEnergy::steepest() const {
     return steepest;
 }
 
-/// Brings each quad of a row that is too steep nearer to its own mean, or to the ring; whether one was far too steep.
+/// Moves the corners of each quad of a row that is too steep nearer to their mean, or to the ring's height. Returns
+/// whether there was a quad that was too steep.
 bool QuadEnergy::flattenRow(int y, double threshold) {
     bool moved = false;
     for (int x = -ring_; x + ring_ + 1 < across_; ++x) {
@@ -88,7 +90,7 @@ void QuadEnergy::shrink(double share) {
 
 void QuadEnergy::flatten(double threshold) {
     const int quadRows = down_ - 1;
-    std::vector<std::uint8_t> waiting(static_cast<std::size_t>(quadRows) + 2, 1);  // a row before, and one behind
+    std::vector<std::uint8_t> waiting(static_cast<std::size_t>(quadRows) + 2, 1);  // one row more before and one behind
     for (int pass = 0; pass < kMostPasses; ++pass) {
         bool moved = false;
         for (int row = 0; row < quadRows; ++row) {

@@ -11,17 +11,18 @@
 
 namespace sand::grid {
 
-/// The squares between four cell centres of a field, and heights that may be moved. Around an open field lies a ring of
-/// cells at height 0; one that is a single cell wide lies beside its mirror image, since quads need two. Not
-/// thread-safe.
+/// Quads of a field, with heights that can be moved. A quad is the square between four cell centres. A ring of cells at
+/// height 0 surrounds an open field. A closed field that is one cell wide lies beside its mirror image, because quads
+/// need two cells. Not thread-safe.
 class QuadEnergy {
 public:
-    /// What belongs to a quad's southern, northern, western and eastern face; positive towards east and north.
+    /// One number for each face of a quad: southern, northern, western, eastern. Numbers are positive towards east and
+    /// north.
     using Faces = std::array<double, 4>;
 
     QuadEnergy(const HeightField& field, const Rules& rules);
 
-    /// Calls visit(x, y) for every quad, row by row, with the cell of the field at its south-west: -1 in the ring.
+    /// Calls visit(x, y) for every quad, row by row. (x, y) is the cell at the quad's south-west; -1 is in the ring.
     template <class Visit>
     void forEach(Visit visit) const {
         for (int y = -ring_; y + ring_ + 1 < down_; ++y) {
@@ -30,19 +31,21 @@ public:
             }
         }
     }
-    /// Of the heights across the faces [unit], those towards north as the slope that they would be towards east.
+    /// Returns the differences of height across the faces [unit]. A difference towards north is scaled to the
+    /// difference towards east with the same slope.
     [[nodiscard]] Faces differences(int x, int y) const;
-    /// The greatest root of half the sum of a quad's four squared differences [unit].
+    /// Returns the largest slope of a quad [unit]: the square root of half the sum of its four squared differences.
     [[nodiscard]] double steepest() const;
-    /// Slope north per difference, over slope east per difference.
+    /// Returns the slope north per difference, divided by the slope east per difference.
     [[nodiscard]] double northing() const { return northing_; }
-    /// How often a cell counts: twice beside its mirror image.
+    /// Returns how often each cell counts: twice if it lies beside its mirror image.
     [[nodiscard]] double images() const;
 
-    /// Moves heights a little, and by no more than it takes as far as iterating tells, until no quad is steeper than
-    /// `threshold` [unit]: exactly, but for rounding.
+    /// Moves heights until no quad is steeper than `threshold` [unit], except for rounding. The iteration keeps the
+    /// changes small.
     void flatten(double threshold);
-    /// Summed over the cells [unit²], as often as they count; of the same field.
+    /// Returns the squared distance to `other`, summed over the cells as often as they count [unit²]. Both must come
+    /// from the same field.
     [[nodiscard]] double squaredDistanceTo(const QuadEnergy& other) const;
 
 private:
@@ -58,7 +61,7 @@ private:
 
     int columns_, rows_;
     int ring_;
-    int across_, down_;  // [cell], with the ring or the mirror image
+    int across_, down_;  // size with the ring or the mirror image [cell]
     double northing_;
     std::vector<double> heights_;  // [unit], row by row
 };

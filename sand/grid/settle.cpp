@@ -31,7 +31,7 @@ bool isAtRest(const HeightField& field, const Rules& rules, CodePath path) {
     return sameHeights(swept, field);
 }
 
-/// Heights that may have left the range of HeightField, and the fluxes that made them.
+/// Heights that may be outside the range of HeightField, and the fluxes that made them.
 class Draft {
 public:
     Draft(const HeightField& field, bool open)
@@ -60,8 +60,8 @@ public:
         }
     }
 
-    /// Rounding, and what the last iteration left to do, may push a cell past the extremes: it then shares the surplus
-    /// with its neighbours. False when after some rounds a cell is still beyond them.
+    /// Shares the surplus of cells beyond the extremes with their neighbours. Rounding, and errors that the last
+    /// iteration left, may push a cell beyond them. Returns false if a cell is still beyond them after some rounds.
     [[nodiscard]] bool keepWithin(const Extremes& extremes) {
         constexpr int kRounds = 64;
         for (int round = 0; round < kRounds; ++round) {
@@ -83,7 +83,7 @@ public:
         return false;
     }
 
-    /// The volume that left over the rim [unit · cell].
+    /// Returns the volume that left over the rim [unit · cell].
     [[nodiscard]] std::int64_t outflow() const {
         std::int64_t sum = 0;
         for (int y = 0; y < rows_; ++y) {
@@ -112,7 +112,7 @@ private:
     }
     std::int64_t& height(int x, int y) { return heights_[index(x, y)]; }
 
-    /// Spreads `over` evenly; the remainder goes to the neighbours named first.
+    /// Spreads `over` evenly over the neighbours of a cell. The remainder goes to the neighbours named first.
     void share(int x, int y, std::int64_t over) {
         const std::array<bool, 4> has{x > 0, x + 1 < columns_, y > 0, y + 1 < rows_};
         std::int64_t neighbours = std::count(has.begin(), has.end(), true);
@@ -146,7 +146,7 @@ private:
     NetFlux flux_;
 };
 
-/// Replaces the field by its projection, or leaves it as it is where that is not possible.
+/// Replaces the field by its projection, or leaves it unchanged if that is not possible.
 void project(HeightField& field, const Rules& rules, NetFlux* flux, CodePath path, Settled& result) {
     Extremes extremes = extremesOf(field);
     const bool open = rules.rim == Rim::open;
@@ -159,7 +159,7 @@ void project(HeightField& field, const Rules& rules, NetFlux* flux, CodePath pat
     Draft draft(field, open);
     draft.apply(projection);
     if (open) {
-        extremes.least = 0;  // where it falls to
+        extremes.least = 0;  // the height to which sand falls
     }
     if (draft.keepWithin(extremes)) {
         draft.store(field, flux);

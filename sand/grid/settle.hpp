@@ -10,22 +10,25 @@
 
 namespace sand::grid {
 
+/// Result of settle().
 struct Settled {
-    int iterations = 0;        // of the dual projection on the field's own cells; 0: sweeps alone did the work
-    int sweeps = 0;            // that brought it to rest
-    std::int64_t outflow = 0;  // over an open rim [unit · cell]
+    int iterations = 0;        // iterations of the dual projection on the field's own cells; 0 if only sweeps ran
+    int sweeps = 0;            // sweeps until all sand was at rest
+    std::int64_t outflow = 0;  // volume that left over an open rim [unit · cell]
 };
 
-/// Lets the sand come to rest at once: a projection that needs O(side) iterations (dual_projection.hpp), then sweeps
-/// of the rules' scheme until nothing moves. For a scene as it is loaded, and as the reference of error figures; how
-/// it got there is no picture of sand.
+/// Lets the sand come to rest at once. A projection of O(side) iterations (dual_projection.hpp) comes first, then
+/// sweeps of the rules' scheme until no sand moves. Scenes use it while they load, and error figures use it as
+/// reference. The states in between do not look like sliding sand.
 ///
-/// Volume is exact, and no cell ends higher than the highest or lower than the lowest was. A field at rest is left
-/// alone, one that is at rest only thanks to a start threshold above the threshold too; any other settles to the
-/// threshold. A field that lies below 0 anywhere under an open rim, or whose projection would leave the extremes, is
-/// swept only: that ends too, but takes O(side²) sweeps. It knows neither bedrock nor walls. The result depends on
-/// nothing but the arguments, and not on `path`. Memory: 75 bytes per cell of the box in which sand moves. Where `flux`
-/// is not null, what passed every face is added to it.
+/// Volume is exact. No cell ends higher than the highest or lower than the lowest cell of the start. A field at rest
+/// does not change, even if it rests only because the start threshold is above the threshold. Any other field settles
+/// to the threshold.
+///
+/// A field with an open rim that has heights below 0, or whose projection would leave the extremes, is only swept. That
+/// ends too, but takes O(side²) sweeps. The function knows neither bedrock nor walls. The result does not depend on
+/// `path`. The flux through every face is added to `flux` unless that is null. Memory: 75 bytes per cell of the box in
+/// which sand moves.
 Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr, CodePath path = CodePath::automatic);
 
 }  // namespace sand::grid

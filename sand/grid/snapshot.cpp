@@ -36,7 +36,7 @@ Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, int columns, int 
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
     copy.inertia = Inertia::decode(reader, columns, rows);
     if (!reader.atEnd()) {
-        throw base::FormatError("sand with more behind it");
+        throw base::FormatError("sand with further bytes behind it");
     }
     return copy;
 }
@@ -85,7 +85,7 @@ void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow)
 void Undo::keep(const Snapshot& copy) {
     copy_.reset();
     keep(copy.field, copy.inertia, copy.outflow);
-    touch(copy_->field.bounds());  // nobody knows how far the field has come since
+    touch(copy_->field.bounds());  // the field may differ from `copy` everywhere
 }
 
 std::vector<CellRect> Undo::putBackHeights(HeightField& field) {

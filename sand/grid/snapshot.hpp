@@ -13,14 +13,15 @@
 
 namespace sand::grid {
 
-/// The sand of a height field.
+/// Snapshot of the sand of a height field.
 class Snapshot final : public SurfaceCopy {
 public:
     Snapshot(HeightField heights, Inertia fluxes, std::int64_t over)
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
     [[nodiscard]] base::Bytes encode() const override;
-    /// Of a field like this one. Throws base::FormatError when the bytes are none, or go on behind it.
+    /// Reads what encode() wrote for a field of this size. Throws base::FormatError for invalid bytes, or if further
+    /// bytes follow.
     static Snapshot decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize);
 
     HeightField field;
@@ -28,22 +29,23 @@ public:
     std::int64_t outflow = 0;  // [unit · cell]
 };
 
-/// The sand before a stroke, for an undo.
+/// Sand before a stroke, kept for an undo.
 ///
-/// The first keep() copies the whole field; every later one only the tiles that were touched since the one before, and
-/// an undo writes only those back. Costs four bytes a cell from the first stroke on, and nothing before.
+/// The first keep() copies the whole field. Each later one copies only the tiles that were touched since the last
+/// keep(), and an undo writes back only those. It takes four bytes per cell from the first stroke on, and no memory
+/// before.
 class Undo {
 public:
-    /// These cells may now differ from what is kept.
+    /// Records that `cells` may now differ from the kept sand.
     void touch(const CellRect& cells);
     void keep(const HeightField& field, Inertia inertia, std::int64_t outflow);
     void keep(const Snapshot& copy);
-    /// Nothing is there to put back any more; what was copied still spares the next keep() most of its work.
+    /// Drops the kept sand. The copy remains, so that the next keep() has little to copy.
     void forget() { kept_ = false; }
 
-    /// The sand as it was kept last; null when there is none.
+    /// Returns the sand that was kept last, or null if no sand is kept.
     [[nodiscard]] const Snapshot* kept() const { return kept_ ? &*copy_ : nullptr; }
-    /// Writes the heights that may differ back into `field`, and returns where. Something must be kept.
+    /// Writes the heights that may differ back into `field`, and returns their cells. Requires kept sand.
     [[nodiscard]] std::vector<CellRect> putBackHeights(HeightField& field);
 
 private:
@@ -52,7 +54,7 @@ private:
     std::optional<Snapshot> copy_;
     bool kept_ = false;
     int tilesAcross_ = 0;
-    std::vector<std::uint8_t> touched_;  // by tile, since the copy was as the field is
+    std::vector<std::uint8_t> touched_;  // per tile: 1 if touched since the copy was equal to the field
 };
 
 }  // namespace sand::grid

@@ -10,9 +10,9 @@
 namespace sand::grid {
 namespace {
 
-constexpr int kSweepsToRest = 1 << 20;  // more than any field that is worth waiting for
+constexpr int kSweepsToRest = 1 << 20;  // more than any field takes that is worth waiting for
 
-constexpr int kBlock = Erosion::kDefaultBlock;  // [cell], of the changes that takeChange() returns
+constexpr int kBlock = Erosion::kDefaultBlock;  // [cell], side of the blocks that takeChange() returns
 
 int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
 
@@ -37,7 +37,7 @@ GridSurface::GridSurface(const Rules& rules, const HeightField& field, std::shar
 
 std::unique_ptr<Surface> GridSurface::clone() const {
     auto copy = std::make_unique<GridSurface>(*this);
-    copy->changed_.reset();  // whoever draws the copy has seen nothing of it
+    copy->changed_.reset();  // the copy's first takeChange() returns a whole change
     return copy;
 }
 
@@ -93,13 +93,13 @@ void GridSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) 
 
 void GridSurface::changeRules(const Rules& rules) {
     rules_ = rules;
-    // Wakes everything: sand may stand too steep now, or have been held back by a larger tool.
+    // Wakes all sand: it may be too steep now, or a larger tool may have held it back.
     erosion_.changeRules(rules_);
 }
 
 void GridSurface::settle() {
     if (ground_ != nullptr) {
-        // The projection knows no rock and no walls; sweeps do, and take longer.
+        // The projection ignores rock and walls. Sweeps respect them, but take longer.
         outflow_ += erosion_.sweep(field_, kSweepsToRest);
         return;
     }
@@ -150,7 +150,7 @@ void GridSurface::replace(const SurfaceCopy& copy) {
 void GridSurface::audit(int tiles) {
     for (int i = 0; i < std::min(tiles, hash_.tileCount()); ++i) {
         const int tile = hash_.auditNext(field_);
-        // A flux that went bad where nothing flows would make sand from nothing.
+        // A corrupted flux in a block at rest would create sand.
         if (erosion_.amiss(hash_.cellsOf(tile))) {
             hash_.spoil(tile);
         }

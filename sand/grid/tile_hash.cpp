@@ -30,7 +30,7 @@ void TileHash::touch(const CellRect& cells) {
 }
 
 void TileHash::rehash(const HeightField& field, int tile) {
-    // The heights of a tile, packed: one call on 4 KiB is faster than 32 streamed rows.
+    // Packs the heights of the tile, because one call on 4 KiB is faster than 32 streamed rows.
     std::array<std::int32_t, kHashTile * kHashTile> packed;
     const CellRect cells = cellsOf(tile);
     auto end = packed.begin();

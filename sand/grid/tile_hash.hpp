@@ -11,24 +11,25 @@ namespace sand::grid {
 
 inline constexpr int kHashTile = 32;  // [cell], side of a hash tile
 
-/// A hash of all heights that costs only what changed: one XXH3 per 32×32 tile, summed modulo 2^64.
+/// Hash of all heights. An update costs only the changed tiles.
 ///
-/// A tile's index is its seed, so that exchanged tiles do not cancel. The tiling is part of the definition and does
-/// not follow the blocks that erosion works in.
+/// The hash is the sum, modulo 2^64, of one XXH3 hash per tile of 32 × 32 cells. A tile's index is its seed, so that
+/// exchanged tiles do not cancel. The division into tiles is part of the definition. It does not follow the blocks of
+/// Erosion.
 class TileHash final : public HashTiles {
 public:
     explicit TileHash(const HeightField& field);
 
     /// Marks the tiles that overlap `cells` as changed.
     void touch(const CellRect& cells);
-    /// Hashes the changed tiles, and returns the sum over all.
+    /// Hashes the changed tiles again. Returns the sum over all tiles.
     [[nodiscard]] std::uint64_t update(const HeightField& field);
-    /// Hashes the next tile again, in turn over the field, whether or not it changed; returns which it was.
+    /// Hashes the next tile of the field again, whether or not it changed. Returns its index.
     int auditNext(const HeightField& field);
-    /// The tile is known to be corrupt somewhere that its hash does not reach: makes it differ.
+    /// Makes the hash of `tile` differ. Call it if the tile is corrupt in memory that its hash does not cover.
     void spoil(int tile);
 
-    /// Tiles go row by row, south first.
+    /// Returns the cells of `tile`. Tiles are numbered row by row from the south.
     [[nodiscard]] CellRect cellsOf(int tile) const override;
 
 private:
