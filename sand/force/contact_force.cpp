@@ -15,12 +15,13 @@ struct Direction {
     double x, y;
 };
 
-/// Sample points of the ring for R = 1: circles that halve equal areas, each turned against the one inside it.
+/// Returns sample points of the ring for R = 1. They lie on circles that divide the ring into equal areas. Each circle
+/// is turned against the one inside it.
 const std::array<Direction, kRadii * kAngles>& ring() {
     static const auto points = [] {
         std::array<Direction, kRadii * kAngles> result{};
         for (int i = 0; i < kRadii * kAngles; ++i) {
-            // To and fro across the ring: from one to the next is a short way, for whoever walks there.
+            // The order runs to and fro across the ring, so that the way from one point to the next is short for walks.
             const int ray = i / kRadii, along = i % kRadii;
             const int circle = ray % 2 == 0 ? along : kRadii - 1 - along;
             const double radius = std::sqrt(1 + 3 * (circle + 0.5) / kRadii);
@@ -60,8 +61,8 @@ Contact measureContact(const SurfacePatch& patch, Vec3 centre, const Contour& to
     contact.share = static_cast<double>(inside) / (kRadii * kAngles);
     const Dual underside{centre.z + tool.lowest, {0, 0, 1}};
     contact.depth = (1.0 / inside) * sum - underside;
-    // Least squares over a whole ring: Σdx² = Σdy² = square/2, the mixed sums vanish. Over the rim they do not, and the
-    // force there is vertical.
+    // Least squares over a whole ring: Σdx² = Σdy² = square/2, and the mixed sums vanish. At the rim of the field they
+    // do not vanish, and the force is vertical.
     if (inside == kRadii * kAngles) {
         contact.slopeX = (2 / square) * momentX;
         contact.slopeY = (2 / square) * momentY;

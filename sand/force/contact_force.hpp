@@ -7,15 +7,15 @@
 #include "sand/force/surface_patch.hpp"
 #include "sand/force/vec3.hpp"
 
-/// What the hand feels. Forces read the sand and never change it; they may use libm.
+/// Forces that the hand feels. They read the sand and never change it. They may use libm.
 namespace sand::force {
 
 /// Depth and slope of the sand in the ring from one to two reaches around the tool, for the law of Dorjgotov et al.
 /// 2007. The tool has pushed aside the sand under it.
 struct Contact {
-    Dual depth;           // [scene unit] of the tool's lowest point under the ring's mean height; below 0 over it
-    Dual slopeX, slopeY;  // of the ring's plane
-    double share = 0;     // of the ring that lies over the field, 0 to 1
+    Dual depth;  // how far the tool's lowest point is below the ring's mean height [scene unit]; negative above it
+    Dual slopeX, slopeY;  // slope of the ring's plane
+    double share = 0;     // share of the ring that lies over the field, 0 to 1
 
     [[nodiscard]] Gauges gauges() const { return {4, {depth, slopeX, slopeY, {share, {}}}}; }
     explicit Contact(const Gauges& gauges)
@@ -29,11 +29,11 @@ struct Contact {
 /// printed without its bracket. The force is not bounded.
 [[nodiscard]] Response contactForce(const ForceConstants& constants, const Contour& tool, const Contact& contact);
 
-inline constexpr double kDeviceLimit = 3.3;     // [N], of a Touch
-inline constexpr double kStaleSurface = 0.050;  // [s]
+inline constexpr double kDeviceLimit = 3.3;     // largest force of a Touch [N]
+inline constexpr double kStaleSurface = 0.050;  // age from which a surface gives no force [s]
 
-/// What may be sent to a device: nothing that is no number, nothing from a surface older than kStaleSurface, and at
-/// most `limit` newtons, shortened without turning.
+/// Returns the force that may be sent to a device. It is 0 if `force` is not finite or if the surface is older than
+/// kStaleSurface. A force above `limit` [N] is shortened to it and keeps its direction.
 [[nodiscard]] Vec3 guarded(Vec3 force, double surfaceAge /* [s] */, double limit = kDeviceLimit);
 
 }  // namespace sand::force

@@ -13,9 +13,9 @@ namespace sand::force {
 /// Purchart et al. 2012, relative to the tool's centre.
 struct Contour {
     static constexpr int kPoints = 32;
-    std::array<Vec3, kPoints> points{};  // [scene unit] on the outline, counter-clockwise; z is the underside's there
-    double reach = 0;                    // [scene unit], of the farthest of them in the plane; 0: no tool
-    double lowest = 0;                   // [scene unit], of the underside, ≤ 0
+    std::array<Vec3, kPoints> points{};  // on the outline, counter-clockwise; z is the underside there [scene unit]
+    double reach = 0;   // largest horizontal distance of a control point from the centre [scene unit]; 0: no tool
+    double lowest = 0;  // lowest point of the underside [scene unit], ≤ 0
 
     /// Returns the contour of a sphere, the tool of Dorjgotov et al. 2007. Its points lie on a circle of `radius`,
     /// level with the sphere's lowest point.

@@ -7,15 +7,15 @@
 namespace sand::force {
 namespace {
 
-/// A gradient that resting sand can have. Steeper is the wall that the tool itself has cut around its outline, a cell
-/// thick, which goes with it.
+/// Limits the gradient to one that resting sand can have. A steeper gradient is that of the wall that the tool has cut
+/// around its outline. That wall is a cell thick and moves with the tool.
 Dual resting(Dual height) {
     constexpr double kSteepest = 1;
     const double slope = std::hypot(height.slope.x, height.slope.y);
     return slope > kSteepest ? Dual{height.value, (kSteepest / slope) * height.slope} : height;
 }
 
-/// What of dh a control point acts with, its derivative, and how much of the point is in touch, 0 to 1.
+/// The part of dh with which a control point acts, its derivative, and how much the point touches the sand, 0 to 1.
 struct Pressed {
     double depth = 0, rate = 0, touch = 0;
 };
@@ -31,7 +31,7 @@ Pressed pressed(const ForceConstants& constants, double dh) {
     if (dh >= tolerance) {
         return {dh, 1, 1};
     }
-    // t² (2 − t): value and slope are 0 at t = 0, and dh's own at t = 1.
+    // t² (2 − t): value and slope are 0 at t = 0, and equal those of dh at t = 1.
     const double t = dh / tolerance;
     return {tolerance * t * t * (2 - t), t * (4 - 3 * t), t};
 }
@@ -52,7 +52,7 @@ Gauges measureControlPoints(const ForceConstants& constants, const SurfacePatch&
         const Vec3 at = place + tool.points[i];
         const Dual underside{at.z, {0, 0, 1}};
         const Vec3 beside = at + patch.cutBeyond() * outward(tool.points[i]);
-        // Just out of touch, so that a surface which replaces this one is not met with a leap.
+        // A point beside the field is just out of touch, so that the next surface does not make the force jump.
         result.dials[i] = !patch.empty() && patch.overField(at.x, at.y)
                               ? inUnits * (resting(patch.tangent(beside.x, beside.y)) - underside)
                               : Dual{-constants.tolerance, {}};
@@ -83,7 +83,7 @@ Response controlPointsForce(const ForceConstants& constants, const Contour& tool
     const double each = constants.maxForce / static_cast<double>(gauges.count);
     felt.push = each * Vec3{x.value, y.value, z.value};
     felt.stiffness = each * steepness(x, y, z);
-    // The gel effect is whole or absent in print; here it comes and goes with the points in touch.
+    // As printed, the gel effect acts fully or not at all. Here it grows with the number of points that touch the sand.
     const double gel = constants.literal ? mostTouch : touch / static_cast<double>(gauges.count);
     const double rub = constants.frictionCoefficient * std::max(felt.push.z, 0.0) / (constants.frictionSpeed / 60);
     felt.drag = gel * constants.maxForce / constants.unitLength + rub;

@@ -7,11 +7,11 @@
 
 namespace sand::force {
 
-/// A dual number: a value, and its gradient over the place of the tool. Arithmetic carries both (forward
-/// differentiation), so that a law written once gives its Jacobian too.
+/// Dual number: a value, and its gradient over the place of the tool. Arithmetic computes both (forward
+/// differentiation), so that a law written once also gives its Jacobian.
 struct Dual {
     double value = 0;
-    Vec3 slope;  // [1/scene unit] of the value's unit
+    Vec3 slope;  // gradient [unit of the value / scene unit]
 };
 [[nodiscard]] inline Dual operator+(Dual a, Dual b) { return {a.value + b.value, a.slope + b.slope}; }
 [[nodiscard]] inline Dual operator+(Dual a, double b) { return {a.value + b, a.slope}; }
@@ -30,7 +30,7 @@ struct Dual {
     return {root, (0.5 / root) * a.slope};
 }
 [[nodiscard]] inline Dual expm1(Dual a) { return {std::expm1(a.value), std::exp(a.value) * a.slope}; }
-/// Between 0 and 1, and flat beyond.
+/// Returns `a` clamped to [0, 1]. The gradient is 0 outside.
 [[nodiscard]] inline Dual clamped(Dual a) { return a.value <= 0 ? Dual{} : a.value >= 1 ? Dual{1, {}} : a; }
 
 }  // namespace sand::force

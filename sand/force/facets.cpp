@@ -8,21 +8,23 @@
 namespace sand::force {
 namespace {
 
-constexpr std::int64_t kParts = 256;  // of a probe unit, to which a place is rounded
+constexpr std::int64_t kParts = 256;  // parts per probe unit; places are rounded to a part
 
 std::size_t at(std::int32_t number) { return static_cast<std::size_t>(number); }
 
-/// The whole number nearest to it, halves up: what floor() would say, which asks a library.
+/// Returns the whole number nearest to `value`, halves up. This equals floor(value + 0.5), which would call a library.
 std::int64_t nearest(double value) {
     const double raised = value + 0.5;
     const auto cut = static_cast<std::int64_t>(raised);
     return cut - (static_cast<double>(cut) > raised ? 1 : 0);
 }
 
-/// Whether a triangle owns the places on its edge from a to b; the one beyond runs the other way round, and does not.
+/// Returns whether a triangle owns the places on its edge from a to b. In the triangle beyond, the edge runs the other
+/// way round, so that only one of them owns it.
 bool owns(std::int64_t acrossX, std::int64_t acrossY) { return acrossY < 0 || (acrossY == 0 && acrossX > 0); }
 
-/// Whether a triangle and a square have a place in common: exactly, for a walk could end in one that only nearly does.
+/// Returns whether a triangle and a square have a place in common. The test is exact, because otherwise a walk could
+/// end in a triangle that only nearly reaches into the square.
 bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int32_t, 4>& square) {
     const auto& [a, b, c] = corner;
     const auto [west, south, east, north] = square;
@@ -31,7 +33,7 @@ bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int3
         return false;
     }
     if (a.x >= west && a.x <= east && a.y >= south && a.y <= north) {
-        return true;  // as nearly all
+        return true;  // true for nearly all triangles
     }
     const std::array<tin::Place, 4> ends{{{west, south}, {east, south}, {east, north}, {west, north}}};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -45,7 +47,7 @@ bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int3
 
 }  // namespace
 
-/// Without a branch: on which side a place is nobody can foretell.
+/// Has no branch, because the processor cannot predict on which side a place is.
 std::array<std::int64_t, 3> Facets::Facet::within(const Spot& spot) const {
     std::array<std::int64_t, 3> result{};
     for (std::size_t side = 0; side < 3; ++side) {
@@ -60,7 +62,7 @@ void Facets::Index::clear() {
 }
 
 std::size_t Facets::Index::placeOf(std::int32_t slot) const {
-    const std::size_t last = places_.size() - 1;  // their count is a power of two
+    const std::size_t last = places_.size() - 1;  // the size of `places_` is a power of two
     std::size_t place = static_cast<std::uint32_t>(slot) * 0x9e3779b1U >> 8U & last;
     while (places_[place].first != -1 && places_[place].first != slot) {
         place = (place + 1) & last;
@@ -102,7 +104,7 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
     partsPerSceneUnit_ = kParts / unit;
     middleX_ = static_cast<double>(kParts * middle.x);
     middleY_ = static_cast<double>(kParts * middle.y);
-    // On the rim itself the triangle that owns a place could be one beyond it.
+    // On the rim itself, the triangle that owns a place could be outside the field.
     const auto inField = [](std::int32_t side, std::int32_t end, std::int32_t from) {
         return static_cast<double>(std::clamp<std::int64_t>(kParts * side, 1, kParts * end - 1) - kParts * from);
     };
@@ -118,8 +120,8 @@ bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::in
     return true;
 }
 
-/// To and fro over the square: from one field's middle to the next is a short walk. With half as many fields as facets;
-/// with four times as many a query takes a tenth less, and a copy a fifth more.
+/// Walks to and fro over the square, because the way from one field's middle to the next is then short. There are half
+/// as many fields as facets. With four times as many, a query takes a tenth less time and a copy a fifth more.
 void Facets::findStarts() {
     const double side = std::ceil(std::sqrt(static_cast<double>(facets_.size()) / 2));
     startsPerSide_ = std::min<std::size_t>(static_cast<std::size_t>(side), kMostStarts);
@@ -162,7 +164,8 @@ void Facets::levelHoles(const tin::SurfaceView& tin) {
     }
 }
 
-/// The square is convex: triangles that reach into it hang together by their edges, and so does the search.
+/// Searches from triangle to triangle across edges. The square is convex, so that all triangles that reach into it are
+/// connected by edges.
 bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
     const auto reaches = [&](std::int32_t slot) {
         const auto& corner = mesh.triangles[at(slot)].corner;
@@ -189,9 +192,9 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
 
 void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) {
     const tin::Triangle& triangle = tin.triangles.triangles[at(slot)];
-    // From the smallest vertex on, for where a mesh begins its corners is no matter, and must not show in a rounding.
+    // Begins with the smallest vertex, so that the order of the corners in the mesh does not affect rounding.
     const auto first = static_cast<std::size_t>(std::ranges::min_element(triangle.corner) - triangle.corner.begin());
-    std::array<std::int64_t, 3> x{}, y{};  // [part] from the middle
+    std::array<std::int64_t, 3> x{}, y{};  // from the middle of the square [part]
     std::array<double, 3> height{};
     Facet facet{};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -220,9 +223,9 @@ void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Plac
     planes_.push_back({height[0] - east * static_cast<double>(x[0]) - north * static_cast<double>(y[0]), east, north});
 }
 
-/// From a facet nearby, always beyond some edge that the place lies beyond. Which one is left to chance, for
-/// walks of one rule can go round constraints for ever; where they end does not depend on it. An edge of the walk that
-/// leads out of the square has another beside it that does not.
+/// Walks from a nearby facet to the facet of the place. Each step crosses an edge beyond which the place lies. If there
+/// are two such edges, chance decides, because walks with a fixed rule can go round constraints forever. The end does
+/// not depend on that choice. If one such edge leads out of the square, another one does not.
 std::int32_t Facets::find(const Spot& spot, std::int32_t start) const {
     std::uint32_t chance = 1;
     std::int32_t number = start, before = -1;

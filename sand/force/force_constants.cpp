@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kTiny = 1e-9, kHuge = 1e9;
 
-// The first three are the oldest, which a scene's encoding keeps apart.
+// The first three keys are the oldest. The encoding of a scene keeps them apart.
 constexpr std::size_t kOldest = 3;
 constexpr std::array kConstantKeys{
     ForceKey{"stiffness", &ForceConstants::stiffness, 0, kHuge},
@@ -30,7 +30,7 @@ template <class Choice>
 Choice decodeChoice(base::ByteReader& reader, int choices) {
     const auto value = reader.get<std::uint8_t>();
     if (value >= choices) {
-        throw base::FormatError("a scene with a force law that nobody knows");
+        throw base::FormatError("a scene with an unknown force law");
     }
     return static_cast<Choice>(value);
 }

@@ -10,18 +10,19 @@ namespace sand {
 
 /// The law that the hand feels: `repulse` of Dorjgotov et al. 2007, `controlPoints` of Purchart et al. 2012.
 enum class ForceLaw : std::uint8_t { repulse, controlPoints };
-/// What is felt between two steps of the sand (sand/force/force_model.hpp).
+/// Source of the force between two steps of the sand; see sand/force/force_model.hpp.
 enum class Between : std::uint8_t { local, hold, interpolate };
 /// The part of the velocity that friction acts against. Dorjgotov et al. 2007 calls it vertical and describes a drag.
 enum class FrictionDirection : std::uint8_t { tangential, full, vertical };
 
-/// Constants of both papers' force laws (docs/forces.md). Forces are no state of the sand: never part of a digest.
+/// Constants of both force laws (docs/forces.md). Forces are not part of the sand's state, so that no digest contains
+/// these constants.
 struct ForceConstants {
     // Dorjgotov et al. 2007.
     double stiffness = 1000;     // k_s [N]
     double depthExponent = 0.5;  // k_c [1/scene unit]
-    double friction = 10;        // k_f [frame/scene unit], a frame being 1/60 s
-    double frictionArea = 1;     // k_a [sphere's]: the printed k_f holds with 1
+    double friction = 10;        // k_f [frame/scene unit]; a frame is 1/60 s
+    double frictionArea = 1;     // k_a [area of the sphere]; the printed k_f holds with 1
     FrictionDirection frictionDirection = FrictionDirection::tangential;
     // Purchart et al. 2012; lengths are in unitLength.
     double maxForce = 10;            // F_M [N]
@@ -31,19 +32,19 @@ struct ForceConstants {
     double frictionSpeed = 0.5;      // [scene unit/s], at which that friction is mu times the normal force
     // Both laws.
     ForceLaw law = ForceLaw::repulse;
-    bool literal = false;  // as printed, jumps and all; for comparison
+    bool literal = false;  // whether formulas are computed as printed, with their jumps; for comparison
     Between between = Between::local;
-    double validity = 0.5;       // [tool reach], how far the local model is believed from where it was made
-    double recoveryTime = 0.05;  // [s], time constant with which a new local model takes over
+    double validity = 0.5;       // [tool reach], distance over which the local model is valid
+    double recoveryTime = 0.05;  // time constant with which a new local model takes over [s]
 
-    /// What a scene's encoding ends with. The three oldest constants stand elsewhere in it.
+    /// Writes all constants except the three oldest, which are elsewhere in the encoding of a scene.
     void encodeRest(base::ByteWriter& writer) const;
-    /// Throws base::FormatError for numbers that no scene file gives.
+    /// Reads what encodeRest() wrote. Throws base::FormatError for numbers that no scene file can contain.
     void decodeRest(base::ByteReader& reader);
     friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
 
-/// A number of ForceConstants that has a key in [force].
+/// A number of ForceConstants that has a key in [force] of a scene file.
 struct ForceKey {
     const char* name;
     double ForceConstants::*constant;

@@ -9,8 +9,8 @@
 
 namespace sand::force {
 
-/// All that a law reads off the sand at a place: a few numbers, each with its gradient over the place. A law is a
-/// function of these and of the tool alone; the local model is these numbers, carried on along their gradients.
+/// All numbers that a law reads from the sand at a place, each with its gradient over the place. A law depends only on
+/// these numbers and the tool. The local model continues these numbers along their gradients.
 struct Gauges {
     static constexpr std::size_t kMost = Contour::kPoints;
     std::size_t count = 0;

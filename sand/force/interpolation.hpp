@@ -16,7 +16,7 @@ namespace sand::force {
 /// last.
 class Interpolation {
 public:
-    /// Once a tick. `next` is looked at when `replaced`.
+    /// Returns the response of this tick. Call it once per tick. `next` is read only if `replaced` or `forget` is true.
     [[nodiscard]] const Response& at(bool replaced, bool forget, bool literal, const Response& next) {
         if (forget) {
             from_ = to_ = out_ = next;

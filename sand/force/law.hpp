@@ -4,7 +4,7 @@
 #include "sand/force/contact_force.hpp"
 #include "sand/force/control_points.hpp"
 
-/// The scene's law in two halves, so that what lies between two surfaces can come between them.
+/// The scene's law in two parts, so that the model between two surfaces can work between them.
 namespace sand::force {
 
 [[nodiscard]] inline Gauges measure(const ForceConstants& constants, const SurfacePatch& patch, const Contour& tool,
@@ -16,7 +16,7 @@ namespace sand::force {
     return constants.law == ForceLaw::repulse ? contactForce(constants, tool, Contact(gauges))
                                               : controlPointsForce(constants, tool, gauges);
 }
-/// The law on one surface, exactly: for whoever asks once a step.
+/// Returns the exact response of the law on one surface, for callers that need it once per step.
 [[nodiscard]] inline Response respond(const ForceConstants& constants, const SurfacePatch& patch, const Contour& tool,
                                       Vec3 place) {
     return respond(constants, tool, measure(constants, patch, tool, place));

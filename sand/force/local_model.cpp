@@ -7,17 +7,18 @@
 namespace sand::force {
 namespace {
 
-constexpr double kShortestWay = 0.1;  // [tool reach], from which something can be learnt
-constexpr double kMotion = 0.003;     // [s], over which the tool's motion is averaged: a tick's is mostly resolution
-constexpr double kSlowest = 0.1;      // of the rate of recovery, whatever the tool does
+constexpr double kShortestWay = 0.1;  // [tool reach], shortest way from which the model learns
+constexpr double kMotion =
+    0.003;  // [s], time over which motion is averaged; the motion of one tick is mostly resolution
+constexpr double kSlowest = 0.1;  // smallest rate of recovery, as a share of the full rate
 
 }  // namespace
 
 Gauges LocalModel::at(const ForceConstants& constants, const SurfacePatch& surface, bool replaced, bool forget,
                       const Contour& tool, Vec3 place, double time) {
     const Vec3 step = place - origin_;
-    const double moved = std::hypot(step.x, step.y);  // across; up and down the tangent is exact
-    // A hand that leaps has no business with the sand it came from.
+    const double moved = std::hypot(step.x, step.y);  // horizontally; vertically the tangent is exact
+    // A hand that jumps leaves the sand that the model describes.
     const bool unknown = forget || !(moved < 2 * tool.reach);
     const double span = time - time_;
     motion_ = unknown ? Vec3{} : motion_ + (1 - std::exp(-span / kMotion)) * (place - place_ - motion_);
@@ -26,7 +27,7 @@ Gauges LocalModel::at(const ForceConstants& constants, const SurfacePatch& surfa
     if (unknown) {
         tangent_ = mark_ = measure(constants, surface, tool, place);
         origin_ = markPlace_ = place;
-        // Control points lie where the tool pushes: nothing there is believed before it has come true.
+        // Control points lie where the tool pushes. There, no part of the tangent is assumed before it has come true.
         share_.fill(constants.law == ForceLaw::repulse ? 1 : 0);
         debt_.fill(0);
     } else if (replaced || !(moved <= constants.validity * tool.reach)) {
@@ -47,7 +48,7 @@ Gauges LocalModel::at(const ForceConstants& constants, const SurfacePatch& surfa
     return carriedBy(place_ - origin_);
 }
 
-/// Less of the debt, and hardly less of it while the force would change along with the motion.
+/// Reduces the debt. Reduces it only a little while that would change the force along the motion.
 void LocalModel::recover(const ForceConstants& constants, const Contour& tool, double span) {
     if (!(constants.recoveryTime > 0)) {
         debt_.fill(0);
@@ -79,7 +80,7 @@ Gauges LocalModel::carriedBy(Vec3 step) const {
     return result;
 }
 
-/// Compares what `before` foretold for the way across with what is there now.
+/// Compares what `before` predicted for the horizontal way with the gauges at its end.
 void LocalModel::learn(const Gauges& before, Vec3 step) {
     const Vec3 across{step.x, step.y, 0};
     for (std::size_t i = 0; i < tangent_.count; ++i) {

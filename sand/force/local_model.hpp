@@ -5,22 +5,25 @@
 
 namespace sand::force {
 
-/// The local linear model: the sand as the law saw it at the last stable surface, and its tangent there.
+/// Local linear model: the sand as the law saw it at the last stable surface, and its tangent there.
 ///
-/// What is linear is what the law reads (Gauges), not the force: value and Jacobian where the model was made are the
-/// law's own, and away from there a force neither pulls nor misses that the tool has left the sand.
+/// The model is linear in the numbers that the law reads (Gauges), not in the force. Where the model was made, value
+/// and Jacobian are therefore the law's own. Away from there, the force never pulls, and it ends where the tool leaves
+/// the sand.
 ///
-/// Two things are not the tangent's. Sand that the tool pushes goes with it, and does not rise as the tangent across it
-/// says: what share of the tangent came true on the last bit of way is believed on the next. And when a surface is
-/// replaced, or the tool leaves the radius within which the tangent is believed, the new one takes over with the time
-/// constant ForceConstants::recoveryTime, as if the sand had moved that slowly: no force jumps.
+/// The model differs from the tangent in two ways. First, sand that the tool pushes moves with it, and does not rise as
+/// the tangent across it predicts. The share of the tangent that came true on the last part of the way is assumed for
+/// the next part. Second, a surface may be replaced, or the tool may leave the radius in which the tangent is valid.
+/// The new tangent then takes over with the time constant ForceConstants::recoveryTime, as if the sand had moved that
+/// slowly. The force therefore does not jump.
 ///
-/// Sand that a press has raised answers a frame late, as a spring with a delay, which gives energy to the hand that it
-/// pushes back late. So a change of the force that goes along with the tool's motion waits until it does not, or takes
-/// ten times as long (docs/figures.md has the energies).
+/// Sand that a press has raised answers a frame late. It acts as a spring with a delay, which gives energy to the hand
+/// because it pushes back late. A change of the force along the tool's motion therefore waits until it is no longer
+/// along the motion, or takes ten times as long (docs/figures.md has the energies).
 class LocalModel {
 public:
-    /// The gauges at `place`. `replaced`: the surface is not the last call's. `forget`: nothing is known of before.
+    /// Returns the gauges at `place` at `time` [s]. `replaced` says that the surface is not that of the last call.
+    /// `forget` says that the model knows no earlier call.
     [[nodiscard]] Gauges at(const ForceConstants& constants, const SurfacePatch& surface, bool replaced, bool forget,
                             const Contour& tool, Vec3 place, double time);
 
@@ -30,11 +33,11 @@ private:
     void recover(const ForceConstants& constants, const Contour& tool, double span /* [s] */);
 
     Gauges tangent_, mark_;
-    Vec3 origin_, markPlace_;                    // of either
-    std::array<double, Gauges::kMost> share_{};  // of the tangent that comes true across, 0 to 1
-    std::array<double, Gauges::kMost> debt_{};   // by how much the gauges are still what they were before
-    Vec3 place_, motion_;                        // of the last call; motion a tick, averaged
-    double time_ = 0;                            // [s], of the last call
+    Vec3 origin_, markPlace_;                    // places where tangent_ and mark_ were measured
+    std::array<double, Gauges::kMost> share_{};  // share of the tangent across that comes true, 0 to 1
+    std::array<double, Gauges::kMost> debt_{};  // remaining difference of the gauges from those of the previous tangent
+    Vec3 place_, motion_;                       // place of the last call; motion per tick, averaged
+    double time_ = 0;                           // time of the last call [s]
 };
 
 }  // namespace sand::force

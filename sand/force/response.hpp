@@ -7,16 +7,18 @@
 
 namespace sand::force {
 
-/// What the sand answers at one place. The velocity comes in last, because what of it is stable depends on the device.
+/// Response of the sand at one place. It does not contain a velocity, because the device decides which friction is
+/// stable.
 struct Response {
-    Vec3 push;             // [N], of the place alone
-    Vec3 normal{0, 0, 1};  // unit; friction is across it
-    double drag = 0;       // [N · frame/scene unit], a frame being 1/60 s
-    double stiffness = 0;  // [N/scene unit], the steepest that push is here
+    Vec3 push;             // force of the place alone [N]
+    Vec3 normal{0, 0, 1};  // unit vector; friction acts across it
+    double drag = 0;       // [N · frame/scene unit]; a frame is 1/60 s
+    double stiffness = 0;  // steepest change of `push` here [N/scene unit]
     FrictionDirection direction = FrictionDirection::tangential;
 };
 
-/// The part of a velocity that friction is against: across the normal, but for the literal choices.
+/// Returns the part of `velocity` that friction acts against. It is the part across the normal, except for the literal
+/// choices.
 [[nodiscard]] inline Vec3 rubbing(const Response& felt, Vec3 velocity) {
     switch (felt.direction) {
         case FrictionDirection::full:
@@ -27,13 +29,13 @@ struct Response {
             return velocity - dot(velocity, felt.normal) * felt.normal;
     }
 }
-/// Push and friction at a velocity [scene unit/frame], as the law says: not limited to what a device can bear.
+/// Returns push and friction at a velocity [scene unit/frame] by the law. A device may not bear that force.
 [[nodiscard]] inline Vec3 lawfulForce(const Response& felt, Vec3 velocity) {
     return felt.push - felt.drag * rubbing(felt, velocity);
 }
 
-/// The steepest that a force is: at most this many newtons per scene unit in any direction, and exactly that many where
-/// it changes along one direction only, as on level sand (Frobenius' norm of the Jacobian).
+/// Returns the steepness of a force [N/scene unit]: the Frobenius norm of its Jacobian. The force changes by at most
+/// that much in any direction. The bound is exact if the force changes along one direction only, as on level sand.
 [[nodiscard]] inline double steepness(const Dual& x, const Dual& y, const Dual& z) {
     return std::sqrt(dot(x.slope, x.slope) + dot(y.slope, y.slope) + dot(z.slope, z.slope));
 }

@@ -11,12 +11,12 @@ namespace sand::force {
 
 namespace {
 
-/// [cell]
+/// Returns how far a patch reaches from its centre [cell].
 int reachOf(double toolRadius, double cell) {
     return static_cast<int>(std::ceil(std::max(4 * toolRadius / cell, 8.0)));
 }
 
-/// From a tool's outline to the middle of what it has cut [scene unit].
+/// Returns the distance from a tool's outline to the middle of its cut [scene unit].
 double halfCut(const tin::SurfaceView& tin, double cell) { return 0.5 * tin.spacing * cell / kProbePerCell; }
 
 }  // namespace

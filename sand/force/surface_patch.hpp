@@ -12,54 +12,58 @@
 
 namespace sand::force {
 
-/// A copy of the sand around the tool, small enough to be handed to a force thread after every step.
+/// Copy of the sand around the tool, small enough to hand to a force thread after every step.
 ///
-/// It reaches four tool radii and at least eight cells from its centre, so that the hand may go on for a step, and no
-/// farther than the field. It takes every cell while a side has at most kMostCells of them, then every second, third
-/// and so on, counted from the field's corner, so that a hand that moves feels the same cells. Of a TIN it takes the
-/// triangles (Facets). Where these are more than Facets::kMost, it takes the height at the nominal cells' middles, of
-/// which a side has at most kMostHeights. Heights are [scene unit], positions [scene unit] from the field's south-west
-/// corner. Many threads may read.
+/// It reaches four tool radii and at least eight cells from its centre, but not beyond the field. The hand can
+/// therefore move on for a step. On a height field, the patch holds every cell if a side has at most kMostCells.
+/// Otherwise it holds every second, third … cell, counted from the field's corner, so that a moving hand feels the same
+/// cells. On a TIN, it holds the triangles (Facets). If there are more than Facets::kMost, it holds the heights at the
+/// middles of nominal cells, at most kMostHeights on a side.
+///
+/// Heights are in [scene unit]. Positions are in [scene unit] from the field's south-west corner. Many threads may
+/// read.
 class SurfacePatch {
 public:
-    static constexpr int kMostCells = 1024;  // on a side of a height field's patch
-    static constexpr int kMostHeights = 96;  // on a side of a TIN's: a height costs a walk through its triangles
+    static constexpr int kMostCells = 1024;  // most samples on a side for a height field
+    static constexpr int kMostHeights =
+        96;  // most on a side for a TIN, where a height costs a walk through its triangles
 
     SurfacePatch() = default;
     SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius /* [scene unit] */);
-    /// The triangles of a TIN of such nominal cells; empty where these are too many.
+    /// Takes the triangles of a TIN with nominal cells of `cellSize`. The patch is empty if there are too many.
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
-    /// Around the tool.
+    /// Takes the sand around the replica's tool.
     explicit SurfacePatch(const Replica& terrain) { take(terrain, terrain.probe()); }
     /// Takes the sand around `centre` that the replica's tool can reach. Reuses the memory of the patch.
     void take(const Replica& terrain, const ProbePoint& centre);
 
-    /// Whether (x, y) lies over the field.
+    /// Returns whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {
         return x >= 0 && y >= 0 && x <= fieldWidth_ && y <= fieldHeight_;
     }
-    /// Linear over a TIN's triangles, bilinear between the centres of cells; beyond the patch, its nearest place.
+    /// Returns the height at (x, y) [scene unit]: linear within a TIN's triangles, bilinear between the centres of
+    /// cells. Beyond the patch, returns the height of the nearest place in it.
     [[nodiscard]] double height(double x, double y) const { return tangent(x, y).value; }
-    /// The same with its gradient, which is 0 across an edge of the patch.
+    /// Returns the height at (x, y) with its gradient, which is 0 across an edge of the patch.
     [[nodiscard]] Dual tangent(double x, double y) const {
         return facets_.empty() ? sampledTangent(x, y) : facets_.tangent(x, y);
     }
     [[nodiscard]] bool empty() const { return columns_ == 0 && facets_.empty(); }
-    /// Where the sand stands that a tool with an upright side has cut [scene unit]: so far outside of its outline. On
-    /// cells the outline lies anywhere in the cut, which is a cell thick, in its middle on the average. On a TIN it is
-    /// the foot, and the cut is as thick as points lie apart.
+    /// Returns how far outside the outline of a tool with an upright side the middle of its cut is [scene unit]. On
+    /// cells it is 0: the outline may be anywhere in the cut, which is one cell thick, and is on average in its middle.
+    /// On a TIN, the outline is the foot of the cut, which is as thick as the distance between points.
     [[nodiscard]] double cutBeyond() const { return cutBeyond_; }
-    /// The triangles of a TIN; none where heights are sampled.
+    /// Returns the triangles of a TIN; empty if heights are sampled.
     [[nodiscard]] const Facets& facets() const { return facets_; }
 
 private:
-    /// What is sampled: so many cells of this size, at most `most` of them on a side of the patch.
+    /// Cells to sample: their number, their size, and how many a side of the patch may have.
     struct Cells {
         int columns, rows;
         double size;  // [scene unit]
         int most;
     };
-    /// `heightOf(column, row)` is [unit].
+    /// Samples the heights that `heightOf(column, row)` returns [unit].
     template <class HeightOf>
     void sample(const Cells& cells, ProbePoint centre, double toolRadius, HeightOf heightOf);
 
@@ -69,7 +73,7 @@ private:
 
     Facets facets_;
     int columns_ = 0, rows_ = 0;
-    double west_ = 0, south_ = 0;  // of node (0,0)
+    double west_ = 0, south_ = 0;  // position of node (0,0) [scene unit]
     double spacing_ = 1;
     double cutBeyond_ = 0;
     double fieldWidth_ = -1, fieldHeight_ = -1;

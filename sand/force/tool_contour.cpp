@@ -9,19 +9,20 @@
 namespace sand::force {
 namespace {
 
-constexpr int kFine = 512;  // places that stand in for the outline
+constexpr int kFine = 512;  // number of places that represent the outline
 
-/// In the tool's own axes, with half its length and half its width as units; z in radii over its lowest point.
+/// Places in the tool's own axes. The units are half its length and half its width. z is in radii above its lowest
+/// point.
 using Places = std::vector<Vec3>;
 
 Vec3 onCircle(double turn) { return {std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn), 0}; }
 
-/// The last place of the sole along a ray from its middle.
+/// Returns the last place of the sole along a ray from its middle.
 Vec3 soleAlong(const Vec3& ray) {
     Vec3 farthest;
     double reach = 0;
     for (const SolePiece& piece : solePieces()) {
-        // The ray in the frame in which the piece is a unit circle: |t d - c| = 1, the larger t.
+        // Solves |t d - c| = 1 for the larger t, in the frame in which the piece is a unit circle.
         const double dx = ray.x / piece.halfLength, dy = ray.y / piece.halfWidth;
         const double cx = piece.along / piece.halfLength, cy = piece.across / piece.halfWidth;
         const double a = dx * dx + dy * dy, b = dx * cx + dy * cy, c = cx * cx + cy * cy - 1;
@@ -34,14 +35,14 @@ Vec3 soleAlong(const Vec3& ray) {
     return farthest;
 }
 
-/// Without the gaps between toes: straight from one to the next.
+/// Returns the outline without the gaps between toes: it goes straight from one toe to the next.
 Places bridged(const Places& outline) {
     const double ball = 0.4 * std::max_element(outline.begin(), outline.end(), [](const Vec3& a, const Vec3& b) {
                                   return a.x < b.x;
                               })->x;
     Places result;
     for (const Vec3& place : outline) {
-        // A place to the right of the way from the one before last to here lies in a gap.
+        // The last place lies in a gap if it is to the right of the line from the place before it to `place`.
         while (result.size() >= 2 && result[result.size() - 2].x > ball) {
             const Vec3 way = place - result[result.size() - 2], last = result.back() - result[result.size() - 2];
             if (way.x * last.y - way.y * last.x < 0) {
@@ -62,9 +63,9 @@ Vec3 outlineAt(ToolKind kind, double turn) {
     return kind == ToolKind::footprint ? soleAlong(place) : place;
 }
 
-/// kPoints of them, so that the way from one to the next along the others is the same.
+/// Returns kPoints places at equal distances along the outline.
 Places evenly(const Places& outline) {
-    std::vector<double> way{0};  // [scene unit] to each, and back to the first
+    std::vector<double> way{0};  // length of the outline up to each place, and back to the first [scene unit]
     const auto flat = [](const Vec3& a, const Vec3& b) { return std::hypot(a.x - b.x, a.y - b.y); };
     for (std::size_t i = 0; i < outline.size(); ++i) {
         way.push_back(way.back() + flat(outline[i], outline[(i + 1) % outline.size()]));
@@ -95,7 +96,7 @@ Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSiz
     const double width = unit * shape.halfWidth;
     Places outline;
     for (int i = 0; i < kFine; ++i) {
-        const Vec3 place = outlineAt(shape.kind, 0.5 + static_cast<double>(i) / kFine);  // from the heel on
+        const Vec3 place = outlineAt(shape.kind, 0.5 + static_cast<double>(i) / kFine);  // begins at the heel
         outline.push_back({radius * place.x, width * place.y, radius * (place.z - 1)});
     }
     const double cosine = static_cast<double>(heading.x) / Heading::kLength;
@@ -103,7 +104,7 @@ Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSiz
     const Places even = evenly(shape.kind == ToolKind::footprint ? bridged(outline) : outline);
     Contour contour{{}, 0, -radius};
     for (std::size_t i = 0; i < even.size(); ++i) {
-        // A mirrored tool's points run clockwise: they are taken from the last to the first.
+        // The points of a mirrored tool run clockwise, so that they are taken from the last to the first.
         const Vec3 place = even[heading.mirrored ? (even.size() - i) % even.size() : i];
         const double across = heading.mirrored ? -place.y : place.y;
         contour.points[i] = {cosine * place.x - sine * across, sine * place.x + cosine * across, place.z};

@@ -6,8 +6,8 @@
 
 namespace sand::force {
 
-/// The tool's control points as it is turned now, evenly along its outline; that of a footprint goes
-/// straight from toe to toe. Asked after every step, not at every tick.
+/// Returns the tool's control points with its current heading, spaced evenly along its outline. The outline of a
+/// footprint goes straight from toe to toe. Called after every step, not at every tick.
 [[nodiscard]] Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize /* [scene unit] */);
 
 }  // namespace sand::force
