@@ -14,22 +14,23 @@ enum class Scheme : std::uint8_t;
 
 namespace scene {
 
-/// Material and tool in the units of a scene file. Stays with whoever has read the file: replicas get what follows.
+/// Material and tool in the units of a scene file. Only the process that has read the file holds it. Replicas get the
+/// numbers that tuningOf() derives from it.
 struct Material {
     double dryTalus = 34;            // [deg]
-    std::optional<double> wetTalus;  // [deg]; none: 45, or the dry one where that is steeper
+    std::optional<double> wetTalus;  // [deg]; nullopt: 45, or dryTalus if that is steeper
     double humidity = 0;             // w, from 0 (dry) to 1
     double cohesionLength = 0;       // [scene unit], how high a bank stands at w = 1
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
     double toolRadius = 0.01;        // [scene unit], half of its length; default: the sphere of Dorjgotov et al. 2007
     sand::ToolKind toolKind = sand::ToolKind::sphere;
-    std::optional<double> toolWidth;  // over its length; none: the kind's usual one
-    double toolHeading = 0;           // [deg] from east, counter-clockwise; where a footprint's toes point
-    bool leftFoot = false;            // a footprint is of a right foot, unless
+    std::optional<double> toolWidth;  // ratio of width to length; nullopt: the kind's default
+    double toolHeading = 0;           // [deg] from east, counter-clockwise; the toes of a footprint point there
+    bool leftFoot = false;            // whether a footprint is that of a left foot
 
-    /// The talus is dryTalus + w (wetTalus - dryTalus), and a bank whose step from a cell to the next is at most
-    /// w · cohesionLength stands. Both grow with w, and w = 0 is dry sand.
+    /// Returns the talus dryTalus + w (wetTalus - dryTalus). A bank is stable if its step from one cell to the next is
+    /// at most w · cohesionLength. Both grow with w; w = 0 is dry sand.
     [[nodiscard]] double talus() const;                                                                      // [deg]
     [[nodiscard]] double wetTalusNow() const { return wetTalus.value_or(dryTalus > 45 ? dryTalus : 45.0); }  // [deg]
     friend bool operator==(const Material&, const Material&) = default;
@@ -40,35 +41,36 @@ struct MaterialKey {
     std::string_view key;   // in a scene file
     std::string_view word;  // in an operator's command
     double lowest, highest;
-    bool highestIsOut;  // the range is half open
+    bool highestIsOut;  // whether `highest` itself is out of range
     void (*set)(Material&, double);
 };
 [[nodiscard]] std::span<const MaterialKey> materialKeys();
 
-/// What the numbers are used with.
+/// Numbers of a scene with which a material is used.
 struct MaterialGrid {
     sand::Scheme scheme;
     int stepsPerSecond;
     double cellSize;  // [scene unit]
-    int longerSide;   // of the field [cell]
+    int longerSide;   // longer side of the field [cell]
 };
+/// Reason why a material cannot be used.
 struct MaterialFault {
-    std::string key;  // of [material], or "radius", "width" or "foot" of [tool]
+    std::string key;  // key of [material], or "radius", "width" or "foot" of [tool]
     std::string message;
 };
-/// Why these numbers, each within its own range, cannot stand together.
+/// Returns why these numbers, each within its own range, do not fit together; nullopt if they do.
 [[nodiscard]] std::optional<MaterialFault> faultOf(const Material& material, const MaterialGrid& grid);
-/// The integers that sand is computed from, of a material without fault. Nobody else may compute them again: libm's
-/// last digit differs from host to host.
+/// Returns the whole numbers from which sand is computed, for a material without a fault. Only the process that reads
+/// the scene or the command calls this, because the last digit of libm's results differs between hosts.
 [[nodiscard]] sand::Tuning tuningOf(const Material& material, const MaterialGrid& grid);
 
-/// An operator's command: the material with one number changed. Throws base::InputError with the keys there are or
-/// the range, in one line.
+/// Returns the material with one number changed by an operator's command. Throws base::InputError in one line, with the
+/// known keys or the range.
 [[nodiscard]] Material withNumber(Material material, std::string_view word, double value, const MaterialGrid& grid);
-inline constexpr double kNarrowestTool = 0.05;  // width over length
+inline constexpr double kNarrowestTool = 0.05;  // ratio of width to length
 
-/// What an operator changes of the tool; what is left out stays as it is, but for the width of another kind, which is
-/// then its usual one.
+/// An operator's change of the tool. A part that is nullopt does not change. If the kind changes, however, the width
+/// becomes the default of the new kind.
 struct ToolChange {
     std::optional<sand::ToolKind> kind{};
     std::optional<double> radius{};   // [scene unit]
@@ -76,7 +78,7 @@ struct ToolChange {
     std::optional<double> heading{};  // [deg]
     std::optional<bool> leftFoot{};
 };
-/// The same for the tool.
+/// Returns the material with an operator's change of the tool. Throws base::InputError in one line.
 [[nodiscard]] Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid);
 
 }  // namespace scene

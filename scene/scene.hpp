@@ -14,35 +14,35 @@
 
 namespace scene {
 
-/// What to look at, not what to compute: never part of a digest.
+/// Appearance of a scene. It is never part of a digest, because the sand does not depend on it.
 struct Look {
-    std::vector<double> sandColour{0.80, 0.66, 0.45};        // linear-light RGB, of dry sand in full light
+    std::vector<double> sandColour{0.80, 0.66, 0.45};        // of dry sand in full light, linear-light RGB
     std::vector<double> backgroundColour{0.10, 0.12, 0.15};  // linear-light RGB
     std::vector<double> sunDirection{-0.55, 0.35, 0.60};     // towards the sun, scene axes x east, y north, z up
     bool flatShading = false;                                // each triangle is lit as one facet
-    bool hillShade = false;                                  // shown as a map, until an operator says otherwise
-    double detail =
-        0.5;  // [pixel], how far a level of detail may shift the picture of any sand; 0: every cell is drawn
+    bool hillShade = false;  // whether the sand is drawn as a map until an operator changes that
+    /// Largest shift of the picture of any sand by a level of detail [pixel]; 0 draws every cell.
+    double detail = 0.5;
 };
 
-/// One session's world, read from a TOML file: what every replica starts with, material, force, look.
+/// Everything that a session begins with, read from a TOML file: rules, sand, ground, material, force and look.
 struct Scene : sand::Start {
     std::string name;
     sand::ForceConstants force;
     Look look;
-    Georeference georeference;          // where the terrain came from; as it begins where it came from nowhere
-    std::vector<std::string> warnings;  // one line each, for whoever loads it to print
-    Material material;                  // what the rules were derived from; not encoded, as the warnings are not
+    Georeference georeference;          // origin of the terrain; default values if it came from no file
+    std::vector<std::string> warnings;  // one line each, for the program that loads the scene to print
+    Material material;                  // source of the rules; not encoded, and neither are the warnings
 
-    /// What a material is used with here.
+    /// Returns the numbers of this scene with which a material is used.
     [[nodiscard]] MaterialGrid grid() const {
         return {rules.scheme, rules.stepsPerSecond, terrain.cellSize(), std::max(rules.columns, rules.rows)};
     }
-    /// The whole scene as bytes: what the master broadcasts and the journal begins with.
+    /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins.
     [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError.
+    /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes.
     static Scene decode(std::span<const std::uint8_t> bytes);
-    /// Decodes the rules only, which say how large the rest is. Throws base::FormatError.
+    /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
 };
 

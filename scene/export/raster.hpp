@@ -9,22 +9,23 @@
 
 namespace scene {
 
-/// A scene's field where its terrain came from: corner, lengths and heights of the source, walls without data. All
-/// throw std::invalid_argument unless `field` has the scene's cells.
+/// Returns `field` in the place from which the scene's terrain came. Corner, lengths and heights are those of the
+/// source. Walls have no data. The functions below and this one throw std::invalid_argument unless `field` has the
+/// scene's cells.
 [[nodiscard]] EsriGrid heightsOf(const sand::HeightField& field, const Scene& scene);
 
-/// How much higher `field` is than the scene began, in the source's unit.
+/// Returns how much higher `field` is than the start of the scene, in the source's unit.
 [[nodiscard]] EsriGrid differenceOf(const sand::HeightField& field, const Scene& scene);
 
-/// Triangles between neighbouring middles of cells that are no walls, their diagonals to the north-east, in the
-/// source's units.
+/// Returns triangles between the middles of neighbouring cells that are not walls, in the source's units. Their
+/// diagonals run to the north-east.
 [[nodiscard]] Mesh meshOf(const sand::HeightField& field, const Scene& scene);
 
-/// What was taken away and what was put down since the scene began.
+/// Sand that was taken away and put down since the start of the scene.
 struct Earthwork {
-    std::int64_t cut = 0, fill = 0;  // [unit · cell], exact, neither below 0
-    double unit = 0;                 // [cubic scene unit] of one of them
-    double cubicMetres = 0;          // [m³] of one of them; 0: nobody said how long the scene's units are
+    std::int64_t cut = 0, fill = 0;  // [unit · cell], exact, at least 0
+    double unit = 0;                 // size of a unit · cell [cubic scene unit]
+    double cubicMetres = 0;          // size of a unit · cell [m³]; 0 if the length of the scene's units is unknown
 };
 [[nodiscard]] Earthwork earthworkOf(const sand::HeightField& field, const Scene& scene);
 

@@ -9,12 +9,14 @@
 
 namespace scene {
 
-/// Calls `write` with the sand of a replica by cells, and with the scene that it began as: for rasters and earthwork.
-/// Samples both at the middles of nominal cells if the sand is a TIN; holes are then walls of that scene's ground.
+/// Calls `write` with the sand of a replica as a height field, and with the scene that it began as. Rasters and
+/// earthwork need this form. The sand of a TIN is sampled at the middles of nominal cells; its holes are then walls of
+/// that scene's ground.
 void withCells(const sand::Replica& terrain, const Scene& scene,
                const std::function<void(const sand::HeightField&, const Scene&)>& write);
 
-/// The sand's triangles in the units of the scene's source: between the cells of a height field, or a TIN's own.
+/// Returns the sand's triangles in the units of the scene's source: those between the cells of a height field, or those
+/// of a TIN.
 [[nodiscard]] Mesh meshOf(const sand::Replica& terrain, const Scene& scene);
 
 }  // namespace scene

@@ -7,14 +7,15 @@
 
 namespace scene {
 
-/// A TIN's surface at the middles of its nominal cells, rounded to whole units; 0 in its holes, which may be null.
+/// Returns a TIN's surface at the middles of its nominal cells, rounded to whole units. Heights in `holes` are 0.
+/// `holes` may be null.
 [[nodiscard]] sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes);
 
-/// The scene of a TIN with the heights it starts with as a field of nominal cells, for whoever compares rasters: holes
-/// are walls of its ground.
+/// Returns the scene of a TIN with its first heights as a field of nominal cells, for comparisons of rasters. Holes are
+/// walls of its ground.
 [[nodiscard]] Scene sampledScene(const Scene& scene);
 
-/// A TIN's own triangles, without its holes, in the units of the scene's source.
+/// Returns the triangles of a TIN, without its holes, in the units of the scene's source.
 [[nodiscard]] Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene);
 
 }  // namespace scene

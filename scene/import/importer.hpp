@@ -9,17 +9,17 @@
 
 namespace scene {
 
-/// z = f(x, y) as text, over a rectangle that is cut into cells.
+/// Function z = f(x, y) as text, over a rectangle that is divided into cells.
 struct Function {
     std::string text;
-    double west = 0, east = 1, south = 0, north = 1;  // of the rectangle [function's unit]
+    double west = 0, east = 1, south = 0, north = 1;  // sides of the rectangle [function's unit]
     int columns = 1, rows = 1;
 };
 
-/// The functions of the module that brings GDAL and muParser. One thread at a time.
+/// Functions of the module that loads GDAL and muParser. Call them from one thread at a time.
 ///
-/// All of them throw base::InputError: one line that names the file, or the place in the function's text, the cause,
-/// and where there is something to be done, what.
+/// All of them throw base::InputError with one line. It names the file, or the place in the function's text, the cause,
+/// and what to do if there is a remedy.
 class Importer {
 public:
     virtual ~Importer() = default;
@@ -27,40 +27,41 @@ public:
     Importer(const Importer&) = delete;
     Importer& operator=(const Importer&) = delete;
 
-    /// Reads one band of heights with a place: a local file of a format that neither reaches for the network nor runs
-    /// anything. Heights come in the unit of lengths; pixels are areas; what the file masks is not a number. Refuses
-    /// degrees, turned rasters, and those beyond kMostRasterBytes. These, and `check` unless it is empty, are asked
+    /// Reads one band of heights with a place, from a local file. Its format must neither use the network nor run code.
+    /// Heights are returned in the unit of lengths; pixels are areas; pixels that the file masks are NaN. Refuses
+    /// degrees, turned rasters, and rasters beyond kMostRasterBytes. These checks, and `check` unless it is empty, come
     /// before pixels are read.
     [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
-    /// What readDem()'s lengths and heights are, without reading pixels: of a text grid what stands in the .prj file
-    /// beside it. Refuses degrees.
+    /// Returns the units of readDem()'s lengths and heights without reading pixels. For a text grid they come from the
+    /// .prj file beside it. Refuses degrees.
     [[nodiscard]] virtual RasterUnits readUnits(const std::filesystem::path& file) const = 0;
 
-    /// Reads one band of 8 or 16 bits without a place: heights are shares of the largest number, 0 to 1, and cells have
-    /// side 1. Calls `check` as readDem() does.
+    /// Reads one band of 8 or 16 bits without a place. Heights are shares of the largest number, from 0 to 1, and cells
+    /// have side 1. Calls `check` as readDem() does.
     [[nodiscard]] virtual EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
-    /// At the middle of every cell. Refuses what is not finite, with x and y.
+    /// Returns the function's values at the middle of every cell. Refuses a value that is not finite, with x and y.
     [[nodiscard]] virtual EsriGrid evaluate(const Function& function) const = 0;
 
-    /// A GeoTIFF of one band of doubles, as bytes. `file` is for messages.
+    /// Returns a GeoTIFF of one band of doubles, as bytes. `file` is for messages.
     [[nodiscard]] virtual base::Bytes geoTiff(const EsriGrid& grid, const std::string& file) const = 0;
 
-    /// A coordinate reference system as it stands in the .prj file beside an ESRI ASCII grid.
+    /// Returns a coordinate reference system in the form of the .prj file beside an ESRI ASCII grid.
     [[nodiscard]] virtual std::string esriWkt(const std::string& crs, const std::string& file) const = 0;
 };
 
-/// What a raster may take in memory: 16 bytes a pixel, so that a field of the largest sides just fits.
+/// Memory of a raster: 16 bytes per pixel, so that a field of the largest sides just fits.
 inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
-/// What the module defines, with C linkage: the one object, never deleted.
+/// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
 inline constexpr const char* kImportSymbol = "sandwallImport3";
 using GetImporter = const Importer*();
 
-/// Loads sandwall-import.so from beside this program; the same object at every call. Nothing else maps GDAL or
-/// muParser. Throws base::InputError that begins with `what`, for which it is needed, when it is missing.
+/// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function
+/// loads GDAL and muParser. Throws base::InputError if the module is missing. The message begins with `what`, which
+/// needs it.
 [[nodiscard]] const Importer& loadImporter(const std::string& what);
 
 }  // namespace scene

@@ -6,8 +6,8 @@
 
 namespace scene {
 
-/// The EPSG code of a system that has metres there: the UTM zone, or around a pole a stereographic one. 3857, which has
-/// them everywhere and badly, for what is no place.
+/// Returns the EPSG code of a coordinate system with metres at this place: the UTM zone, or a stereographic system near
+/// a pole. Returns 3857, which has inexact metres everywhere, if the place is not finite.
 [[nodiscard]] inline int metricSystemAt(double longitude, double latitude /* [degree] */) {
     if (!std::isfinite(longitude) || !std::isfinite(latitude)) {
         return 3857;

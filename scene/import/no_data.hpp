@@ -9,11 +9,12 @@
 
 namespace scene {
 
-/// Returns whether many programs mean "no data" by this number, such as -9999.
+/// Returns whether many programs use `number` for "no data", such as -9999.
 [[nodiscard]] bool isUsualNoData(double number);
 
-/// Returns a warning for each such number that a raster has as a height, because it does not declare it: the file, the
-/// number, how many cells, and `how` to declare it, in which {0} stands for the number.
+/// Returns a warning for each such number that a raster has as a height and does not declare as no data. A warning
+/// names the file, the number, and how many cells have it. It ends with `how`, the way to declare it, in which {0}
+/// stands for the number.
 [[nodiscard]] std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::string& how);
 /// Returns a warning for each such number among the heights of points from `file`.
 [[nodiscard]] std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file);

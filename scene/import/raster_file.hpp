@@ -9,21 +9,22 @@ namespace scene {
 
 class Importer;
 
-/// Whether the name asks for a GeoTIFF: .tif or .tiff.
+/// Returns whether the name is that of a GeoTIFF: it ends in .tif or .tiff.
 [[nodiscard]] bool namesGeoTiff(const std::filesystem::path& file);
 
-/// Throws base::InputError for a name whose ending promises another format: asked before long work. Names without an
-/// ending, .txt, and what is no plain file are ESRI ASCII grids, as readRaster() has them.
+/// Throws base::InputError for a name whose ending stands for another format. Call it before long work. Names without
+/// an ending, names in .txt, and files that are not regular files are ESRI ASCII grids, as for readRaster().
 void checkRasterName(const std::filesystem::path& file);
 
-/// Reads heights in any format. A file that holds an ESRI ASCII grid, or is named .asc, .txt or without an ending, and
-/// what is no plain file, is read by readEsriGrid(). Other files are read by Importer::readDem(). Text loads GDAL only
-/// if its reference system is wanted and a .prj file beside it has one: then it has units, and degrees are refused.
-/// `check` may be empty. Throws base::InputError.
+/// Reads heights in any format. readEsriGrid() reads a file if it holds an ESRI ASCII grid, if its name ends in .asc,
+/// .txt or has no ending, or if it is not a regular file. Importer::readDem() reads all other files.
+///
+/// A text file loads GDAL only if `withReference` is true and a .prj file beside it has a reference system. The grid
+/// then has units, and degrees are refused. `check` may be empty. Throws base::InputError.
 [[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false,
                                   const RasterCheck& check = {});
 
-/// Reads a raster by Importer::readDem(), and adds warnings of its heights. Throws base::InputError.
+/// Reads a raster by Importer::readDem(), and adds warnings about its heights. Throws base::InputError.
 [[nodiscard]] EsriGrid readByGdal(const std::filesystem::path& file, const Importer& importer,
                                   const RasterCheck& check = {});
 
@@ -31,9 +32,10 @@ void checkRasterName(const std::filesystem::path& file);
 [[nodiscard]] EsriGrid readTextWithUnits(const std::filesystem::path& file, const Importer& importer,
                                          const RasterCheck& check = {});
 
-/// Writes a GeoTIFF with units and reference system, heights in its own unit; or for any other name an ESRI ASCII grid,
-/// heights in the unit of lengths, and its reference system, where it has one, into a .prj file beside it. What stood
-/// there is replaced when all is written. Throws base::InputError.
+/// Writes a raster in the format that its name stands for. A GeoTIFF gets units, reference system, and heights in its
+/// own unit. Any other name gets an ESRI ASCII grid with heights in the unit of lengths; its reference system, if it
+/// has one, goes into a .prj file beside it. An existing file is replaced when everything is written. Throws
+/// base::InputError.
 void writeRaster(const EsriGrid& grid, const std::filesystem::path& file);
 
 }  // namespace scene

@@ -8,15 +8,15 @@
 
 namespace scene {
 
-/// Returns what a program holds at least while it reads the pixels of a raster of this size [byte].
+/// Returns a lower bound of a program's memory while it reads the pixels of a raster of this size [byte].
 [[nodiscard]] std::int64_t bytesToRead(int columns, int rows);
 
-/// Throws base::InputError unless `needed` bytes fit into `freeBytes`: "FILE: WHAT need at least 4.0 GiB, and 1.0 GiB
-/// are free: ADVICE".
+/// Throws base::InputError unless `needed` bytes fit into `freeBytes`. The message is "FILE: WHAT need at least 4.0
+/// GiB, and 1.0 GiB are free: ADVICE".
 void requireBytes(std::int64_t needed, std::int64_t freeBytes, const std::string& file, const std::string& what,
                   const std::string& advice);
 
-/// Returns a check for a program that may take `freeBytes`: it refuses a raster whose pixels do not fit. `file` is for
+/// Returns a check for a program that may take `freeBytes`. It refuses a raster whose pixels do not fit. `file` is for
 /// the message.
 [[nodiscard]] RasterCheck fitsMemory(const std::string& file, std::int64_t freeBytes);
 

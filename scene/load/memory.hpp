@@ -6,18 +6,18 @@
 
 #include "scene/load/scene_file.hpp"
 
-/// Checks of memory for a program with one replica, made before it takes the memory. All figures are lower bounds: a
-/// scene that is refused cannot fit, and an accepted one may still be too large for a busy machine.
+/// Checks of memory for a program with one replica, made before it takes the memory. All numbers are lower bounds: a
+/// scene that is refused cannot fit, and an accepted scene may still be too large for a busy machine.
 namespace scene {
 
-/// Returns what a replica of a height field of this size takes [byte]. With `tin` the vertices are not known yet, and
-/// it is the heights that they are chosen from.
+/// Returns the memory that a replica of a height field of this size takes [byte]. With `tin` the vertices are not known
+/// yet. The function then returns the memory of the heights from which they are chosen.
 [[nodiscard]] std::int64_t bytesOfField(int columns, int rows, bool tin);
 
 /// Returns the checks of a program that runs one replica of the scene in `file` and may take `freeBytes`.
 [[nodiscard]] SizeChecks checksOfOneReplica(const std::string& file, std::int64_t freeBytes);
-/// Throws base::InputError unless a replica of this scene fits; a TIN's vertices are counted. `freeBytes` is from
-/// before the scene was made. `file` names the scene in the message.
+/// Throws base::InputError unless a replica of this scene fits. Counts the vertices of a TIN. `freeBytes` is the memory
+/// that was free before the scene was made. `file` names the scene in the message.
 void requireReplica(const Scene& scene, const std::string& file, std::int64_t freeBytes);
 /// Throws base::InputError unless a replica of a height field of this size fits.
 void requireReplica(int columns, int rows, const std::string& file, std::int64_t freeBytes);

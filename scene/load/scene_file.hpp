@@ -8,18 +8,21 @@
 
 namespace scene {
 
-/// What is asked before a scene's memory is taken. Both throw if it does not fit; either may be empty.
+/// Checks that are called before the memory of a scene is taken. Both throw if the scene does not fit. Either may be
+/// empty.
 struct SizeChecks {
-    /// Receives the size of a raster file before its pixels are read. While this program reads them it holds them all.
+    /// Receives the size of a raster file before its pixels are read. The program holds all pixels while it reads them.
     std::function<void(int columns, int rows)> raster{};
-    /// Receives the size of the height field before its heights are made. With `tin`, a TIN is made of it and these are
-    /// its nominal cells. Called once, as soon as the size is known: for a raster whose header marks no data, before
-    /// its pixels are read; for others when its edges without data have been cut off. Never called for a terrain of
-    /// points, which makes no field.
+    /// Receives the size of the height field before its heights are made. With `tin`, a TIN is made of that field, and
+    /// the cells are its nominal cells.
+    ///
+    /// It is called once, as soon as the size is known. For a raster whose header marks no data, that is before its
+    /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
+    /// terrain of points, which has no field.
     std::function<void(int columns, int rows, bool tin)> field{};
 };
 
-/// Reads a scene file. Throws base::InputError with file, line and key; a DEM's errors name the DEM's line.
+/// Reads a scene file. Throws base::InputError with file, line and key. An error in a DEM names the DEM's line.
 [[nodiscard]] Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks = {});
 
 }  // namespace scene

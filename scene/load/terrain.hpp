@@ -7,9 +7,9 @@
 
 namespace scene {
 
-/// Reads [field] and [terrain] of a scene file: heights, rock, walls, and what the rules say of them. Throws
-/// base::InputError with file, line and key; a DEM's errors name the DEM's line. Returns whether the sand shall come
-/// to rest before anybody touches it.
+/// Reads [field] and [terrain] of a scene file: heights, rock, walls, and the rules for them. Returns whether the sand
+/// must come to rest before the session begins. Throws base::InputError with file, line and key. An error in a DEM
+/// names the DEM's line.
 [[nodiscard]] bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& checks);
 
 }  // namespace scene

@@ -14,24 +14,24 @@
 
 namespace scene {
 
-/// Heights from outside, as a scene names them: on a raster, or at points.
+/// Heights from another file or a function, as a scene names them: a raster, or points.
 struct TerrainSource {
-    EsriGrid raster{};                    // cells, corner and heights in scene units, the datum not yet taken off
-    Points points{};                      // in scene units, likewise; empty where there is a raster
-    Georeference georeference{};          // but for the corner: referenceAt()
+    EsriGrid raster{};                    // cells, corner and heights in scene units, before the datum is subtracted
+    Points points{};                      // in scene units, before the datum is subtracted; empty for a raster
+    Georeference georeference{};          // without the corner, which referenceAt() sets
     std::vector<std::string> warnings{};  // one line each
 
-    /// The georeference of a field whose south-west corner is that of `part`, a part of the raster.
+    /// Returns the georeference of a field whose south-west corner is that of `part`, a part of the raster.
     [[nodiscard]] Georeference referenceAt(const EsriGrid& part) const;
 };
 
-/// The kinds of [terrain] that readSource() reads.
+/// Returns the kinds of [terrain] that readSource() reads.
 [[nodiscard]] const std::vector<std::string_view>& sourceKinds();
 
-/// Reads the keys of one of sourceKinds() in [terrain], and of [field] for a function, which says how many cells there
-/// are. `kind` is its index. Calls `check` with the size of a raster, or of a function's field, before its heights are
-/// read or computed. Throws base::InputError with file, line and key; what is wrong in another file names that. Loads
-/// GDAL or muParser where the kind needs them.
+/// Reads the keys of one of sourceKinds() in [terrain]; `kind` is its index. For a function, also reads the number of
+/// cells from [field]. Calls `check` with the size of a raster, or of a function's field, before its heights are read
+/// or computed. Loads GDAL or muParser if the kind needs them. Throws base::InputError with file, line and key. An
+/// error in another file names that file.
 [[nodiscard]] TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind,
                                        const RasterCheck& check);
 

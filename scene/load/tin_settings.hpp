@@ -7,27 +7,29 @@
 
 namespace scene {
 
-/// The nominal cells that a TIN is made on.
+/// Nominal cells of a TIN.
 struct TinCells {
     int columns, rows;
     double side;  // [scene unit]
 };
 
-/// Reads [tin] of a scene whose terrain is a raster of these cells. Points that lie `widest` apart are within what
-/// `vertices` allows: of the two, one that the file does not give yields. Throws base::InputError.
+/// Reads [tin] of a scene whose terrain is a raster of these cells. Points at a distance of `widest` must not be more
+/// than `vertices` allows. If the file gives only one of these two keys, the other adapts to it. Throws
+/// base::InputError.
 [[nodiscard]] sand::tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells);
 
-/// The same where the terrain is points, of which the start takes all: they, with the field's corners, are so many
-/// `places`.
+/// Reads [tin] of a scene whose terrain is points. The start takes all of them. `places` is their number, including the
+/// field's corners.
 [[nodiscard]] sand::tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells,
                                                   std::size_t places);
 
-/// A tool makes vertices up to the usual number of them where the file gives none, however many a start has.
+/// Sets the limit of vertices if the file gives none. The limit is the usual number of vertices, or the number of the
+/// start if that is larger.
 void keepUsual(const host::TomlTable& tin, sand::tin::TinStart& start);
 
-/// Throws base::InputError where a tool would be refined around by squares below a cell, of which there are more than
-/// the scene may have vertices: each costs time in every step, whether it gets a vertex or not. Tool and material have
-/// been read.
+/// Throws base::InputError if the squares with which a tool refines the mesh are smaller than a cell, and there are
+/// more of them than the scene may have vertices. Each of them costs time in every step, whether or not it gets a
+/// vertex. Tool and material must have been read.
 void requireSpacing(const host::TomlTable& file, const Scene& scene);
 
 }  // namespace scene

@@ -8,14 +8,14 @@
 
 namespace scene {
 
-/// Puts points on the lattice of nominal cells: scene.tin holds them, until readTin() makes a TIN of them, the
-/// rules know how many cells lie under them, and the georeference where they were. Returns one cell. Throws
-/// base::InputError.
+/// Puts points on the lattice of nominal cells. `scene.tin` then holds the points, until readTin() makes a TIN of them.
+/// The rules hold the number of cells below the points, and the georeference holds their original place. Returns a
+/// height field of one cell. Throws base::InputError.
 [[nodiscard]] sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTable& terrain,
                                              const Points& points, Scene& scene);
 
-/// Reads [tin] of a scene file: the scene's height field becomes a TIN. Does nothing without that table. Throws
-/// base::InputError with file, line and key.
+/// Reads [tin] of a scene file, and makes a TIN of the scene's height field or points. Does nothing without that table.
+/// Throws base::InputError with file, line and key.
 void readTin(const host::TomlTable& file, Scene& scene);
 
 }  // namespace scene

@@ -14,35 +14,37 @@
 
 namespace scene::relax {
 
-inline constexpr int kLeastThreshold = 4;  // [unit]: a coarser talus is no angle any more
+inline constexpr int kLeastThreshold = 4;  // [unit]; a coarser talus is no longer an angle
 
+/// Talus and scheme from the command line.
 struct TalusSettings {
     double talusDegrees = 0;  // [degree], in [0, 90)
-    double band = 0;          // sand at rest starts to slide this share beyond the talus
+    double band = 0;          // share beyond the talus at which sand at rest starts to slide
     sand::Scheme scheme = sand::Scheme::isotropic;
 };
 
-/// A grid from a file, as sand: whole numbers, and what they stand for. Edges without any data are left out: the rim
-/// of the sand is where data ends.
+/// Grid from a file as sand, with the scale of its whole numbers. Edges without data are left out, so that the rim of
+/// the sand is where data ends.
 struct GridSand {
-    sand::CellRect cells;                // of the grid: those that are in the field
-    sand::HeightField field;             // walls lie at 0
-    std::optional<sand::Ground> ground;  // only where there is bedrock or a cell without data, which is a wall
-    sand::Rules rules;                   // rim closed
+    sand::CellRect cells;                // cells of the grid that are in the field
+    sand::HeightField field;             // walls have height 0
+    std::optional<sand::Ground> ground;  // nullopt without bedrock and without a cell without data, which is a wall
+    sand::Rules rules;                   // with a closed rim
     HeightScale scale;
     bool onBedrock = false;
-    std::int32_t lowest = 0;            // surface at the start [unit]: what volumes are counted from without bedrock
+    std::int32_t lowest = 0;  // lowest surface at the start [unit]; without bedrock, volumes are counted from it
     std::vector<std::string> warnings;  // one line each
 
     [[nodiscard]] bool isWall(int column, int row) const { return ground && ground->isWall(column, row); }
-    /// Of the sand over the bedrock, or over the lowest cell there was [unit · cell].
+    /// Returns the volume of the sand above the bedrock, or above the lowest cell of the start [unit · cell].
     [[nodiscard]] std::int64_t volume() const;
-    /// The grid it was made from, with the heights of now: those of cells that are as they were come back untouched.
+    /// Returns the original grid with the current heights. Cells that have not changed keep their heights exactly.
     [[nodiscard]] EsriGrid toGrid(const EsriGrid& before) const;
 };
 
-/// Throws base::InputError with file, line, value and range: no data at all, cells more oblong than 1 to 1000, heights
-/// that do not fit, a talus of fewer than kLeastThreshold units, bedrock that does not match or lies above the surface.
+/// Makes sand of a grid. Throws base::InputError with file, line, value and range for: a grid without any data, cells
+/// more oblong than 1 to 1000, heights that do not fit, a talus of fewer than kLeastThreshold units, and bedrock that
+/// does not match or is above the surface.
 [[nodiscard]] GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSettings& material);
 
 }  // namespace scene::relax

@@ -7,18 +7,18 @@
 
 namespace scene::relax {
 
-/// What sandwall-relax was asked for (docs/relax.md).
+/// Command line of sandwall-relax (docs/relax.md).
 struct Options {
     std::string in, out, scheme = "g", bedrock;
     double talus = 0;                  // [degree]
     double band = 0;                   // share of the talus
-    std::optional<std::int64_t> most;  // sweeps
+    std::optional<std::int64_t> most;  // most sweeps; nullopt: until the sand is at rest
     int threads = 1;
-    std::optional<double> maxError;  // [raster's unit], of a TIN of it
-    std::optional<int> vertices;     // likewise
+    std::optional<double> maxError;  // of the TIN of a raster [raster's unit]
+    std::optional<int> vertices;     // of the TIN of a raster
 };
 
-/// Both read IN, write OUT and print the line; they throw base::InputError.
+/// Both functions read IN, write OUT and print the report line. They throw base::InputError.
 void relaxGrid(const Options& options);
 void relaxTin(const Options& options);
 

@@ -7,11 +7,12 @@
 
 namespace scene::relax {
 
-/// The steepest face of a field across which sand could flow: its slope as the isotropic law sees it, whatever the
-/// rules' scheme, as a difference from a cell to the next one east [unit]. Stable where it is at most the threshold.
+/// Returns the slope of the steepest face of a field across which sand could flow. The slope is that of the isotropic
+/// law, whatever the rules' scheme, as a difference from a cell to the next one east [unit]. The sand is stable if it
+/// is at most the threshold.
 ///
-/// A face counts when its upper cell holds at least four units of sand, of which it may give one. 0 where there is no
-/// such face. `ground` may be null.
+/// A face counts if its upper cell holds at least four units of sand, because it may then give one of them. Returns 0
+/// if no face counts. `ground` may be null.
 [[nodiscard]] double steepestFace(const sand::HeightField& field, const sand::Rules& rules, const sand::Ground* ground);
 
 }  // namespace scene::relax

@@ -21,7 +21,7 @@ inline double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Says on stderr every second that something goes on which has no sweeps to count before its end.
+/// Prints on stderr every second that work continues. It is for work that has no sweeps to count before its end.
 class Ticker {
 public:
     explicit Ticker(std::string what)
@@ -39,7 +39,7 @@ private:
     std::string what_;
     std::mutex mutex_;
     std::condition_variable_any wake_;
-    std::jthread thread_;  // last: it uses the others
+    std::jthread thread_;  // last member, because it uses the others
 };
 
 }  // namespace scene::relax

@@ -6,8 +6,8 @@
 
 namespace scene {
 
-/// Importer::evaluate(). Trigonometry and powers may differ in a last bit between C libraries: whoever loads a scene
-/// evaluates it once, and its heights as whole numbers travel.
+/// Does the work of Importer::evaluate(). Trigonometry and powers may differ in the last bit between C libraries. Only
+/// the process that loads a scene therefore evaluates it, and sends the heights as whole numbers.
 [[nodiscard]] EsriGrid evaluateFunction(const Function& function);
 
 }  // namespace scene

@@ -6,7 +6,7 @@
 
 namespace scene {
 
-/// Importer::geoTiff().
+/// Does the work of Importer::geoTiff().
 [[nodiscard]] base::Bytes geoTiffOf(const EsriGrid& grid, const std::string& file);
 
 }  // namespace scene

@@ -9,8 +9,8 @@
 
 namespace scene {
 
-/// A local file's one band of numbers, opened and found to be neither too large nor of another kind. Every member
-/// throws base::InputError that begins with the file.
+/// Local file with one band of numbers. The constructor opens it and checks its size and kind. Every member may throw
+/// base::InputError, whose message begins with the file.
 class GdalRaster {
 public:
     explicit GdalRaster(const std::filesystem::path& file);
@@ -21,17 +21,18 @@ public:
     [[nodiscard]] GDALRasterBandH band() const { return band_; }
     [[nodiscard]] const std::string& name() const { return name_; }
 
-    /// Returns whether no pixel can be without data: nothing masks any, and whole numbers are always numbers.
+    /// Returns whether every pixel has data: the file masks no pixel, and its pixels are whole numbers, which are never
+    /// NaN.
     [[nodiscard]] bool complete() const;
-    /// Rows as they lie in the file, scale and offset applied; not a number where the file says that nothing is known.
+    /// Returns the rows in the file's order, with scale and offset applied. A pixel without data is NaN.
     [[nodiscard]] std::vector<double> pixels() const;
     [[noreturn]] void fail(const std::string& message) const;
 
 private:
-    /// The one band beside a mask of opacity.
+    /// Chooses the one band besides a mask of opacity.
     void chooseBand();
     [[nodiscard]] bool isPng() const;
-    /// Reads the numbers of the band as they stand in the file.
+    /// Returns the numbers of the band as the file holds them.
     [[nodiscard]] std::vector<double> numbers() const;
     void mask(std::vector<double>& pixels) const;
     [[noreturn]] void failToRead() const;

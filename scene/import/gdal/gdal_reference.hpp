@@ -6,11 +6,11 @@
 
 namespace scene {
 
-/// What the raster's lengths and heights are. Throws base::InputError: degrees, with the command that makes metres of
-/// them, and height units nobody knows.
+/// Returns the units of the raster's lengths and heights. Throws base::InputError for degrees, with the command that
+/// turns them into metres, and for unknown height units.
 [[nodiscard]] RasterUnits unitsOf(const GdalRaster& raster);
 
-/// The reference system of a WKT. Throws base::InputError, which begins with `file`.
+/// Returns the reference system of a WKT. Throws base::InputError, whose message begins with `file`.
 [[nodiscard]] SpatialReference referenceOf(const std::string& crs, const std::string& file);
 
 }  // namespace scene

@@ -35,7 +35,7 @@ std::string GdalSession::complaint() const {
     if (!error_.empty()) {
         return error_;
     }
-    return warning_.empty() ? "GDAL does not say why" : warning_;
+    return warning_.empty() ? "GDAL gives no reason" : warning_;
 }
 
 }  // namespace scene

@@ -27,7 +27,8 @@ struct FreeText {
 };
 using GdalText = std::unique_ptr<char, FreeText>;
 
-/// While it lives, GDAL prints nothing and loads nothing: what it would have said is kept for our own line.
+/// Session in which GDAL prints no message and loads no plugin. Its messages are kept for this project's own error
+/// line.
 class GdalSession {
 public:
     GdalSession();
@@ -35,7 +36,8 @@ public:
     GdalSession(const GdalSession&) = delete;
     GdalSession& operator=(const GdalSession&) = delete;
 
-    /// The first error since the start, or else the first warning; "GDAL does not say why" without either.
+    /// Returns the first error of the session, or else the first warning. Returns "GDAL gives no reason" without
+    /// either.
     [[nodiscard]] std::string complaint() const;
 
 private:

@@ -7,10 +7,11 @@
 
 namespace scene {
 
-/// Reads the grey channel of a PNG as it stands in the file: rows from the north, numbers of 1 to 16 bits.
+/// Reads the grey channel of a PNG as the file holds it: rows from the north, numbers of 1 to 16 bits.
 ///
 /// GDAL 3.6.2 swaps the two bytes of each number in an interlaced picture of 16 bits, so that its numbers are not used.
-/// Throws base::InputError, which begins with the file, if the picture is damaged, coloured, or has another size.
+/// Throws base::InputError, whose message begins with the file, if the picture is damaged, coloured, or has another
+/// size.
 [[nodiscard]] std::vector<double> greysOfPng(const std::string& file, int columns, int rows);
 
 }  // namespace scene
