@@ -6,7 +6,7 @@
 namespace scene {
 namespace {
 
-constexpr std::size_t kLongestText = 1 << 16;  // [byte]: the WKT of a compound system takes a tenth of it
+constexpr std::size_t kLongestText = 1 << 16;  // [byte]; the WKT of a compound system takes a tenth of it
 
 std::string shortText(base::ByteReader& reader) {
     std::string text = reader.getText();

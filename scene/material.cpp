@@ -30,33 +30,33 @@ double thresholdOf(const Material& material) {
                     double{sand::kLargestThreshold});
 }
 
-/// How many sweeps a step needs for sand beside the tool to rest after the settling time. A disturbance of R cells
-/// needs about R² sweeps to come within a percent, and 2.4 R² without inertia (R = 12: 144 and 350). With fewer than
-/// four a step, no inertia would arise.
+/// Returns how many sweeps a step needs so that sand beside the tool is at rest after the settling time. A disturbance
+/// of R cells needs about R² sweeps to come within a percent, and 2.4 R² without inertia (R = 12: 144 and 350). With
+/// fewer than four sweeps per step, no inertia would arise.
 std::int32_t sweepsFor(sand::Scheme scheme, double radius /* [cell] */, double settlingSeconds, int stepsPerSecond) {
     const double perSquare = scheme == sand::Scheme::isotropic ? 1.0 : 2.4;
     const double sweeps = perSquare * radius * radius / (settlingSeconds * stepsPerSecond);
     return static_cast<std::int32_t>(std::clamp(std::ceil(sweeps), 4.0, double{sand::kMostSweeps}));
 }
 
-/// What of the tool's shape cannot be.
+/// Returns why the tool's shape is invalid, or nullopt if it is valid.
 std::optional<MaterialFault> toolFaultOf(const Material& material, const MaterialGrid& grid) {
     const std::string_view name = sand::toolName(material.toolKind);
     if (material.toolWidth && sand::isRound(material.toolKind)) {
         return MaterialFault{"width", fmt::format("a {} is as wide as it is long; leave width out", name)};
     }
-    // Written so that what is no number is out of range.
+    // The comparison is written so that NaN is out of range.
     if (const double width = material.toolWidth.value_or(1); !(width >= kNarrowestTool && width <= 1)) {
         return MaterialFault{"width", fmt::format("a tool's width over its length must be within [{}, 1], got {}",
                                                   kNarrowestTool, width)};
     }
     if (material.leftFoot && material.toolKind != sand::ToolKind::footprint) {
-        return MaterialFault{"foot", fmt::format("left and right are of a footprint, not of this {}", name)};
+        return MaterialFault{"foot", fmt::format("only a footprint is left or right, not this {}", name)};
     }
     const double length = 2 * material.toolRadius;
     if (const double side = grid.longerSide * grid.cellSize;
         material.toolKind != sand::ToolKind::sphere && length > side) {
-        return MaterialFault{"radius", fmt::format("a {} of radius {} is {} long, and the field {}", name,
+        return MaterialFault{"radius", fmt::format("a {} of radius {} is {} long, but the field only {}", name,
                                                    material.toolRadius, length, side)};
     }
     return std::nullopt;
@@ -115,7 +115,7 @@ Material withNumber(Material material, std::string_view word, double value, cons
     std::string known;
     for (const MaterialKey& key : kMaterialKeys) {
         if (word == key.word || word == key.key) {
-            // Written so that what is no number is out of range.
+            // The comparison is written so that NaN is out of range.
             if (!(value >= key.lowest && value <= key.highest) || (key.highestIsOut && value == key.highest)) {
                 throw base::InputError(fmt::format("{} must be within [{}, {}{}, got {}", key.word, key.lowest,
                                                    key.highest, key.highestIsOut ? ')' : ']', value));
@@ -129,7 +129,7 @@ Material withNumber(Material material, std::string_view word, double value, cons
 }
 
 Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid) {
-    // A scene without a tool to speak of may be; a tool that vanishes under somebody's hand may not.
+    // A scene may begin with a very small tool. A tool must not vanish while a hand uses it.
     const double least = grid.cellSize / sand::kProbePerCell;
     if (change.radius && !(*change.radius >= least)) {
         throw base::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));

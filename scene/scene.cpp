@@ -6,7 +6,7 @@
 namespace scene {
 namespace {
 
-/// What may stand at the end of a scene, each with its length in bytes.
+/// Parts that may follow a scene, each with its length in bytes.
 enum class Part : std::uint8_t { georeference = 1 };
 
 void decodePart(base::ByteReader& reader, Scene& scene) {

@@ -10,7 +10,7 @@ namespace {
 
 void wantSameCells(const sand::HeightField& field, const Scene& scene) {
     if (field.columns() != scene.terrain.columns() || field.rows() != scene.terrain.rows()) {
-        throw std::invalid_argument("a field of other cells than the scene's");
+        throw std::invalid_argument("field and scene have different numbers of cells");
     }
 }
 
@@ -18,7 +18,8 @@ bool isWall(const Scene& scene, int column, int row) {
     return scene.ground != nullptr && scene.ground->isWall(column, row);
 }
 
-/// A raster of the scene's cells, with `heightOf(column, row)` [unit] + `datum` [scene unit] where there is no wall.
+/// Returns a raster of the scene's cells. A cell that is not a wall has the height `heightOf(column, row)` [unit] +
+/// `datum` [scene unit].
 template <class HeightOf>
 EsriGrid rasterOf(const Scene& scene, double datum, HeightOf heightOf) {
     const Georeference& reference = scene.georeference;
@@ -60,7 +61,7 @@ Mesh meshOf(const sand::HeightField& field, const Scene& scene) {
     const EsriGrid grid = heightsOf(field, scene);
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     Mesh mesh;
-    std::vector<std::uint32_t> numbers;  // of the vertices, row by row from the south-west
+    std::vector<std::uint32_t> numbers;  // index of each cell's vertex, row by row from the south-west
     numbers.reserve(grid.heights.size());
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {

@@ -28,12 +28,12 @@ namespace {
 
 constexpr std::size_t kPiece = 1 << 16;  // of a file [byte]
 
-/// The words of a text, each with its line. The text is read as its words are taken.
+/// Words of a text, each with its line. The text is read while its words are taken.
 class Words {
 public:
     Words(std::istream& stream, std::string file) : stream_(stream), file_(std::move(file)) {}
 
-    /// Returns the next word, which is valid until the next call; an empty one at the end of the text.
+    /// Returns the next word, which is valid until the next call. Returns an empty word at the end of the text.
     std::string_view next() {
         line_ += std::exchange(linesBefore_, 0);
         while (at_ < text_.size() || readOn()) {
@@ -49,7 +49,7 @@ public:
         at_ += length;
         return std::string_view(text_).substr(at_ - length, length);
     }
-    /// Returns the word that next() will return. line() stays.
+    /// Returns the word that next() will return. Does not change line().
     std::string_view peek() {
         const long line = line_;
         const std::string_view word = next();
@@ -58,7 +58,7 @@ public:
         line_ = line;
         return word;
     }
-    /// The next word as a finite number, whatever the locale.
+    /// Returns the next word as a finite number. Ignores the locale.
     double number(std::string_view what) {
         const std::string_view word = next();
         double value = 0;
@@ -77,7 +77,7 @@ public:
 private:
     static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
-    /// Reads another piece behind what is not taken yet. Returns false at the end of the file.
+    /// Reads another piece behind the text that is not taken yet. Returns false at the end of the file.
     bool readOn() {
         text_.erase(0, at_);
         at_ = 0;
@@ -90,10 +90,10 @@ private:
 
     std::istream& stream_;
     std::string file_;
-    std::string text_;      // the piece at hand
-    std::size_t at_ = 0;    // in text_, behind the last word
-    long line_ = 1;         // of the last word
-    long linesBefore_ = 0;  // between that and a word that was peeked at
+    std::string text_;      // current piece
+    std::size_t at_ = 0;    // position in text_, behind the last word
+    long line_ = 1;         // line of the last word
+    long linesBefore_ = 0;  // lines between the last word and a word that peek() has read
 };
 
 int sideOf(Words& words, const std::string& key) {
@@ -114,7 +114,7 @@ double sizeOf(Words& words, const std::string& key) {
     return size;
 }
 
-/// The keys with which a header may begin.
+/// Keys with which a header may begin.
 constexpr std::array<std::string_view, 10> kKeys{"ncols",     "nrows",     "cellsize",  "dx",        "dy",
                                                  "xllcorner", "xllcenter", "yllcorner", "yllcenter", "nodata_value"};
 
@@ -128,15 +128,15 @@ std::ifstream opened(const std::filesystem::path& file) {
     return stream;
 }
 
-/// How many heights a file can hold at most: each takes a digit and a blank. A lying header must not allocate
-/// gigabytes.
+/// Returns the largest number of heights that a file can hold: each takes a digit and a blank. A false header must not
+/// make the program allocate gigabytes.
 std::size_t mostHeightsIn(const std::filesystem::path& file) {
     std::error_code error;
     const std::uintmax_t bytes = std::filesystem::file_size(file, error);
     return error ? std::size_t{1} << 20 : static_cast<std::size_t>(bytes / 2 + 1);
 }
 
-/// What stands for no data: any number, or the "nan" that GDAL writes.
+/// Reads the number that means no data: any number, or the "nan" that GDAL writes.
 double noDataOf(Words& words, const std::string& key) {
     if (base::lowerCase(words.peek()) == "nan") {
         words.next();
@@ -172,7 +172,7 @@ void readHeader(Words& words, EsriGrid& grid) {
         } else if (key == "nodata_value") {
             grid.noData = noDataOf(words, key);
         } else {
-            words.fail(fmt::format("'{}' is no key of an ESRI ASCII grid", key));
+            words.fail(fmt::format("'{}' is not a key of an ESRI ASCII grid", key));
         }
     }
     const bool dx = grid.cellSize > 0;
@@ -189,7 +189,7 @@ void readHeader(Words& words, EsriGrid& grid) {
     }
 }
 
-/// The next word as a height, or as no data.
+/// Reads the next word as a height, or as no data.
 double heightOf(Words& words, const EsriGrid& grid) {
     if (grid.noData && std::isnan(*grid.noData) && base::lowerCase(words.peek()) == "nan") {
         words.next();

@@ -25,17 +25,17 @@ namespace scene {
 namespace {
 
 constexpr std::string_view kMagic = "Gwyddion Simple Field 1.0\n";
-constexpr double kSquare = 1e-6;  // by which share the sides of a pixel may differ
+constexpr double kSquare = 1e-6;  // largest difference of a pixel's sides, as a share
 
 struct Entry {
     std::string value;
     long line = 0;
 };
 
-/// The text header of a file, and the zeros behind it.
+/// Text header of a file, with the zeros behind it.
 class Header {
 public:
-    /// Leaves `stream` at the first number.
+    /// Reads the header. The next byte of `stream` is then the first number.
     Header(std::istream& stream, std::string file) : file_(std::move(file)) {
         std::string text(kMagic.size(), '\0');
         stream.read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -44,13 +44,13 @@ public:
         }
         std::getline(stream, text, '\0');
         if (stream.eof() || !stream) {
-            throw base::InputError(file_ + ": its header has no end: zeros must stand before the numbers");
+            throw base::InputError(file_ + ": its header has no end: zeros must come before the numbers");
         }
         const std::size_t end = kMagic.size() + text.size();
         size_ = end / 4 * 4 + 4;
         for (std::size_t at = end + 1; at < size_; ++at) {
             if (stream.get() != '\0') {
-                throw base::InputError(file_ + ": zeros up to a multiple of four bytes must stand before the numbers");
+                throw base::InputError(file_ + ": zeros up to a multiple of four bytes must come before the numbers");
             }
         }
         long line = 1;
@@ -66,7 +66,7 @@ public:
     [[nodiscard]] int side(const std::string& name) const {
         const Entry* entry = find(name);
         if (entry == nullptr) {
-            throw base::InputError(fmt::format("{}: its header says no {}", file_, name));
+            throw base::InputError(fmt::format("{}: its header has no {}", file_, name));
         }
         const double side = number(name, *entry);
         if (side != std::floor(side) || side < 1 || side > sand::kMaxSide) {
@@ -75,7 +75,7 @@ public:
         }
         return static_cast<int>(side);
     }
-    /// [m]
+    /// Returns a length [m].
     [[nodiscard]] double length(const std::string& name) const {
         const Entry* entry = find(name);
         const double length = entry == nullptr ? 1.0 : number(name, *entry);
@@ -86,7 +86,7 @@ public:
     }
     void wantMetres(const std::string& name) const {
         if (const Entry* entry = find(name); entry != nullptr && entry->value != "m" && !entry->value.empty()) {
-            fail(*entry, fmt::format("{} must be m, as of a scan of heights, got '{}'", name, entry->value));
+            fail(*entry, fmt::format("{} must be m for a scan of heights, got '{}'", name, entry->value));
         }
     }
 
@@ -94,7 +94,7 @@ private:
     void add(std::string_view text, long line) {
         const std::size_t equals = text.find('=');
         if (equals == std::string_view::npos) {
-            throw base::InputError(file_, line, fmt::format("'Name = value' is wanted, got '{}'", text));
+            throw base::InputError(file_, line, fmt::format("expected 'Name = value', got '{}'", text));
         }
         entries_[std::string(base::trimmed(text.substr(0, equals)))] = {
             std::string(base::trimmed(text.substr(equals + 1))), line};
@@ -121,7 +121,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Reads the numbers, a row at a time.
+/// Reads the numbers row by row.
 void readHeights(std::istream& stream, EsriGrid& grid) {
     const auto width = static_cast<std::size_t>(grid.columns);
     grid.heights.reserve(width * static_cast<std::size_t>(grid.rows));
@@ -167,8 +167,8 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
     const std::size_t cells = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
     const std::uintmax_t behind = bytes - std::min<std::uintmax_t>(bytes, header.size());
     if (behind != cells * sizeof(float)) {
-        throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, and behind the header stand {}",
-                                           file.string(), grid.columns, grid.rows, cells * sizeof(float), behind));
+        throw base::InputError(fmt::format("{}: {} x {} pixels are {} bytes, but {} follow the header", file.string(),
+                                           grid.columns, grid.rows, cells * sizeof(float), behind));
     }
     if (check) {
         check(grid.columns, grid.rows, false);  // any number may be NaN

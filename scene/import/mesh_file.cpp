@@ -14,9 +14,9 @@
 namespace scene {
 namespace {
 
-constexpr std::size_t kReadPiece = 1 << 20;  // [byte], about: what is written at once
+constexpr std::size_t kReadPiece = 1 << 20;  // [byte], approximate size of a write
 
-/// Writes what `append` puts into a piece for each of the elements, in pieces.
+/// Writes the elements in pieces. `append` adds an element to a piece.
 template <class Elements, class Append>
 void writeAll(const Elements& elements, std::ostream& stream, Append append) {
     std::string piece;

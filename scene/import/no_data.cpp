@@ -10,10 +10,10 @@
 namespace scene {
 namespace {
 
-// ESRI's and GDAL's default, elevation tiles of 16 bits, and what some surveys use.
+// Default of ESRI and GDAL, elevation tiles of 16 bits, and the number of some surveys.
 constexpr std::array<double, 3> kUsual{-9999, -32768, -99999};
 
-/// A height that was divided by a unit and multiplied again is off by two roundings at most.
+/// Returns whether a height is `number`. Dividing it by a unit and multiplying it again causes at most two roundings.
 bool isNumber(double height, double number) { return std::abs(height - number) <= 1e-15 * std::abs(number); }
 
 std::string warning(const std::string& file, std::ptrdiff_t count, const char* what, double number,

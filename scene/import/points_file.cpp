@@ -20,9 +20,9 @@
 namespace scene {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8, as spreadsheets write it
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets write it
 constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
-constexpr double kFlat = 1e-9;  // width over length of a cloud that has no area: doubles tell little less
+constexpr double kFlat = 1e-9;  // width / length below which a cloud counts as a line; doubles resolve little more
 
 std::vector<std::string_view> fieldsOf(std::string_view text) {
     for (const char separator : {';', ','}) {
@@ -54,7 +54,7 @@ std::string_view unquoted(std::string_view field) {
     return quoted ? field.substr(1, field.size() - 2) : field;
 }
 
-/// "WGS84_Lat [deg]" holds wgs, lat and deg.
+/// Returns the words of a field: "WGS84_Lat [deg]" holds wgs, lat and deg.
 std::vector<std::string> wordsOf(std::string_view field) {
     std::vector<std::string> words;
     for (auto at = field.begin(); (at = std::find_if(at, field.end(), isLetter)) != field.end();) {
@@ -70,7 +70,8 @@ bool holds(const std::vector<std::string>& words, std::initializer_list<std::str
                        [&](const std::string& word) { return std::find(any.begin(), any.end(), word) != any.end(); });
 }
 
-/// A mistyped one too, in quotes, or one that is not finite: what somebody measured must not pass for a name.
+/// Returns whether a field means a number, even if it is mistyped, in quotes, or not finite. A measured value must not
+/// pass for a name.
 bool meansNumber(std::string_view field) {
     const auto first = std::find_if(field.begin(), field.end(), [](char c) { return isDigit(c) || isLetter(c); });
     if (first == field.end() || isDigit(*first)) {
@@ -84,7 +85,7 @@ bool isDegrees(std::string_view name) {
     return isLatitude(name) || holds(wordsOf(name), {"lon", "long", "lng", "longitude", "deg", "degree", "degrees"});
 }
 
-/// Whether a value is an angle as people write it: "47.1°", "47°06'30\"", "10.2E".
+/// Returns whether a value is an angle as people write it: "47.1°", "47°06'30\"", "10.2E".
 bool isAngle(std::string_view field) {
     if (field.find('\xB0') != std::string_view::npos || field.find("\xC2\xBA") != std::string_view::npos) {
         return true;  // a degree sign in UTF-8 or Latin-1, or the ordinal sign that is often typed for it
@@ -93,7 +94,7 @@ bool isAngle(std::string_view field) {
     return facing && numberOf(base::trimmed(field.substr(0, field.size() - 1)));
 }
 
-/// Points with the lines they stand in.
+/// Points with the lines that contain them.
 class Cloud {
 public:
     explicit Cloud(const std::filesystem::path& file) : file_(file.string()) {
@@ -120,11 +121,11 @@ public:
         }
     }
 
-    /// One of each place.
+    /// Returns one point per place.
     [[nodiscard]] Points distinct() const {
         std::vector<std::size_t> order(points_.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        // By place, then by line: no two are equal, and so the order is the same everywhere.
+        // Sorts by place, then by line. No two are equal, so that the order is the same on every machine.
         std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
             return std::tuple(points_[a][0], points_[a][1], a) < std::tuple(points_[b][0], points_[b][1], b);
         });
@@ -157,7 +158,7 @@ private:
             return;
         }
         if (fields.size() != 3) {
-            fail(line, fmt::format("x, y and z are wanted, got {} values", fields.size()));
+            fail(line, fmt::format("expected x, y and z, got {} values", fields.size()));
         }
         if (points_.size() == kMostPoints) {
             fail(line, fmt::format("more than {} points; thin them out", kMostPoints));
@@ -167,7 +168,7 @@ private:
             const std::optional<double> value = numberOf(fields[i]);
             if (!value && isAngle(fields[i])) {
                 fail(line,
-                     fmt::format("its coordinates ('{}') are degrees, and sand wants lengths; write them as plain "
+                     fmt::format("its coordinates ('{}') are degrees, but sand needs lengths; write them as plain "
                                  "decimals, longitude first, and make metres of them: {}CODE, CODE being that of their "
                                  "UTM zone",
                                  fields[i], kTransform));
@@ -183,7 +184,7 @@ private:
         points_.push_back(point);
         lines_.push_back(line);
     }
-    /// A title may call the columns anything, but not x, y or z where that stands in another one.
+    /// Checks a title. It may name the columns freely, but x, y and z only where they belong.
     void checkTitle(const std::vector<std::string_view>& fields, long line) {
         for (std::size_t i = 0; i < fields.size(); ++i) {
             const std::string_view name = unquoted(fields[i]);
@@ -194,11 +195,11 @@ private:
         }
         if (fields.size() != 3) {
             const auto degrees = std::find_if(fields.begin(), fields.end(), isDegrees);
-            fail(line, fmt::format("three columns are wanted, x, y, z, and '{}' begins a title of {}{}", fields[0],
-                                   fields.size(),
-                                   degrees == fields.end() ? ""
-                                                           : fmt::format("; '{}' is in degrees, and sand wants lengths",
-                                                                         unquoted(*degrees))));
+            fail(line, fmt::format(
+                           "expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0], fields.size(),
+                           degrees == fields.end()
+                               ? ""
+                               : fmt::format("; '{}' is in degrees, but sand needs lengths", unquoted(*degrees))));
         }
         for (const std::string_view name : {fields[0], fields[1]}) {
             if (isDegrees(name) && !degrees_) {
@@ -206,12 +207,12 @@ private:
             }
         }
     }
-    /// With the command that makes metres, into the UTM zone of the first point.
+    /// Throws base::InputError with the command that converts degrees to metres, in the UTM zone of the first point.
     [[noreturn]] void failForDegrees(const std::array<double, 3>& point) const {
         const std::size_t north = degrees_->latitudeFirst ? 0 : 1;
         fail(degrees_->line,
              fmt::format(
-                 "its coordinates ('{}') are degrees, and sand wants lengths; make metres of lines of longitude, "
+                 "its coordinates ('{}') are degrees, but sand needs lengths; make metres of lines of longitude, "
                  "latitude and height: {}{}",
                  degrees_->name, kTransform, metricSystemAt(point.at(1 - north), point.at(north))));
     }
@@ -219,7 +220,7 @@ private:
         throw base::InputError(file_, line, message);
     }
 
-    /// What a title says of its columns.
+    /// Columns in degrees, as the title names them.
     struct Degrees {
         std::string name;
         long line = 0;
@@ -232,7 +233,7 @@ private:
     std::optional<Degrees> degrees_;
 };
 
-using Wide = long double;  // whose squares of any double neither overflow nor vanish
+using Wide = long double;  // squares of doubles neither overflow nor vanish in it
 
 Wide squaredDistance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
     const Wide x = Wide{a[0]} - b[0], y = Wide{a[1]} - b[1];
@@ -256,12 +257,12 @@ bool onOneLine(const Points& points) {
 Points readPoints(const std::filesystem::path& file) {
     Points points = Cloud(file).distinct();
     if (points.size() < 3) {
-        throw base::InputError(fmt::format("{}: holds {} points at different places, and terrain takes at least 3",
+        throw base::InputError(fmt::format("{}: holds {} points at different places, but terrain needs at least 3",
                                            file.string(), points.size()));
     }
     if (onOneLine(points)) {
         throw base::InputError(
-            fmt::format("{}: all {} points lie on one line, and terrain needs an area", file.string(), points.size()));
+            fmt::format("{}: all {} points lie on one line, but terrain needs an area", file.string(), points.size()));
     }
     return points;
 }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a file that GDAL takes for its reference system lies beside it.
+/// Returns whether a .prj file, from which GDAL reads a reference system, is beside `file`.
 bool hasPrj(const fs::path& file) {
     std::error_code none;
     return fs::exists(fs::path(file).replace_extension(".prj"), none) ||
@@ -67,7 +67,7 @@ EsriGrid readByGdal(const fs::path& file, const Importer& importer, const Raster
 }
 
 EsriGrid readTextWithUnits(const fs::path& file, const Importer& importer, const RasterCheck& check) {
-    // Only the units are GDAL's: it takes a word in place of a height for 0, and our reader names the line.
+    // GDAL only reads the units. It reads a word in place of a height as 0; readEsriGrid() reports the line.
     const RasterUnits units = importer.readUnits(file);
     EsriGrid grid = readEsriGrid(file, check);
     grid.units = units;

@@ -17,7 +17,7 @@
 namespace scene {
 namespace {
 
-constexpr int kTooCoarse = 4096;  // [unit]: below, rest slopes come out more than a percent too steep
+constexpr int kTooCoarse = 4096;  // [unit]; below it, rest slopes are more than a percent too steep
 
 sand::Scheme schemeIn(const host::TomlTable& material) {
     std::vector<std::string_view> names(sand::kSchemes.size());
@@ -25,7 +25,7 @@ sand::Scheme schemeIn(const host::TomlTable& material) {
     return sand::kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
 }
 
-/// Reads the keys of [material], which may be missing altogether: dry sand is the default.
+/// Reads the keys of [material]. The table may be missing, because dry sand is the default.
 void readMaterialKeys(const host::TomlTable& table, Scene& scene) {
     for (const MaterialKey& key : materialKeys()) {
         const double value = table.numberOr(key.key, key.lowest, {key.lowest, key.highest, key.highestIsOut});
@@ -121,7 +121,7 @@ void readForce(const host::TomlTable& file, Scene& scene) {
     table->finish();
 }
 
-// [pixel]: GL promises vertices no finer than a sixteenth of a pixel.
+// [pixel]: GL guarantees only that the grid of vertices is at least as fine as a sixteenth of a pixel.
 constexpr double kLeastDetail = 1.0 / 16;
 
 void readLook(const host::TomlTable& file, Scene& scene) {

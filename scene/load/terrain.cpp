@@ -39,7 +39,7 @@ std::int32_t heightUnits(const host::TomlTable& terrain, const std::string& key,
     return static_cast<std::int32_t>(units);
 }
 
-/// The ground of a scene that turns out to need one.
+/// Returns the ground of a scene; creates it at the first call.
 sand::Ground& groundOf(std::shared_ptr<sand::Ground>& ground, const sand::HeightField& field) {
     if (ground == nullptr) {
         ground = std::make_shared<sand::Ground>(field.columns(), field.rows());
@@ -47,7 +47,8 @@ sand::Ground& groundOf(std::shared_ptr<sand::Ground>& ground, const sand::Height
     return *ground;
 }
 
-/// `kind` is that of the terrain: GDAL has no driver for Gwyddion's files.
+/// Throws base::InputError unless cells are square. `kind` is that of the terrain: GDAL has no driver for Gwyddion's
+/// files.
 void requireSquareCells(const host::TomlTable& terrain, std::string_view kind, const EsriGrid& raster) {
     if (raster.aspect() != 1) {
         const std::string advice = kind == "gsf" ? " in Gwyddion: Data Process > Basic Operations > Resample"
@@ -57,7 +58,7 @@ void requireSquareCells(const host::TomlTable& terrain, std::string_view kind, c
     }
 }
 
-/// Asks, before heights are read or computed, whether the field that they become can be.
+/// Checks the size of a field before its heights are read or computed.
 class AskedBeforeHeights {
 public:
     AskedBeforeHeights(const host::TomlTable& file, const host::TomlTable& terrain, const SizeChecks& checks)
@@ -73,12 +74,12 @@ public:
         if (checks_.raster && !computed_) {
             checks_.raster(columns, rows);
         }
-        // A grid of rock has the same cells, and then no edge without data is cut off.
+        // A grid of rock has the same cells, so that no edge without data is cut off.
         if (complete || terrain_.has("bedrock")) {
             askOfField(columns, rows);
         }
     }
-    /// Called with the size of the field, unless that has been known before.
+    /// Called with the size of the field. Does nothing if the size was checked before.
     void askOfField(int columns, int rows) {
         if (checks_.field && !std::exchange(asked_, true)) {
             checks_.field(columns, rows, tin_);
@@ -92,7 +93,8 @@ private:
     bool asked_ = false;
 };
 
-/// Cells without data become walls, drawn as flats at the lowest height there is.
+/// Returns the field of a source. Cells without data become walls. They are drawn as flats at the lowest height of the
+/// terrain.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                              std::shared_ptr<sand::Ground>& ground, const SizeChecks& checks) {
     AskedBeforeHeights asked(file, terrain, checks);
@@ -107,7 +109,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
         return layOutPoints(file, terrain, source.points, scene);
     }
     requireSquareCells(terrain, sourceKinds().at(static_cast<std::size_t>(kind)), source.raster);
-    // A grid of rock has the same cells, those at the edges too.
+    // A grid of rock has the same cells, including those at the edges.
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
@@ -161,7 +163,7 @@ sand::HeightField madeUp(const host::TomlTable& file, const host::TomlTable& ter
     return field;
 }
 
-/// Puts rock at `heightOf(column, row)` [unit] under every cell that is no wall.
+/// Puts rock at `heightOf(column, row)` [unit] under every cell that is not a wall.
 template <class HeightOf>
 void layRock(const host::TomlTable& terrain, const std::string& key, const sand::HeightField& field,
              sand::Ground& ground, HeightOf heightOf) {
@@ -185,7 +187,7 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
 void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
                  std::shared_ptr<sand::Ground>& ground, std::vector<std::string>& warnings) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
-        terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: either says where the rock lies");
+        terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: each gives the height of the rock");
     }
     if (terrain.has("layer")) {
         const std::int32_t layer = heightUnits(terrain, "layer", terrain.number("layer", {0, 1e9}), field.unit());

@@ -48,7 +48,7 @@ EsriGrid readImage(const host::TomlTable& terrain, const RasterCheck& check) {
     return image;
 }
 
-/// A stretch [from, to] of x or y.
+/// Returns the range [from, to] of x or y.
 std::pair<double, double> stretchOf(const host::TomlTable& terrain, const std::string& key) {
     const std::vector<double> ends = terrain.numbers(key, 2);
     if (!(ends[1] > ends[0]) || !std::isfinite(ends[1] - ends[0])) {
@@ -57,7 +57,7 @@ std::pair<double, double> stretchOf(const host::TomlTable& terrain, const std::s
     return {ends[0], ends[1]};
 }
 
-/// Rows follow from the columns, as cells are square; where they are given, they must fit.
+/// Reads a function. The rows follow from the columns, because cells are square. If the file gives rows, they must fit.
 EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrain, const RasterCheck& check) {
     Function function;
     function.text = terrain.text("z");
@@ -91,7 +91,8 @@ EsriGrid readFunction(const host::TomlTable& file, const host::TomlTable& terrai
     }
 }
 
-/// A scan is nanometres high: its width becomes a few scene units, and its heights grow with it and on request more.
+/// Reads a scan. A scan is nanometres high. Its width becomes a few scene units. Its heights grow with the width, and
+/// by 'exaggeration'.
 TerrainSource readScan(const host::TomlTable& terrain, const RasterCheck& check) {
     const double width = terrain.numberOr("width", 2.0, host::kPositive);
     const double exaggeration = terrain.numberOr("exaggeration", 1, host::kPositive);
@@ -104,7 +105,7 @@ TerrainSource readScan(const host::TomlTable& terrain, const RasterCheck& check)
         terrain.fail("file", scan.file + " is too small or too large for heights to be scaled; its XReal is in metres");
     };
     if (!std::isnormal(reference.lengthPerUnit) || !std::isnormal(reference.heightPerUnit)) {
-        failToScale();  // nothing over nothing would be no data
+        failToScale();  // 0 divided by 0 would count as no data
     }
     scan.cellSize = width / scan.columns;
     if (scan.cellDepth) {

@@ -36,7 +36,8 @@ std::int64_t latticeSize(const TinCells& cells, std::int32_t widest) {
     return sand::tin::Lattice(widest).size(cells.columns, cells.rows);
 }
 
-/// The same distance, or the least beyond it at which no more vertices lie; 0 when one is too many.
+/// Returns `widest`, or the smallest distance above it at which there are at most `most` vertices. Returns 0 if one
+/// vertex is too many.
 std::int32_t widened(const TinCells& cells, std::int32_t widest, std::int64_t most) {
     const std::int32_t longer = std::max(cells.columns, cells.rows) * sand::kProbePerCell;
     while (latticeSize(cells, widest) > most) {
@@ -53,7 +54,7 @@ std::int32_t widened(const TinCells& cells, std::int32_t widest, std::int64_t mo
 sand::tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& cells) {
     sand::tin::Settings settings = readNumbers(tin, cells.side);
     if (!tin.has("widest")) {
-        // Half of them, or nothing would be left to follow the terrain and the tool with.
+        // Half of the vertices, because otherwise none would be left for terrain and tool.
         settings.widest = widened(cells, settings.widest, (settings.mostVertices - kCorners) / 2);
         return settings;
     }
@@ -96,7 +97,8 @@ void requireSpacing(const host::TomlTable& file, const Scene& scene) {
         return;
     }
     const sand::tin::Settings& settings = scene.tin->settings;
-    const sand::CellRect reach = sand::TurnedShape(scene.rules.toolShape()).cellsChanged(0, 0);  // along its length
+    const sand::CellRect reach =
+        sand::TurnedShape(scene.rules.toolShape()).cellsChanged(0, 0);  // along the tool's length
     const double width = std::min(reach.x1 - reach.x0, scene.rules.columns) * double{sand::kProbePerCell};
     const double depth = std::min(reach.x1 - reach.x0, scene.rules.rows) * double{sand::kProbePerCell};
     const double least =

@@ -16,9 +16,9 @@
 namespace scene {
 namespace {
 
-constexpr int kUsualSide = 512;  // nominal cells, of points that nobody says more of
+constexpr int kUsualSide = 512;  // default number of nominal cells along the longer side of points
 
-/// Whether volumes of heights up to `highest` [unit] fit over this field.
+/// Throws base::InputError unless volumes of heights up to `highest` [unit] fit over this field.
 void requireRange(const host::TomlTable& file, double highest, int columns, int rows, double unit) {
     const double most = sand::tin::mostHeight(columns, rows);
     if (highest > most) {
@@ -41,7 +41,8 @@ bool hasRock(const sand::Ground& ground) {
     return false;
 }
 
-/// Of points where they lie on the lattice, and the corners of their field, which the TIN has besides.
+/// Returns the number of places on the lattice: those of the points, and the corners of their field, which the TIN
+/// adds.
 std::size_t distinctPlaces(const sand::tin::TinStart& start) {
     std::vector<sand::tin::Place> places = start.places;
     places.insert(places.end(), {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}});
@@ -49,7 +50,7 @@ std::size_t distinctPlaces(const sand::tin::TinStart& start) {
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
 }
 
-/// Makes the TIN of points that are laid out already.
+/// Makes the TIN of points that are already on the lattice.
 sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& tin, const Scene& scene) {
     sand::tin::TinStart start = *scene.tin;
     const std::size_t places = distinctPlaces(start);
@@ -59,7 +60,7 @@ sand::tin::TinStart joined(const host::TomlTable& file, const host::TomlTable& t
                                 "thin out the points",
                                 places, sand::tin::kMostPlaces));
     }
-    (void)tin.numberOr("cell", 1);  // has been read
+    (void)tin.numberOr("cell", 1);  // already read by layOutPoints()
     start.settings = readTinSettings(tin, {scene.rules.columns, scene.rules.rows, scene.terrain.cellSize()}, places);
     tin.finish();
     start = sand::tin::join(start, scene.rules.rim);
@@ -95,7 +96,8 @@ sand::tin::TinStart followed(const host::TomlTable& tin, Scene& scene) {
     }
 }
 
-/// Returns the largest distance of a point from the datum [unit], which may be beyond what a height can be.
+/// Puts points on the lattice. Returns the largest distance of a point from the datum [unit], which may be larger than
+/// a height can be.
 double putOnLattice(const Points& points, const Georeference& origin, const sand::HeightField& cell,
                     sand::tin::TinStart& start) {
     const auto lattice = [&](double length, std::int32_t most) {
@@ -113,7 +115,7 @@ double putOnLattice(const Points& points, const Georeference& origin, const sand
     return highest;
 }
 
-/// Of points at one place of the lattice the first in the file is taken.
+/// Warns of points that share a place of the lattice. The TIN takes the first of them in the file.
 void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<sand::tin::Place>& places,
                       double step, Scene& scene) {
     std::vector<std::size_t> order(points.size());
@@ -132,8 +134,8 @@ void warnOfNearPoints(const std::string& file, const Points& points, const std::
     }
     if (near > 0) {
         scene.warnings.push_back(fmt::format(
-            "{}: {} points lie within {:.3g} of another, where a TIN of such cells tells none apart; the first in the "
-            "file was taken of each, others were up to {:.3g} higher or lower; set a smaller cell in [tin]",
+            "{}: {} points lie within {:.3g} of another, which a TIN of such cells cannot separate; the first in the "
+            "file was taken, others were up to {:.3g} higher or lower; set a smaller cell in [tin]",
             file, near, step, most));
     }
 }
@@ -151,7 +153,7 @@ sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTabl
     }
     const double longer = std::max(east - west, north - south);
     if (!std::isnormal(longer * longer)) {
-        terrain.fail("file", fmt::format("the points are {} long, which is no length of terrain", longer));
+        terrain.fail("file", fmt::format("the points are {} long, which cannot be a length of terrain", longer));
     }
     const double cell =
         file.requiredTable("tin").numberOr("cell", longer / kUsualSide, {longer / sand::kMaxSide, longer});
@@ -201,7 +203,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
     }
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
     sand::tin::TinStart start = followed(*tin, scene);
-    scene.ground = nullptr;  // its walls are the TIN's own
+    scene.ground = nullptr;  // its walls are holes of the TIN
     scene.rules.ground = 0;
     scene.beginAs(std::move(start));
 }

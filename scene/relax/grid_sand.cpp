@@ -13,11 +13,11 @@
 namespace scene::relax {
 namespace {
 
-constexpr double kMostOblong = 1000;                // longer over shorter side of a cell
-constexpr double kFineThreshold = 4096;             // [unit]: from here on slopes rest within a percent
-constexpr double kLargestThreshold = 1073741824.0;  // [unit]: no difference between heights is larger
+constexpr double kMostOblong = 1000;                // longer side / shorter side of a cell
+constexpr double kFineThreshold = 4096;             // [unit]; from it on, slopes rest within a percent of the talus
+constexpr double kLargestThreshold = 1073741824.0;  // [unit]; no difference between heights is larger
 
-/// A height of a grid, and where it stands.
+/// A height of a grid, with its position.
 struct Cell {
     const EsriGrid* grid = nullptr;
     int column = 0, row = 0;
@@ -28,7 +28,7 @@ struct Extremes {
     Cell lowest, highest;
 };
 
-/// Adds a grid's heights where `surface` has data.
+/// Adds the heights of a grid in cells in which `surface` has data.
 void include(const EsriGrid& grid, const EsriGrid& surface, Extremes& extremes) {
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
@@ -51,7 +51,7 @@ std::string shapeOf(const EsriGrid& grid) {
                        grid.cellDepth.value_or(grid.cellSize), grid.westEdge, grid.southEdge);
 }
 
-/// Other programs may have printed the same corner with other digits.
+/// Returns whether two grids have the same cells. Other programs may have printed the same corner with other digits.
 bool sameShape(const EsriGrid& a, const EsriGrid& b) {
     const auto near = [](double x, double y, double tolerance) { return std::abs(x - y) <= tolerance; };
     return a.columns == b.columns && a.rows == b.rows && near(a.cellSize, b.cellSize, 1e-6 * a.cellSize) &&
@@ -74,15 +74,16 @@ HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
     return scale;
 }
 
-/// Returns the share by which faces across one axis may rest too steep, because a flux below one unit is none.
+/// Returns the share by which faces across one axis may rest too steep, because a flux is rounded down to whole units.
 ///
 /// Let a be the difference across a face, b the slope along it, t the threshold and t + x the slope, all in units of
 /// height. Near the threshold the flux is k a x / t, so that the face rests while a < t / (k x). The faces beside it,
-/// of which b is the mean, rest near t: x is about a² / (2 t). Together that is x³ < t / (2 k²). Where the slope runs
+/// whose mean is b, rest near t, so that x is about a² / (2 t). Both together give x³ < t / (2 k²). If the slope runs
 /// across the face, a is t, and x < 1 / k.
 double steepening(double threshold, double k) { return (std::cbrt(threshold / (2 * k * k)) + 1 / k) / threshold; }
 
-/// Of the axis that is worse off. k is twice the push of sand/grid/erosion.cpp, or without inertia its limit.
+/// Returns the share of the axis with the larger one. k is twice the push of sand/grid/erosion.cpp, or its limit
+/// without inertia.
 double steepeningOfGrid(double threshold, double aspect, sand::Scheme scheme) {
     const auto k = [scheme](double ratio) {
         const double squared = ratio * ratio;
@@ -101,17 +102,17 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSett
     const double least = std::floor(threshold * std::min(1.0, aspect));
     const std::string units = fmt::format("{}: a talus of {} degrees is {} height units of {:.4g} from cell to cell",
                                           surface.file, material.talusDegrees, least, sand.scale.unit);
-    // Coarse units come from heights that lie far apart, seldom from anything else.
+    // Coarse units come from heights that are far apart, and seldom from another cause.
     const std::string span =
         sand.scale.bits == sand::kHeightBits
             ? ""
-            : fmt::format("; heights from {} to {} span {:.4g} cells: if some are no terrain, make them no-data",
+            : fmt::format("; heights from {} to {} span {:.4g} cells: if some are not terrain, make them no-data",
                           extremes.lowest.height(), extremes.highest.height(),
                           (extremes.highest.height() - extremes.lowest.height()) / surface.cellSize);
     const bool level = material.talusDegrees == 0;
     if (least < kLeastThreshold && !level) {
         throw base::InputError(
-            fmt::format("{}, and {} is the least, but for 0 degrees{}", units, kLeastThreshold, span));
+            fmt::format("{}, and {} is the least, except for 0 degrees{}", units, kLeastThreshold, span));
     }
     const double tooSteep = level ? 0 : steepeningOfGrid(threshold, aspect, sand.rules.scheme);
     if (tooSteep > steepeningOfGrid(kFineThreshold, 1, sand.rules.scheme)) {
@@ -120,7 +121,7 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSett
     }
 }
 
-/// Height of the rock in a cell of the grids [unit], at most that of the surface.
+/// Returns the height of the rock in a cell of the grids [unit], which is at most that of the surface.
 std::int32_t rockUnder(const EsriGrid& bedrock, const EsriGrid& surface, int column, int row,
                        const HeightScale& scale) {
     const double height = surface.at(column, row);
@@ -128,11 +129,11 @@ std::int32_t rockUnder(const EsriGrid& bedrock, const EsriGrid& surface, int col
         bedrock.fail(column, row, fmt::format("no rock under {}'s height of {}", surface.file, height));
     }
     const double rock = bedrock.at(column, row);
-    // Two files that mean the same height may differ by their last digit.
+    // Two files that mean the same height may differ in their last digit.
     if (rock - height >= scale.unit) {
-        bedrock.fail(
-            column, row,
-            fmt::format("rock at {} lies above {}'s height of {}: a layer below zero", rock, surface.file, height));
+        bedrock.fail(column, row,
+                     fmt::format("rock at {} lies above {}'s height of {}; rock must not be higher", rock, surface.file,
+                                 height));
     }
     return std::min(scale.toUnits(rock), scale.toUnits(height));
 }
@@ -170,7 +171,7 @@ GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSet
     }
     const sand::CellRect cells = cellsWithData(surface);
     if (cells.empty()) {
-        throw base::InputError(surface.file + ": every cell is a no-data cell; there is no sand in it");
+        throw base::InputError(surface.file + ": every cell is a no-data cell; the grid holds no sand");
     }
     if (bedrock != nullptr) {
         if (!sameShape(surface, *bedrock)) {
@@ -184,7 +185,8 @@ GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSet
         include(*bedrock, surface, extremes);
     }
     const HeightScale scale = scaleFor(surface, extremes);
-    // A field's unit is its cell over 2^16; only lengths in the scene would ask for the file's own cell.
+    // A field's unit is its cell divided by 2^16. The cell of the file is not needed, because no length of the scene is
+    // used.
     GridSand sand{
         .cells = cells,
         .field = sand::HeightField(cells.x1 - cells.x0, cells.y1 - cells.y0, scale.unit * sand::kUnitsPerCell),
@@ -226,7 +228,7 @@ EsriGrid GridSand::toGrid(const EsriGrid& before) const {
             }
             height = withFewDecimals(scale.toHeight(units), scale.unit);
             if (height == before.noData) {
-                height += scale.unit / 64;  // a height must not read as none
+                height += scale.unit / 64;  // otherwise the height would count as no data
             }
         }
     }

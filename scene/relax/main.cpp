@@ -25,7 +25,7 @@ void require(bool good, const char* option, const char* range, Number got) {
     }
 }
 
-/// The checks of the command line would let "nan" pass.
+/// Checks the options. The checks of the command line would accept "nan".
 void check(const Options& options) {
     require(options.talus >= 0 && options.talus < 90, "--talus", "within [0, 90) degrees", options.talus);
     require(options.band >= 0 && options.band <= 1, "--band", "within [0, 1]", options.band);
@@ -47,7 +47,7 @@ void check(const Options& options) {
     }
 }
 
-/// Options that only a grid or only the TIN of a raster knows are refused elsewhere: they would do nothing.
+/// Refuses options that only a grid, or only the TIN of a raster, uses. They would have no effect elsewhere.
 void checkKind(const Options& options, bool toMesh) {
     const bool points = scene::relax::holdsPoints(options.in);
     if (!toMesh) {
@@ -61,14 +61,14 @@ void checkKind(const Options& options, bool toMesh) {
     require(options.threads == 1, "--threads", "left out for a TIN, whose sweeps have one", options.threads);
     if (points) {
         require(!options.maxError && !options.vertices, "--max-error and --vertices",
-                "left out for points, all of which become vertices", options.in);
+                "left out for points, because all points become vertices", options.in);
     } else if (!options.maxError && !options.vertices) {
         throw base::InputError(
             fmt::format("{}: how finely should a TIN follow it? Give --max-error, --vertices or both", options.in));
     }
 }
 
-/// The values of --scheme.
+/// Returns the values of --scheme.
 std::vector<std::string> schemes() {
     std::vector<std::string> names;
     names.reserve(sand::kSchemes.size() + 1);
@@ -113,11 +113,11 @@ int main(int argc, char** argv) {
         .showDefault();
     line.option("--band", options.band, "resting sand starts to slide this share beyond the talus, from 0 to 1")
         .showDefault();
-    line.option("--sweeps", options.most, "sweeps after which to stop though sand still moves");
+    line.option("--sweeps", options.most, "stop after this many sweeps, even if sand still moves");
     line.option("--bedrock", options.bedrock, "a grid of the same shape: rock that the sand lies on");
-    line.option("--threads", options.threads, "how many; the result never depends on it").showDefault();
+    line.option("--threads", options.threads, "number of threads; the result does not depend on it").showDefault();
     line.option("--max-error", options.maxError,
-                "the TIN of a raster comes as near to all of its cells, in its unit of lengths");
-    line.option("--vertices", options.vertices, "the TIN of a raster has at most so many vertices");
+                "largest vertical distance of the TIN from the raster's cells, in its unit of lengths");
+    line.option("--vertices", options.vertices, "most vertices in the TIN of a raster");
     return host::runMain(line, argc, argv, [&] { return run(options); });
 }

@@ -10,12 +10,12 @@
 namespace scene::relax {
 namespace {
 
-constexpr double kMostOblongCell = 1000;      // longer over shorter side
-constexpr double kLatticeSide = 524288;       // [lattice step], 2^19: what a field's side comes near to
-constexpr double kMostLatticeSide = 4194304;  // 2^22: what a mesh takes
+constexpr double kMostOblongCell = 1000;      // longer side / shorter side
+constexpr double kLatticeSide = 524288;       // [lattice step], 2^19: a field's side comes close to it
+constexpr double kMostLatticeSide = 4194304;  // 2^22: largest side that a mesh can have
 constexpr std::int32_t kLeastSpacing = 4, kMostSpacing = 4096;
 
-/// Lattice steps on a cell's sides: a power of two on the shorter one.
+/// Returns the lattice steps on a cell's sides. The shorter side has a power of two.
 sand::tin::Place spacingOf(const EsriGrid& raster) {
     const double ratio = std::max(raster.aspect(), 1 / raster.aspect());
     if (!(ratio <= kMostOblongCell)) {
@@ -58,7 +58,8 @@ Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
             heights.push_back(raster.at(column, row));
         }
     }
-    // From middle to middle: beyond, the ground would be a strip without any vertex but the corners, and a cliff.
+    // The TIN reaches from middle to middle. Beyond, the ground would be a strip whose only vertices are the corners,
+    // and would end in a cliff.
     const sand::tin::Raster samples{heights, raster.columns, raster.rows, {0, 0}, spacing};
     const sand::tin::Cells cells{.columns = raster.columns,
                                  .rows = raster.rows,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sandwall-relax does with a grid.
+// Work of sandwall-relax on a grid.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The scheme of this name. settle ends with sweeps of the default.
+/// Returns the scheme of this name. For settle, returns the default scheme, whose sweeps end it.
 sand::Scheme schemeOf(const std::string& name) {
     const auto* const found = std::ranges::find(sand::kSchemes, name, &sand::NamedScheme::name);
     return found != sand::kSchemes.end() ? found->scheme : sand::kSchemes.front().scheme;
 }
 
-/// Says on stderr how far long work has come: what `after` was told last, every second.
+/// Prints on stderr every second how far long work has come. The report uses the last call of after().
 class Progress {
 public:
     explicit Progress(const GridSand& sand) : cells_(static_cast<double>(sand.field.columns()) * sand.field.rows()) {}
@@ -98,7 +98,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
     ordered_json json;
     json["scheme"] = swept ? "g" : options.scheme;
     if (swept) {
-        json["note"] = "settle knows neither walls nor bedrock; swept to rest by g instead";
+        json["note"] = "settle supports neither walls nor bedrock; g swept the sand to rest instead";
     }
     json["talus_deg"] = options.talus;
     json["band"] = options.band;
@@ -113,7 +113,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
     json["iterations"] = timed.relaxed.iterations;
     json["at_rest"] = timed.relaxed.atRest;
     json["seconds"] = timed.seconds;
-    // No number, and so null, for a level talus.
+    // For a level talus this is not a number, which JSON writes as null.
     json["steepest_over_talus"] = steepest / sand.rules.threshold;
     json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
     json["certificate"] = certificatePart(sand, timed.relaxed);
@@ -132,7 +132,7 @@ void relaxGrid(const Options& options) {
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
-    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    { const host::WholeFile canBeWritten(options.out); }  // to report a faulty OUT before hours of work
     std::vector<std::string> warnings = grid.warnings;
     if (bedrock) {
         warnings.insert(warnings.end(), bedrock->warnings.begin(), bedrock->warnings.end());

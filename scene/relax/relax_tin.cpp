@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sandwall-relax does with points, and with a raster that is to become a mesh.
+// Work of sandwall-relax on points, and on a raster that becomes a mesh.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ Slid slide(TinSand& sand, const Options& options) {
         const sand::tin::Settled settled = sand::tin::settle(sand.layer, sand.threshold, sand.startThreshold);
         slid = {settled.sweeps, settled.iterations, settled.atRest, 0};
     } else {
-        // In one call: between two of them sand that has come to rest would wait for the start threshold again.
+        // Sweeps in one call. Between two calls, sand that has come to rest would need the start threshold again.
         sand::tin::Erosion erosion(sand.layer, sand.threshold, sand.startThreshold);
         std::vector<sand::tin::Vertex> moved;
         const std::int64_t most = options.most.value_or(std::numeric_limits<int>::max());
@@ -75,7 +75,7 @@ nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, con
     json["iterations"] = slid.iterations;
     json["at_rest"] = slid.atRest;
     json["seconds"] = slid.seconds;
-    // No number, and so null, for a level talus.
+    // For a level talus this is not a number, which JSON writes as null.
     json["steepest_over_talus"] = steepness.steepest / talus;
     json["steepest_deg"] = std::atan(steepness.steepest) * 180 / std::numbers::pi;
     json["too_steep_area"] = steepness.tooSteepArea;
@@ -100,7 +100,7 @@ void relaxTin(const Options& options) {
         thinned = thin(raster, {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
-    { const host::WholeFile canBeWritten(options.out); }  // hours later would be too late to find out
+    { const host::WholeFile canBeWritten(options.out); }  // to report a faulty OUT before hours of work
     warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
     for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);

@@ -27,7 +27,7 @@ Relaxed sweepAll(GridSand& sand, const Manner& manner) {
     }
     sand::grid::Erosion erosion(sand.field, sand.rules,
                                 {.ground = sand.ground ? &*sand.ground : nullptr, .executor = manner.executor});
-    // One by one: a call for several sweeps begins with more inertia when they are few.
+    // Sweeps one by one, because a call for a few sweeps begins with more inertia.
     while (!erosion.settled() && erosion.sweepsDone() < manner.mostSweeps) {
         erosion.sweep(sand.field, 1);
         if (flux) {

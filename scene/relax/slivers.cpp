@@ -13,7 +13,7 @@ using sand::tin::Place;
 using sand::tin::Triangle;
 using sand::tin::Triangles;
 
-constexpr double kLeastHeight = 1.0 / 64;  // [lattice step], of a triangle over its longest edge
+constexpr double kLeastHeight = 1.0 / 64;  // [lattice step], least height of a triangle over its longest edge
 
 std::int64_t squaredLength(const Place& a, const Place& b) {
     const std::int64_t x = std::int64_t{b.x} - a.x, y = std::int64_t{b.y} - a.y;
@@ -35,7 +35,7 @@ public:
         for (std::size_t slot = 0; slot < mesh_.triangles.size(); ++slot) {
             look(static_cast<std::int32_t>(slot));
         }
-        // Triangles beyond one that was taken are at the boundary now. The list grows as it is walked.
+        // Triangles beyond a taken one are now at the boundary. The list grows during the loop.
         for (std::size_t next = 0; next < taken_.size(); ++next) {
             for (const std::int32_t beyond : mesh_.triangles[index(taken_[next])].neighbour) {
                 if (beyond != kNobody) {
@@ -60,7 +60,7 @@ private:
         const Triangle& triangle = mesh_.triangles[index(slot)];
         for (std::size_t side = 0; side < 3 && triangle.isGround() && !isOutside_[index(slot)]; ++side) {
             const auto apex = index(triangle.corner.at(side));
-            // Ground that hung together by a vertex alone would be no surface.
+            // Ground whose parts are connected only by a vertex would not be a surface.
             const bool parts =
                 isOnBoundary_[apex] && !looksOutwards(triangle, side + 1) && !looksOutwards(triangle, side + 2);
             if (looksOutwards(triangle, side) && !parts && isSliver(triangle, side)) {
@@ -89,8 +89,8 @@ private:
 
     const Triangles& mesh_;
     std::int32_t nearRim_;
-    std::vector<bool> isOutside_;     // by slot
-    std::vector<bool> isOnBoundary_;  // by vertex
+    std::vector<bool> isOutside_;     // one per slot
+    std::vector<bool> isOnBoundary_;  // one per vertex
     std::vector<std::int32_t> taken_;
 };
 
@@ -105,7 +105,7 @@ int keepCounterClockwise(const Triangles& mesh, const ExactLattice& lattice,
     const auto isSound = [&](const Triangle& triangle) {
         const auto& [a, b, c] = triangle.corner;
         if (isOnLattice[index(a)] && isOnLattice[index(b)] && isOnLattice[index(c)]) {
-            return true;  // as the mesh is
+            return true;  // the mesh guarantees it
         }
         const auto &p = points[index(a)], &q = points[index(b)], &r = points[index(c)];
         const double area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);

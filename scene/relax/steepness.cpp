@@ -10,10 +10,10 @@
 namespace scene::relax {
 namespace {
 
-constexpr int kTile = 256;       // [cell]: what is copied at a time
-constexpr int kLeastToFlow = 4;  // [unit]: a face gives at most a quarter of what lies in a cell
+constexpr int kTile = 256;       // [cell], side of the tile that is copied at a time
+constexpr int kLeastToFlow = 4;  // [unit]; a face gives at most a quarter of a cell's sand
 
-/// The slopes of the faces east and north of a tile's cells.
+/// Slopes of the faces east and north of a tile's cells.
 class Tile {
 public:
     Tile(const sand::HeightField& field, const sand::Ground& ground, const sand::CellRect& cells, double aspect)
@@ -48,10 +48,10 @@ private:
 
     [[nodiscard]] bool canFlow(int x, int y, int otherX, int otherY) const {
         const bool down = height(x, y) >= height(otherX, otherY);
-        // A wall is seen as higher than everything, and holds no sand to give.
+        // A wall counts as higher than everything, and has no sand to give.
         return (down ? sand(x, y) : sand(otherX, otherY)) >= kLeastToFlow;
     }
-    /// From a cell up to another, of which no more counts than the sand of the upper one.
+    /// Returns the rise from one cell to another. It counts at most the sand of the upper cell.
     [[nodiscard]] double rise(int x, int y, int otherX, int otherY) const {
         return std::clamp(height(otherX, otherY) - height(x, y), -sand(x, y), sand(otherX, otherY));
     }

@@ -18,10 +18,10 @@ namespace {
 using sand::tin::Place;
 using sand::tin::Vertex;
 
-constexpr double kStepsAcross = 524288;    // of the lattice, on the longer side of a cloud, about: 2^19
-constexpr double kFineSteps = 64;          // of what a lattice's step and its corner are multiples of
+constexpr double kStepsAcross = 524288;    // steps of the lattice on the longer side of a cloud, about: 2^19
+constexpr double kFineSteps = 64;          // largest ratio of a step to the power of two that divides step and corner
 constexpr double kLeastDeep = 64;          // [lattice step]
-constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all: below 2^62
+constexpr double kMostTinVolume = 4.6e18;  // [volume unit], of all sand: below 2^62
 constexpr int kStepsPerCell = sand::tin::kLatticePerCell;
 
 struct Extent {
@@ -40,7 +40,7 @@ Extent extentOf(const Points& points) {
     return extent;
 }
 
-/// Where points lie on a lattice, from its south-west corner.
+/// Lattice of points, from its south-west corner.
 struct Lattice : ExactLattice {
     std::int32_t width = 0, depth = 0;
 
@@ -52,8 +52,8 @@ struct Lattice : ExactLattice {
     }
 };
 
-/// Returns a multiple of a power of two that is at least so long a step and at most 1/32 longer, and that power: with
-/// a corner that is a multiple of it, no place of the lattice is rounded.
+/// Returns a step that is at least `least` and at most 1/32 longer, and a power of two of which it is a multiple. If
+/// the corner is also a multiple of that power, no place of the lattice is rounded.
 std::pair<double, double> exactStep(double least) {
     int exponent = 0;
     const double part = std::frexp(least, &exponent);
@@ -61,7 +61,7 @@ std::pair<double, double> exactStep(double least) {
     return {std::ceil(part * kFineSteps) * fine, fine};
 }
 
-/// Returns the lattice of a cloud: its step is no finer than doubles tell such coordinates apart.
+/// Returns the lattice of a cloud. Its step is no finer than the resolution of doubles for these coordinates.
 Lattice latticeOf(const Extent& extent) {
     const double longer = std::max(extent.side(0), extent.side(1));
     double farthest = 0;
@@ -77,18 +77,19 @@ Lattice latticeOf(const Extent& extent, const std::string& file, std::optional<d
     const double longer = std::max(extent.side(0), extent.side(1)), shorter = std::min(extent.side(0), extent.side(1));
     Lattice lattice = step ? Lattice{{extent.least[0], extent.least[1], *step}, 0, 0} : latticeOf(extent);
     if (!std::isnormal(lattice.step) || !std::isnormal(lattice.step * lattice.step)) {
-        throw base::InputError(fmt::format("{}: it is {} long, which is no length of terrain", file, longer));
+        throw base::InputError(fmt::format("{}: it is {} long, which cannot be a length of terrain", file, longer));
     }
     if (!step && shorter < kLeastDeep * lattice.step) {
-        throw base::InputError(fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes 1 : {}",
-                                           file, longer, shorter, kStepsAcross / kLeastDeep));
+        throw base::InputError(
+            fmt::format("{}: all points lie in a strip {} long and {} wide; a TIN takes at most 1 : {}", file, longer,
+                        shorter, kStepsAcross / kLeastDeep));
     }
     lattice.width = static_cast<std::int32_t>(std::floor((extent.most[0] - lattice.west) / lattice.step + 0.5));
     lattice.depth = static_cast<std::int32_t>(std::floor((extent.most[1] - lattice.south) / lattice.step + 0.5));
     return lattice;
 }
 
-/// The finest unit, of those that halve a nominal cell again and again, in which all volumes over the field fit.
+/// Returns the finest unit in which all volumes over the field fit. The candidates halve a nominal cell repeatedly.
 HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::string& file) {
     const double lowest = extent.least[2], highest = extent.most[2];
     const double area = 6.0 * lattice.width * lattice.depth;
@@ -104,7 +105,7 @@ HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::str
                         "{:.3g}; are all of them heights of terrain?",
                         file, lowest, highest, most * lattice.step * kStepsPerCell));
     }
-    // As high above as below: no volume is larger than need be.
+    // The datum is in the middle of the heights, so that no volume is larger than necessary.
     scale.datum = scale.unit * std::floor((lowest / 2 + highest / 2) / scale.unit + 0.5);
     return scale;
 }
@@ -112,11 +113,12 @@ HeightScale scaleOf(const Extent& extent, const Lattice& lattice, const std::str
 void setThresholds(const std::string& file, const TalusSettings& material, TinSand& sand) {
     const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
     const double exact = slope * sand.step * kStepsPerCell / sand.scale.unit;
-    constexpr double kLargest = 1073741824.0;  // no difference between heights is larger
+    constexpr double kLargest = 1073741824.0;  // [unit]; no difference between heights is larger
     const double threshold = std::min(std::floor(exact + 0.5), kLargest);
     if (threshold < kLeastThreshold && material.talusDegrees != 0) {
         throw base::InputError(fmt::format(
-            "{}: a talus of {} degrees is {} height units of {:.4g} on {:.4g}, and {} is the least, but for 0 degrees; "
+            "{}: a talus of {} degrees is {} height units of {:.4g} on {:.4g}, and {} is the least, except for 0 "
+            "degrees; "
             "heights span too much for this extent: are all of them heights of terrain?",
             file, material.talusDegrees, threshold, sand.scale.unit, sand.step * kStepsPerCell, kLeastThreshold));
     }
@@ -124,13 +126,13 @@ void setThresholds(const std::string& file, const TalusSettings& material, TinSa
     sand.startThreshold = static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + material.band)), kLargest));
 }
 
-/// A mesh of all points, and which of them each vertex is: of several at one place the first.
+/// A mesh of all points, with the point of each vertex. If several points share a place, it is the first.
 struct Joined {
     sand::tin::Mesh mesh;
-    std::vector<std::array<double, 3>> points;  // by vertex
+    std::vector<std::array<double, 3>> points;  // one per vertex
     std::vector<Vertex> cornersAdded;
-    std::size_t near = 0;   // points that lie where one before them does
-    double nearHeight = 0;  // the largest difference in height between two such
+    std::size_t near = 0;   // points at the place of an earlier point
+    double nearHeight = 0;  // largest difference in height between two points at one place
 };
 
 Joined join(const Points& points, const Extent& extent, const Lattice& lattice, const Thinned* raster) {
@@ -182,8 +184,8 @@ Joined join(const Points& points, const Extent& extent, const Lattice& lattice, 
 TinSand sandOf(const Points& points, const std::string& file, const TalusSettings& material, std::optional<double> step,
                const Thinned* raster) {
     if (points.size() > static_cast<std::size_t>(kMostVertices)) {
-        throw base::InputError(
-            fmt::format("{}: {} points, and a TIN takes {}; thin them out", file, points.size(), kMostVertices));
+        throw base::InputError(fmt::format("{}: {} points, but a TIN takes at most {}; thin them out", file,
+                                           points.size(), kMostVertices));
     }
     const Extent extent = extentOf(points);
     const Lattice lattice = latticeOf(extent, file, step);
@@ -212,8 +214,8 @@ TinSand sandOf(const Points& points, const std::string& file, const TalusSetting
     sand.volumes = sand.layer.volumes();
     if (joined.near > 0) {
         sand.warnings.push_back(fmt::format(
-            "{}: {} points lie within {:.3g} of another, where a TIN of this extent tells none apart; the first in the "
-            "file was taken of each, others were up to {:.3g} higher or lower",
+            "{}: {} points lie within {:.3g} of another, which a TIN of this extent cannot separate; the first in the "
+            "file was taken, others were up to {:.3g} higher or lower",
             file, joined.near, lattice.step, joined.nearHeight));
     }
     return sand;
@@ -240,7 +242,7 @@ Mesh TinSand::toMesh() const {
     Mesh mesh;
     std::vector<std::uint32_t> numbers(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (layer.stars()[i] == 0) {  // of holes alone
+        if (layer.stars()[i] == 0) {  // a vertex of holes alone
             continue;
         }
         numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());

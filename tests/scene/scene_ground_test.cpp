@@ -58,7 +58,7 @@ TEST_F(SceneFile, BadRockIsNamed) {
               "s.toml:7: the rock has 1 x 1 cells, the terrain 3 x 2: they must be the same");
     EXPECT_EQ(complaint(kFromGrid + "layer = -1\n"), "s.toml:7: layer must be within [0, 1000000000], got -1");
     EXPECT_EQ(complaint(kFromGrid + "layer = 1\nbedrock = \"above.asc\"\n"),
-              "s.toml:8: give 'layer' or 'bedrock', not both: either says where the rock lies");
+              "s.toml:8: give 'layer' or 'bedrock', not both: each gives the height of the rock");
 }
 
 TEST_F(SceneFile, SettlesBeforeAnybodyTouchesIt) {

@@ -139,7 +139,7 @@ TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
     EXPECT_EQ(tool("width = 0.5\n"), "s.toml:5: a sphere is as wide as it is long; leave width out");
     EXPECT_EQ(tool("heading_deg = nan\n"), "s.toml:5: heading_deg must be a finite number");
     EXPECT_EQ(tool("shape = \"ellipse\"\nfoot = \"left\"\n"),
-              "s.toml:6: left and right are of a footprint, not of this ellipse");
+              "s.toml:6: only a footprint is left or right, not this ellipse");
     EXPECT_EQ(tool("shape = \"footprint\"\nradius = 1.5\n"),
               "s.toml:6: a footprint of radius 1.5 is 3 long, and the field 2");
 }
@@ -184,7 +184,7 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
                   " has cells of 2 x 3; a scene's are square; resample it: gdalwarp -tr 2 2 -r bilinear");
     EXPECT_EQ(complaintOf("nodata_value -1\nncols 1\nnrows 1\ncellsize 1\n-1\n"),
               "t.asc: every cell is a no-data cell; there is no terrain in it");
-    EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
+    EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is not a key of an ESRI ASCII grid");
 }
 
 TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {

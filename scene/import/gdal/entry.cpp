@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sandwall-import.so exports.
+// Functions that sandwall-import.so exports.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,13 +16,13 @@
 namespace scene {
 namespace {
 
-constexpr double kSquare = 1e-6;  // by which share the sides of a cell may differ: other programs print fewer digits
+constexpr double kSquare = 1e-6;  // largest difference of a cell's sides, as a share; other programs print fewer digits
 
-/// Where the raster lies, from GDAL's (west, width, turn, north, turn, depth).
+/// Sets the raster's place from GDAL's (west, width, turn, north, turn, depth).
 void setPlace(const GdalRaster& raster, EsriGrid& grid) {
     std::array<double, 6> place{};
     if (GDALGetGeoTransform(raster.dataset(), place.data()) != CE_None) {
-        raster.fail("says not where it lies nor how large its pixels are; kind = \"image\" takes pictures");
+        raster.fail("has no position and no pixel size; kind = \"image\" takes pictures");
     }
     for (const double number : place) {
         if (!std::isfinite(number)) {
@@ -40,7 +40,7 @@ void setPlace(const GdalRaster& raster, EsriGrid& grid) {
     if (std::abs(std::abs(depth) - width) > kSquare * width) {
         grid.cellDepth = std::abs(depth);
     }
-    // Some programs write this where they know no place, and GDAL hands it out as one.
+    // Some programs write these numbers if they know no place, and GDAL returns them as a place.
     const bool atOrigin = west == 0 && (grid.southEdge == 0 || north == 0);
     if (grid.units.crs.empty() && width == 1 && std::abs(depth) == 1 && atOrigin) {
         grid.warnings.push_back(fmt::format(
@@ -65,7 +65,7 @@ EsriGrid gridOf(const GdalRaster& raster) {
     return grid;
 }
 
-/// The largest number that a picture's pixels can be.
+/// Returns the largest number that a pixel of an image can have.
 double whiteOf(const GdalRaster& raster) {
     const char* bits = GDALGetMetadataItem(raster.band(), "NBITS", "IMAGE_STRUCTURE");
     switch (GDALGetRasterDataType(raster.band())) {
@@ -94,7 +94,7 @@ public:
     [[nodiscard]] EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
         EsriGrid grid = gridOf(raster);
-        grid.units = unitsOf(raster);  // a raster in degrees is refused before it is read
+        grid.units = unitsOf(raster);  // refuses a raster in degrees before it is read
         ask(check, raster);
         grid.heights = raster.pixels();
         setPlace(raster, grid);

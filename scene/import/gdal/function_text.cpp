@@ -16,7 +16,8 @@ namespace {
     throw base::InputError(fmt::format("z = \"{}\": {}", text, message));
 }
 
-/// Characters count from 1, muParser's from 0; what it says of them itself is left out.
+/// Throws base::InputError about a position in the text. Users count characters from 1, muParser counts from 0. The
+/// position in muParser's own message is removed.
 [[noreturn]] void failAt(const std::string& text, int position, std::string message) {
     for (const char* said : {" found at position", " at position"}) {
         message.erase(std::min(message.find(said), message.size()));
@@ -28,7 +29,7 @@ namespace {
                                                                 : "at its end: " + message);
 }
 
-/// muParser would take "x = 3" for an assignment.
+/// Refuses assignments. muParser would take "x = 3" for one.
 void refuseAssignments(const std::string& text) {
     for (std::size_t at = 0; at < text.size(); ++at) {
         if (text[at] != '=') {
@@ -68,7 +69,7 @@ EsriGrid evaluateFunction(const Function& function) {
                 y = function.north - (row + 0.5) * depth;
                 const double z = parser.Eval(results)[0];
                 if (results != 1) {
-                    fail(function.text, "one height is wanted, and a comma gives several");
+                    fail(function.text, "expected one height, but a comma gives several");
                 }
                 if (!std::isfinite(z)) {
                     fail(function.text, fmt::format("z is {} at x = {:.6g}, y = {:.6g}",

@@ -12,14 +12,14 @@
 namespace scene {
 namespace {
 
-// GDAL writes into memory, so that a file on the disk is replaced whole or not at all.
+// GDAL writes into memory, so that a file on disk is replaced completely or not at all.
 constexpr const char* kInMemory = "/vsimem/sandwall.tif";
 
 struct Unlink {
     ~Unlink() { VSIUnlink(kInMemory); }
 };
 
-/// Returns whether all of it went well.
+/// Writes place, reference system, units and no-data value. Returns whether all of this succeeded.
 bool describe(GDALDatasetH dataset, GDALRasterBandH band, const EsriGrid& grid, const std::string& file) {
     const double depth = grid.cellDepth.value_or(grid.cellSize);
     std::array<double, 6> place{grid.westEdge, grid.cellSize, 0, grid.southEdge + grid.rows * depth, 0, -depth};
@@ -31,7 +31,7 @@ bool describe(GDALDatasetH dataset, GDALRasterBandH band, const EsriGrid& grid, 
     if (!grid.units.heightName.empty()) {
         good = good && GDALSetRasterUnitType(band, grid.units.heightName.c_str()) == CE_None;
     }
-    // No height can be taken for it.
+    // NaN is no-data, because it cannot be a height.
     return good && GDALSetRasterNoDataValue(band, std::numeric_limits<double>::quiet_NaN()) == CE_None;
 }
 

@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Formats that hold their numbers themselves. Left out is what fetches from a network, refers to other files (VRT and
-// its like can name servers, and programs in Python), or needs a database. Left out as well are texts in which
-// GDAL 3.6.2 takes a word for the height 0: GRASSASCIIGrid, XYZ, ZMap and GXF. AAIGrid stays for the units beside an
-// ESRI ASCII grid, whose heights our own reader takes.
+// Formats whose files contain their own numbers. The list leaves out formats that use a network, need a database, or
+// refer to other files: VRT and similar ones can name servers, and programs in Python. It also leaves out texts in
+// which GDAL 3.6.2 reads a word as the height 0: GRASSASCIIGrid, XYZ, ZMap and GXF. AAIGrid stays because of the units
+// beside an ESRI ASCII grid; this project's own reader reads the heights.
 constexpr const char* kDrivers[] = {
     "GTiff",  "AAIGrid",  "SRTMHGT",  "PNG",      "JPEG", "JP2OpenJPEG", "BMP",   "HFA",      "EHdr",
     "ENVI",   "DTED",     "USGSDEM",  "SDTS",     "GSAG", "GSBG",        "GS7BG", "ERS",      "RST",
@@ -33,7 +33,7 @@ fs::path checked(const fs::path& file) {
     if (!fs::is_regular_file(file, none)) {
         throw base::InputError(file.string() + ": cannot be read; check the path");
     }
-    // Behind a leading slash no name is taken for a driver's prefix.
+    // GDAL does not take a name with a leading slash for a driver's prefix.
     return fs::absolute(file);
 }
 
@@ -71,14 +71,14 @@ void GdalRaster::chooseBand() {
         }
     }
     if (values != 1) {
-        fail(fmt::format("has {} bands, and heights are one; {}", values,
+        fail(fmt::format("has {} bands, but heights are only one; {}", values,
                          values == 0 ? "list them with gdalinfo" : "choose it: gdal_translate -b NUMBER"));
     }
     if (GDALGetRasterColorTable(band_) != nullptr) {
-        fail("holds colours from a palette, and no heights");
+        fail("holds colours from a palette instead of heights");
     }
     if (GDALDataTypeIsComplex(GDALGetRasterDataType(band_)) != 0) {
-        fail("holds complex numbers, and no heights");
+        fail("holds complex numbers instead of heights");
     }
 }
 
@@ -127,7 +127,7 @@ void GdalRaster::mask(std::vector<double>& pixels) const {
         return;
     }
     if (isPng() && (flags & GMF_NODATA) != 0) {
-        // GDAL's mask would compare the grey that is transparent with its own numbers.
+        // GDAL's mask would compare the transparent grey with the numbers that GDAL has read.
         const double noData = GDALGetRasterNoDataValue(band_, nullptr);
         std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
         return;

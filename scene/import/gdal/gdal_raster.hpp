@@ -29,7 +29,7 @@ public:
     [[noreturn]] void fail(const std::string& message) const;
 
 private:
-    /// Chooses the one band besides a mask of opacity.
+    /// Chooses the one band that is not a mask of opacity.
     void chooseBand();
     [[nodiscard]] bool isPng() const;
     /// Returns the numbers of the band as the file holds them.

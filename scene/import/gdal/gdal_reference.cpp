@@ -20,7 +20,7 @@ struct HeightUnit {
     std::string_view name;
     double metres;
 };
-// The names that GDAL's drivers, EPSG and people give them.
+// Names that GDAL's drivers, EPSG and users give to units.
 constexpr std::array kHeightUnits = {
     HeightUnit{"m", 1},
     HeightUnit{"metre", 1},
@@ -52,7 +52,8 @@ double metresOf(const std::string& unit, const GdalRaster& raster) {
     return found->metres;
 }
 
-/// The command that makes metres of degrees: into the UTM zone of the raster's middle, or around a pole.
+/// Returns the command that converts degrees to metres. It uses the UTM zone of the raster's middle, or a system around
+/// a pole.
 std::string warpCommand(const GdalRaster& raster, OGRSpatialReferenceH reference) {
     std::array<double, 6> place{};
     int epsg = 3857;
@@ -84,12 +85,12 @@ RasterUnits unitsOf(const GdalRaster& raster) {
     }
     OGRSpatialReferenceH reference = GDALGetSpatialRef(raster.dataset());
     if (reference == nullptr) {
-        units.lengthMetres = units.heightMetres;  // without a system, lengths are what heights are
+        units.lengthMetres = units.heightMetres;  // without a reference system, lengths have the unit of heights
         return units;
     }
     if (OSRIsGeographic(reference) != 0 || OSRIsGeocentric(reference) != 0) {
         const char* name = OSRGetName(reference);
-        raster.fail(fmt::format("its coordinates ({}) are degrees, and sand wants lengths; make metres of them: {}",
+        raster.fail(fmt::format("its coordinates ({}) are degrees, but sand needs lengths; make metres of them: {}",
                                 name == nullptr ? "no name" : name, warpCommand(raster, reference)));
     }
     units.crs = wktOf(reference);
@@ -108,11 +109,9 @@ SpatialReference referenceOf(const std::string& crs, const std::string& file) {
     SpatialReference reference(OSRNewSpatialReference(nullptr));
     std::string text = crs;
     char* rest = text.data();
-    // Never GDAL's "any input", which takes the addresses of servers too.
+    // Does not use GDAL's SetFromUserInput, because that also accepts addresses of servers.
     if (OSRImportFromWkt(reference.get(), &rest) != OGRERR_NONE) {
-        throw base::InputError(file +
-                               ": the coordinate reference system that the terrain came with is none that GDAL "
-                               "knows");
+        throw base::InputError(file + ": GDAL does not know the coordinate reference system of the terrain");
     }
     return reference;
 }

@@ -8,9 +8,9 @@ namespace scene {
 GdalSession::GdalSession() {
     CPLPushErrorHandlerEx(keep, this);
     static const bool kReady = [] {
-        // Plugins are code from wherever GDAL looks, and PROJ would fetch grids: heights are not worth either.
+        // Plugins are code from any place where GDAL looks, and PROJ would download grids. Heights do not need either.
         CPLSetConfigOption("GDAL_DRIVER_PATH", "disable");
-        CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // as text holds them
+        CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // so that no digit of a text is lost
         OSRSetPROJEnableNetwork(0);
         GDALAllRegister();
         return true;

@@ -18,7 +18,8 @@ struct CloseFile {
     void operator()(std::FILE* file) const { (void)std::fclose(file); }
 };
 
-/// libpng's reader. After an error it jumps back to the function that called it last, which must have no destructors.
+/// Reader of libpng. After an error, libpng jumps back to the member function that was called last. That function must
+/// have no objects with destructors.
 class PngReader {
 public:
     PngReader() {
@@ -29,7 +30,7 @@ public:
     PngReader(const PngReader&) = delete;
     PngReader& operator=(const PngReader&) = delete;
 
-    /// Reads all before the pixels. Numbers of less than 8 bits will take a byte each.
+    /// Reads everything before the pixels. Numbers of less than 8 bits will take one byte each.
     [[nodiscard]] bool readHeader(std::FILE* file) {
         if (info_ == nullptr || setjmp(png_jmpbuf(png_)) != 0) {
             return false;
@@ -85,7 +86,7 @@ std::vector<double> greysOfPng(const std::string& file, int columns, int rows) {
         throw base::InputError(file + ": cannot be read as PNG: " + png.complaint());
     }
     if (!png.isGrey() || png.columns() != columns || png.rows() != rows) {
-        throw base::InputError(file + ": is no grey picture of the size that it had a moment ago");
+        throw base::InputError(file + ": has changed since it was opened; it must be a grey picture of the same size");
     }
     std::vector<png_byte> bytes(png.rowBytes() * static_cast<std::size_t>(rows));
     std::vector<png_bytep> starts;

@@ -390,8 +390,8 @@ TEST_F(TinTerrain, SaysHowManySurveyPointsItDoesNotTellApart) {
     };
     EXPECT_EQ(warnings("5"),
               std::vector{(folder_ / "survey.csv").string() +
-                          ": 3 points lie within 0.0195 of another, where a TIN of such cells tells none apart; the "
-                          "first in the file was taken of each, others were up to 50 higher or lower; set a smaller "
+                          ": 3 points lie within 0.0195 of another, which a TIN of such cells cannot separate; the "
+                          "first in the file was taken, others were up to 50 higher or lower; set a smaller "
                           "cell in [tin]"});
     EXPECT_EQ(warnings("0.1"), std::vector<std::string>{});
 }

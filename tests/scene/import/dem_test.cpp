@@ -130,13 +130,13 @@ TEST_F(Import, DegreesAreRefusedWithTheCommandThatMakesMetres) {
         "t.tif",
         {.columns = 2, .rows = 2, .heights = {1, 2, 3, 4}, .place = {{-120.2, 0.1, 0, 37, 0, -0.1}}, .epsg = 4326});
     EXPECT_EQ(refusal(kDem),
-              "t.tif: its coordinates (WGS 84) are degrees, and sand wants lengths; make metres of them: gdalwarp "
+              "t.tif: its coordinates (WGS 84) are degrees, but sand needs lengths; make metres of them: gdalwarp "
               "-t_srs EPSG:32610 -r bilinear t.tif metres.tif");
     // A tile of the shuttle's mission: 1201 x 1201 big-endian numbers, its place in its name.
     write("S23W043.hgt", std::string(2 * 1201 * 1201, '\1'));
     EXPECT_EQ(
         refusal("[terrain]\nkind = \"dem\"\nfile = \"S23W043.hgt\"\n"),
-        "S23W043.hgt: its coordinates (WGS 84) are degrees, and sand wants lengths; make metres of them: gdalwarp "
+        "S23W043.hgt: its coordinates (WGS 84) are degrees, but sand needs lengths; make metres of them: gdalwarp "
         "-t_srs EPSG:32723 -r bilinear S23W043.hgt metres.tif");
 }
 
@@ -158,12 +158,12 @@ TEST_F(Import, RastersThatAreNoFieldSayWhy) {
         }),
         "s.toml:3: t.tif has cells of 10 x 20; a scene's are square; resample it: gdalwarp -tr 10 10 -r bilinear");
     EXPECT_EQ(refused([](Raster& r) { r.place.reset(); }),
-              "t.tif: says not where it lies nor how large its pixels are; kind = \"image\" takes pictures");
+              "t.tif: has no position and no pixel size; kind = \"image\" takes pictures");
     EXPECT_EQ(refused([](Raster& r) { r.bands = 3; }),
-              "t.tif: has 3 bands, and heights are one; choose it: gdal_translate -b NUMBER");
+              "t.tif: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER");
     EXPECT_EQ(refused([](Raster& r) { r.unit = "fathom"; }),
               "t.tif: heights in 'fathom', which is no unit known here; say what they are: gdal_edit.py -units m");
-    EXPECT_EQ(refused([](Raster& r) { r.type = GDT_CFloat32; }), "t.tif: holds complex numbers, and no heights");
+    EXPECT_EQ(refused([](Raster& r) { r.type = GDT_CFloat32; }), "t.tif: holds complex numbers instead of heights");
     EXPECT_EQ(
         refused([](Raster& r) { r.heights[2] = std::numeric_limits<double>::infinity(); }),
         "t.tif: the height of pixel 1, 2 (from the north-west) is infinite; mask it: gdal_translate -a_nodata inf");

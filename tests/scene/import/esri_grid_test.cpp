@@ -94,7 +94,7 @@ TEST_F(EsriFile, ComplaintsNameTheLine) {
     EXPECT_EQ(complaint(head + "1 2\n3 4 5\n"), "t.asc:5: more values than ncols x nrows = 4");
     EXPECT_EQ(complaint("ncols 0\n"), "t.asc:1: ncols must be a whole number within [1, 16384], got 0");
     EXPECT_EQ(complaint("cellsize 0\n"), "t.asc:1: cellsize must be positive, got 0");
-    EXPECT_EQ(complaint("depth 3\n"), "t.asc:1: 'depth' is no key of an ESRI ASCII grid");
+    EXPECT_EQ(complaint("depth 3\n"), "t.asc:1: 'depth' is not a key of an ESRI ASCII grid");
     EXPECT_EQ(complaint("nodata_value -1\n" + head + "-1 -1\n-1 -1\n"),
               "t.asc: every cell is a no-data cell; there is no terrain in it");
     for (const char* cells : {"", "dx 1\n", "dy 1\n", "cellsize 1\ndy 1\n", "cellsize 1\ndx 1\ndy 1\n"}) {

@@ -38,7 +38,7 @@ TEST_F(Import, FunctionsThatAreNoneSayWhere) {
     EXPECT_EQ(refusal(function("")), "s.toml:7: z = \"\": Expression is empty.");
     EXPECT_EQ(refusal(function("y = x")),
               "s.toml:7: z = \"y = x\": character 3: write the expression alone; == compares");
-    EXPECT_EQ(refusal(function("x, y")), "s.toml:7: z = \"x, y\": one height is wanted, and a comma gives several");
+    EXPECT_EQ(refusal(function("x, y")), "s.toml:7: z = \"x, y\": expected one height, but a comma gives several");
     EXPECT_EQ(refusal(function("sqrt(x)")), "s.toml:7: z = \"sqrt(x)\": z is not a number at x = -0.75, y = 0.75");
     EXPECT_EQ(refusal(function("1 / (x - 0.25)")),
               "s.toml:7: z = \"1 / (x - 0.25)\": z is infinite at x = 0.25, y = 0.75");

@@ -60,9 +60,9 @@ TEST_F(Import, ScansThatAreNoneSayWhy) {
     };
     const std::vector<float> four{1, 2, 3, 4};
     EXPECT_EQ(refused("PNG"), "t.gsf:1: a Gwyddion Simple Field begins with 'Gwyddion Simple Field 1.0'");
-    EXPECT_EQ(refused(kHeader), "t.gsf: its header has no end: zeros must stand before the numbers");
-    EXPECT_EQ(refused(scan(kHeader, {1, 2, 3})), "t.gsf: 2 x 2 pixels are 16 bytes, and behind the header stand 12");
-    EXPECT_EQ(refused(scan("Gwyddion Simple Field 1.0\nYRes = 1\n", {1})), "t.gsf: its header says no XRes");
+    EXPECT_EQ(refused(kHeader), "t.gsf: its header has no end: zeros must come before the numbers");
+    EXPECT_EQ(refused(scan(kHeader, {1, 2, 3})), "t.gsf: 2 x 2 pixels are 16 bytes, but 12 follow the header");
+    EXPECT_EQ(refused(scan("Gwyddion Simple Field 1.0\nYRes = 1\n", {1})), "t.gsf: its header has no XRes");
     EXPECT_EQ(refused(scan("Gwyddion Simple Field 1.0\nXRes = -4\n", {1})),
               "t.gsf:2: XRes must be a whole number within [1, 16384], got -4");
     EXPECT_EQ(refused(scan(kHeader + "XReal = 0\n", four)), "t.gsf:8: XReal must be positive, got 0");
@@ -70,8 +70,8 @@ TEST_F(Import, ScansThatAreNoneSayWhy) {
     EXPECT_EQ(refused(scan(kHeader + "XReal = 1e-323\nYReal = 1e-323\n", four)),
               "s.toml:3: t.gsf is too small or too large for heights to be scaled; its XReal is in metres");
     EXPECT_EQ(refused(scan(kHeader + "ZUnits = V\n", four)),
-              "t.gsf:8: ZUnits must be m, as of a scan of heights, got 'V'");
-    EXPECT_EQ(refused(scan(kHeader + "what\n", four)), "t.gsf:8: 'Name = value' is wanted, got 'what'");
+              "t.gsf:8: ZUnits must be m for a scan of heights, got 'V'");
+    EXPECT_EQ(refused(scan(kHeader + "what\n", four)), "t.gsf:8: expected 'Name = value', got 'what'");
     EXPECT_EQ(refused(scan(kHeader, {1, 2, std::numeric_limits<float>::infinity(), 4})),
               "t.gsf: the height of pixel 1, 2 (from the north-west) is infinite; mask it in Gwyddion");
     write("t.gsf", scan(kHeader, four));

@@ -44,7 +44,7 @@ TEST_F(Import, TextInDegreesIsRelaxedIntoNothing) {
         const support::Ran ran = support::runProgram("sandwall-relax", path("t.asc") + " " + path(out) + " --talus 30");
         EXPECT_EQ(ran.status, 2) << out;
         EXPECT_EQ(ran.output, "sandwall-relax: " + path("t.asc") +
-                                  ": its coordinates (WGS 84) are degrees, and sand wants lengths; make metres of "
+                                  ": its coordinates (WGS 84) are degrees, but sand needs lengths; make metres of "
                                   "them: gdalwarp -t_srs EPSG:32632 -r bilinear t.asc metres.tif\n");
     }
 }

@@ -35,15 +35,14 @@ TEST_F(PointsFile, WhatIsSaidTwiceComesOnce) {
 }
 
 TEST_F(PointsFile, ComplaintsNameLineAndValue) {
-    EXPECT_EQ(refused("0 0 1\n1 0\n"), "p.csv:2: x, y and z are wanted, got 2 values");
-    EXPECT_EQ(refused("0,0,1\n1,0,2,9\n"), "p.csv:2: x, y and z are wanted, got 4 values");
+    EXPECT_EQ(refused("0 0 1\n1 0\n"), "p.csv:2: expected x, y and z, got 2 values");
+    EXPECT_EQ(refused("0,0,1\n1,0,2,9\n"), "p.csv:2: expected x, y and z, got 4 values");
     EXPECT_EQ(refused("0,0,1\n1,,2\n"), "p.csv:2: y must be a finite number, got ''");
     EXPECT_EQ(refused("0;0;1\n1;0;2,5\n"), "p.csv:2: z must be a finite number, got '2,5'");
     EXPECT_EQ(refused("0 0 nan\n"), "p.csv:1: z must be a finite number, got 'nan'");
     EXPECT_EQ(refused("x y z\nx y z\n"), "p.csv:2: x must be a finite number, got 'x'");
     EXPECT_EQ(refused("z,x,y\n1,2,3\n"), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
-    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"),
-              "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4");
+    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"), "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4");
 }
 
 TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
@@ -80,7 +79,7 @@ TEST_F(PointsFile, TitlesAreSkipped) {
 TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
     const auto said = [](long line, const std::string& column, int epsg) {
         return fmt::format(
-            "p.csv:{}: its coordinates ('{}') are degrees, and sand wants lengths; make metres of lines of longitude, "
+            "p.csv:{}: its coordinates ('{}') are degrees, but sand needs lengths; make metres of lines of longitude, "
             "latitude and height: gdaltransform -s_srs EPSG:4326 -t_srs EPSG:{}",
             line, column, epsg);
     };
@@ -98,27 +97,27 @@ TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
                                     "10.2E", "10.2 W"}) {
         for (const std::string& line : {value + ",47.1,1200\n", "0,0,1\n47.1," + value + ",1200\n"}) {
             const std::string said = refused(line);
-            EXPECT_NE(said.find("its coordinates ('" + value + "') are degrees, and sand wants lengths"),
+            EXPECT_NE(said.find("its coordinates ('" + value + "') are degrees, but sand needs lengths"),
                       std::string::npos)
                 << said;
         }
     }
     EXPECT_EQ(refused("id,lon,lat,h\n1,10.2,47.1,1200\n"),
-              "p.csv:1: three columns are wanted, x, y, z, and 'id' begins a title of 4; 'lon' is in degrees, and sand "
+              "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4; 'lon' is in degrees, and sand "
               "wants lengths");
     EXPECT_EQ(refused("10.2m,47,3\n"), "p.csv:1: x must be a finite number, got '10.2m'");
     EXPECT_EQ(refused("E,47,3\n"), "p.csv:1: x must be a finite number, got 'E'");
 }
 
 TEST_F(PointsFile, CloudsWithoutAnAreaAreNoTerrain) {
-    EXPECT_EQ(refused(""), "p.csv: holds 0 points at different places, and terrain takes at least 3");
+    EXPECT_EQ(refused(""), "p.csv: holds 0 points at different places, but terrain needs at least 3");
     EXPECT_EQ(refused("1 1 1\n1 1 1\n2 2 2\n"),
-              "p.csv: holds 2 points at different places, and terrain takes at least 3");
+              "p.csv: holds 2 points at different places, but terrain needs at least 3");
     std::string line;
     for (int i = 0; i < 50; ++i) {
         line += fmt::format("{} {} {}\n", 0.1 * i, 0.3 * i + 7, i % 3);
     }
-    EXPECT_EQ(refused(line), "p.csv: all 50 points lie on one line, and terrain needs an area");
+    EXPECT_EQ(refused(line), "p.csv: all 50 points lie on one line, but terrain needs an area");
     EXPECT_EQ(read(line + "0 7.001 1\n").size(), 51U);
 }
 
@@ -127,11 +126,11 @@ TEST_F(PointsFile, HugeAndTinyCloudsHaveAnArea) {
         const std::string points = fmt::format("0,0,0\n{0},0,0\n0,{0},0\n-{0},-{0},0\n", side);
         EXPECT_EQ(read(points).size(), 4U) << side;
         EXPECT_EQ(refused(fmt::format("0,0,1\n{0},{0},2\n-{0},-{0},3\n", side)),
-                  "p.csv: all 3 points lie on one line, and terrain needs an area");
+                  "p.csv: all 3 points lie on one line, but terrain needs an area");
         write("p.csv", points);
         const std::string line = refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n");
         EXPECT_NE(line.find("s.toml:3: the points are "), std::string::npos) << line;
-        EXPECT_NE(line.find(" long, which is no length of terrain"), std::string::npos) << line;
+        EXPECT_NE(line.find(" long, which cannot be a length of terrain"), std::string::npos) << line;
     }
 }
 

@@ -89,7 +89,7 @@ TEST_F(RelaxInput, ARasterThatDoesNotFitTheMemoryIsRefusedBeforeItsPixelsAreRead
 TEST_F(RelaxInput, ATalusWithoutUnitsIsRefusedWithAWayOut) {
     expectRefused("in.asc out.asc --talus 0.001",
                   "in.asc: a talus of 0.001 degrees is 1 height units of 1.526e-05 "
-                  "from cell to cell, and 4 is the least, but for 0 degrees");
+                  "from cell to cell, and 4 is the least, except for 0 degrees");
     expectGridRefused(kGrid + "1 2\n3 4e8\n",
                       "heights from 1 to 400000000 span 4e+08 cells: if some are no terrain, "
                       "make them no-data");

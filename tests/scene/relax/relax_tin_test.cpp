@@ -401,18 +401,20 @@ TEST_F(RelaxTin, CellsThatAreNotSquareKeepTheirShape) {
 }
 
 TEST_F(RelaxTin, BadPointsAreOneLine) {
-    expectPointsRefused("", "holds 0 points at different places, and terrain takes at least 3");
+    expectPointsRefused("", "holds 0 points at different places, but terrain needs at least 3");
     expectPointsRefused("x,y,z\n1,2,3\n", "holds 1 points");
     expectPointsRefused("0,0,1\n1,1,2\n2,2,3\n", "all 3 points lie on one line");
     expectPointsRefused("0,0,1\n1,0,2\n0,1,3\n1,0,4\n", "bad.csv:4: x = 1, y = 0 has height 4, and 2 in line 2");
     expectPointsRefused("0,0,1\n1,0,nan\n0,1,3\n", "bad.csv:2: z must be a finite number, got 'nan'");
-    expectPointsRefused("0,0,1\n1,0\n", "bad.csv:2: x, y and z are wanted, got 2 values");
+    expectPointsRefused("0,0,1\n1,0\n", "bad.csv:2: expected x, y and z, got 2 values");
     expectPointsRefused("0 0 1\n1e6 0.1 2\n1e6 0 3\n", "all points lie in a strip 1000000 long and 0.1 wide");
     expectPointsRefused("0 0 1\n1 0 2\n0 1 1e6\n", "span more than a TIN of this extent can hold");
     expectPointsRefused("0 0 1\n1 0 -1e308\n0 1 1e308\n", "span more than a TIN of this extent can hold");
-    expectPointsRefused("0 0 1\n1e160 0 2\n0 1e160 3\n", "bad.csv: it is 1e+160 long, which is no length of terrain");
-    expectPointsRefused("0 0 1\n1e-200 0 2\n0 1e-200 3\n", "bad.csv: it is 1e-200 long, which is no length of terrain");
-    expectPointsRefused("0 0 1\n1e-155 0 2\n0 1e-155 3\n", "which is no length of terrain");
+    expectPointsRefused("0 0 1\n1e160 0 2\n0 1e160 3\n",
+                        "bad.csv: it is 1e+160 long, which cannot be a length of terrain");
+    expectPointsRefused("0 0 1\n1e-200 0 2\n0 1e-200 3\n",
+                        "bad.csv: it is 1e-200 long, which cannot be a length of terrain");
+    expectPointsRefused("0 0 1\n1e-155 0 2\n0 1e-155 3\n", "which cannot be a length of terrain");
     expectRefused("none.csv out.ply --talus 30", "none.csv: cannot be read");
     EXPECT_THROW((void)scene::relax::toTin(scene::Points((1U << 22U) + 1), "large.csv", {30, 0}), base::InputError);
 }
