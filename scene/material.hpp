@@ -60,8 +60,8 @@ struct MaterialFault {
 };
 /// Returns why these numbers, each within its own range, do not fit together; nullopt if they do.
 [[nodiscard]] std::optional<MaterialFault> faultOf(const Material& material, const MaterialGrid& grid);
-/// Returns the whole numbers from which sand is computed, for a material without a fault. Only the process that reads
-/// the scene or the command calls this, because the last digit of libm's results differs between hosts.
+/// Returns the whole numbers from which sand is computed. Requires that faultOf() is nullopt. Only the process that
+/// reads the scene or the command calls this, because the last digit of libm's results differs between hosts.
 [[nodiscard]] sand::Tuning tuningOf(const Material& material, const MaterialGrid& grid);
 
 /// Returns the material with one number changed by an operator's command. Throws base::InputError in one line, with the

@@ -29,8 +29,8 @@ AxisLaw axisLaw(Scheme scheme, double threshold, double startThreshold, double r
     // without damping. With inertia, a steep needle would become too flat: 17 % of its sand would be misplaced, and 0.8
     // % with 0.46.
     const double limit = (scheme == Scheme::isotropic ? 0.46 : 0.4998) / (ratio * ratio + 1);
-    // As strong as linear stability allows, minus a tenth. Near the threshold, 1 - t²/m² is twice 1 - t/m. The same
-    // slope gives the same flux along both axes.
+    // As strong as linear stability allows, minus a tenth. Near the threshold, 1 - t²/m² is twice 1 - t/m. Along both
+    // axes, equal slopes give equal fluxes.
     const double push = 0.225 * std::min(1.0, 1 / (ratio * ratio));
     return {static_cast<float>(threshold), static_cast<float>(startThreshold), static_cast<float>(limit),
             static_cast<float>(push), static_cast<float>(0.25 * ratio)};

@@ -107,8 +107,8 @@ std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
     return 0;
 }
 
-/// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` give, for each cell, the sum of its
-/// two differences along the faces.
+/// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` hold each cell's sum of two
+/// differences along the faces.
 template <class Law>
 void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
                    const float* __restrict alongA, const float* __restrict alongB, const SlidingPair& sliding,

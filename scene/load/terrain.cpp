@@ -79,7 +79,7 @@ public:
             askOfField(columns, rows);
         }
     }
-    /// Called with the size of the field. Does nothing if the size was checked before.
+    /// Called with the size of the field. Returns at once if the size was checked before.
     void askOfField(int columns, int rows) {
         if (checks_.field && !std::exchange(asked_, true)) {
             checks_.field(columns, rows, tin_);

@@ -52,8 +52,8 @@ struct Lattice : ExactLattice {
     }
 };
 
-/// Returns a step that is at least `least` and at most 1/32 longer, and a power of two of which it is a multiple. If
-/// the corner is also a multiple of that power, no place of the lattice is rounded.
+/// Returns a step that is at least `least` and at most 1/32 longer. The second number is a power of two; the step is a
+/// multiple of it. If the corner is also a multiple of that power, no place of the lattice is rounded.
 std::pair<double, double> exactStep(double least) {
     int exponent = 0;
     const double part = std::frexp(least, &exponent);

@@ -45,7 +45,7 @@ double metresOf(const std::string& unit, const GdalRaster& raster) {
                                      [&](const HeightUnit& candidate) { return candidate.name == lower; });
     if (found == kHeightUnits.end()) {
         raster.fail(
-            fmt::format("heights in '{}', which is no unit known here; say what they are: gdal_edit.py "
+            fmt::format("heights in '{}', which is not a known unit; set their unit: gdal_edit.py "
                         "-units m",
                         unit));
     }
