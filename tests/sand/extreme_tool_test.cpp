@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tools of any size, anywhere. A pose that is no number never becomes a step: the haptic side refuses it before it is
-// quantised (tests/haptic_bridge/devices/device_test.cpp).
+// Tools of any size at any place. A pose with NaN never becomes a step: the haptic side refuses it before quantising
+// (tests/haptic_bridge/devices/device_test.cpp).
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -105,7 +105,7 @@ TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
         for (const int column : {10, 20, 30}) {
             EXPECT_LT(samples::fieldOf(terrain).height(column, 16), 0) << "no furrow at column " << column;
         }
-        // From one end of the world to the other, and back.
+        // From one end of the reachable range to the other, and back.
         terrain.apply({1, 3, true, {{sand::kMaxProbe, sand::kMaxProbe, 0}, {-sand::kMaxProbe, -sand::kMaxProbe, 0}}});
         terrain.apply({1, 4, true, {{sand::kMaxProbe, 16 * kProbePerCell, -sand::kMaxProbe}}});
         EXPECT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), 0);
@@ -121,7 +121,7 @@ TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
             for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
                 terrain.apply({1, ++number, true, {}});
             }
-            ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
+            ASSERT_TRUE(terrain.settled()) << "a ball held still must not move sand forever";
             const std::int64_t sweeps = samples::erosionOf(terrain).sweepsDone();
             (void)terrain.stateHash();
             const auto tiles = terrain.hashTiles().tileHashes();

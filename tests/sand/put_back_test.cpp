@@ -21,7 +21,7 @@ sand::ProbePoint cellAt(int column, int row, int height /* [cell] */) {
     return {column * kProbePerCell, row * kProbePerCell, height * kProbePerCell};
 }
 
-/// Numbers the steps of one replica.
+/// Numbers the steps of one replica and applies them.
 class Hand {
 public:
     explicit Hand(Replica& terrain) : terrain_(terrain) {}
@@ -42,7 +42,7 @@ private:
     Replica& terrain_;
 };
 
-/// Sand in mid-slide under an open rim: heights, outflow and inertia all have something to lose.
+/// Sand that slides under an open rim: heights, outflow and inertia can all go wrong.
 scene::Scene slidingScene() {
     scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 24, 40);
@@ -64,7 +64,7 @@ TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "only the last stroke";
 }
 
-// But for step number and tool the whole state is what it was, so that what follows is what would have followed.
+// The whole state is restored, except step number and tool. Equal steps therefore have equal results afterwards.
 TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
     Replica terrain(slidingScene());
     Hand hand(terrain);
@@ -84,10 +84,11 @@ TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
         ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other))) << i << " steps later";
         ASSERT_EQ(terrain.outflow(), other.outflow());
     }
-    EXPECT_GT(other.outflow(), 0) << "a rim that nothing falls over shows nothing";
+    EXPECT_GT(other.outflow(), 0) << "no sand fell over the rim, so that this test proves nothing";
 }
 
-// The tool is back where it was, so that only the step number differs: it is written into the state of before.
+// The tool is back at its place, so that only the step number differs. The test writes that number into the earlier
+// state.
 TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
     Replica undone(slidingScene());
     Hand hand(undone);
@@ -97,7 +98,7 @@ TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
     hand.lift();
     hand.hover(Edit::undo);
     base::Bytes state = idle.encodeState();
-    state[4] = static_cast<std::uint8_t>(undone.stepNumber());  // eight bytes, behind the version
+    state[4] = static_cast<std::uint8_t>(undone.stepNumber());  // eight bytes after the version
     Replica expected(slidingScene());
     expected.decodeState(state);
     EXPECT_EQ(undone.stateHash(), expected.stateHash());
@@ -116,7 +117,7 @@ TEST(Undo, OfAnUndoDoesNothingMore) {
     Replica other(terrain);
     hand.hover(Edit::undo);
     Hand(other).hover();
-    EXPECT_EQ(terrain.stateHash(), other.stateHash()) << "a step like any other";
+    EXPECT_EQ(terrain.stateHash(), other.stateHash()) << "this edit must act as an ordinary step";
 }
 
 TEST(Undo, TakesBackWhatSettledSince) {
@@ -132,7 +133,7 @@ TEST(Undo, TakesBackWhatSettledSince) {
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), before));
 }
 
-// The operator is quicker than the hand: its stroke then begins where the undo left the sand.
+// The operator acts during the stroke. The stroke then begins where the undo left the sand.
 TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
     const scene::Scene scene = samples::flatScene(64, 64);
     Replica terrain(scene);
@@ -217,7 +218,7 @@ TEST(Undo, KeepsWhatTheOperatorHasChosen) {
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
 }
 
-/// Random strokes with now and then an edit of every kind.
+/// Random strokes with occasional edits of every kind.
 Step editedStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     Step step = samples::randomStep(number, rules, random);
     const auto draw = random() % 40;
@@ -292,7 +293,7 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     Replica dug(scene);
     Hand(dug).stroke(32);
     base::Bytes state = dug.encodeState();
-    state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte that zstd wrote of the heights before the stroke
+    state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte of the compressed heights before the stroke
     Replica terrain(scene);
     const std::uint64_t hash = terrain.stateHash();
     EXPECT_THROW(terrain.decodeState(state), base::FormatError);

@@ -50,7 +50,7 @@ TEST(Replica, AHeldToolComesToRest) {
     for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
         terrain.apply({1, ++number, true, {}});
     }
-    ASSERT_TRUE(terrain.settled()) << "a ball held still must not pump sand for ever";
+    ASSERT_TRUE(terrain.settled()) << "a ball held still must not move sand forever";
     const sand::HeightField rest = samples::fieldOf(terrain);
     terrain.apply({1, ++number, true, {}});
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest));
@@ -133,7 +133,7 @@ TEST(Replica, GoesOnFromAStateAsIfNothingHadHappened) {
     }
 }
 
-// Sand that slides on while the hand is away has inertia, which belongs to the state.
+// Sand that slides while the hand is away has inertia, which is part of the state.
 TEST(Replica, GoesOnInMidSlide) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         scene::Scene scene = samples::flatScene(64, 64);
@@ -154,7 +154,8 @@ TEST(Replica, GoesOnInMidSlide) {
     }
 }
 
-// Who joins visits every block once, where the others sleep: that must not make its inertia older than theirs.
+// A replica that joins visits every block once, while the other replica skips them. This must not make its inertia
+// older.
 TEST(Replica, GoesOnFromSettledSand) {
     scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
@@ -260,7 +261,7 @@ TEST(Replica, EverythingMayHaveChangedUntilSomebodyAsks) {
     sand::SurfaceChange change = terrain.takeChange();
     EXPECT_FALSE(change.whole);
     EXPECT_TRUE(std::get<sand::CellChange>(change.parts).cells.empty());
-    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "the copy has not been drawn";
+    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "the copy is not drawn yet";
     terrain.apply({1, ++number, false, {}, sand::Edit::reset});
     EXPECT_TRUE(terrain.takeChange().whole);
     EXPECT_FALSE(terrain.takeChange().whole);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The force thread has a millisecond: memory that it asks for may take longer.
+// The force thread must not allocate memory, because that may take longer than its millisecond.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace {
 thread_local int asked = 0;
 }  // namespace
 
-// Not inlined: g++ would see malloc's memory given to delete, and free's taken from new.
+// Not inlined, because g++ would otherwise warn that memory of malloc is given to delete, and memory of new to free.
 [[gnu::noinline]] void* operator new(std::size_t size) {
     ++asked;
     if (void* memory = std::malloc(size > 0 ? size : 1)) {

@@ -27,7 +27,7 @@ Response felt(const SurfacePatch& patch, Vec3 place, const sand::ForceConstants&
 
 TEST(ControlPoints, PushUpByTheirMeanDepth) {
     for (const bool literal : {false, true}) {
-        // dh = 0.01 / 2 all around: 0.005 · 10 N up, and the sides balance.
+        // dh = 0.01 / 2 at all points: 0.005 · 10 N upwards, and the sides balance.
         const Response response = felt(levelPatch(), placeAt(kRadius), paper(literal));
         EXPECT_NEAR(response.push.z, 0.05, 1e-7);
         EXPECT_NEAR(norm({response.push.x, response.push.y, 0}), 0, 1e-9);
@@ -36,7 +36,7 @@ TEST(ControlPoints, PushUpByTheirMeanDepth) {
 }
 
 TEST(ControlPoints, PushAwayFromTheSideWhereSandIsHigher) {
-    // dh_i = (d + g R cos a) / 2, so the mean of dh_i cos a is g R / 4: 10 · 0.5 · 0.01 / 4 N.
+    // dh_i = (d + g R cos a) / 2, so that the mean of dh_i cos a is g R / 4: 10 · 0.5 · 0.01 / 4 N.
     const Response response = felt(slopePatch(0.5), placeAt(2 * kRadius), paper());
     EXPECT_NEAR(response.push.x, -0.0125, 1e-5);
     EXPECT_NEAR(response.push.y, 0, 1e-7);
@@ -44,7 +44,7 @@ TEST(ControlPoints, PushAwayFromTheSideWhereSandIsHigher) {
 }
 
 TEST(ControlPoints, FeelAGelThatIsAcrossOnly) {
-    // 0.002 / 2 of the field per frame: 0.01 N against it, and none against falling.
+    // The tool moves 0.002 / 2 of the field per frame: 0.01 N against that motion, and no force against falling.
     const Response response = felt(levelPatch(), placeAt(kRadius), paper());
     const Vec3 friction = lawfulForce(response, {0.002, 0, -0.3}) - response.push;
     EXPECT_NEAR(friction.x, -0.01, 1e-9);
@@ -57,16 +57,16 @@ TEST(ControlPoints, RubByMaterialAndSpeedWhereAskedTo) {
     constants.frictionCoefficient = 0.6;
     constants.frictionSpeed = 0.3;
     const Response response = felt(levelPatch(), placeAt(kRadius), constants);
-    // At 0.3 scene units a second Coulomb's 0.6 · 0.05 N, and the gel's 0.005 / 2 · 10 N.
+    // At 0.3 scene units per second: Coulomb's 0.6 · 0.05 N, and the gel's 0.005 / 2 · 10 N.
     EXPECT_NEAR(lawfulForce(response, {0.3 / 60, 0, 0}).x, -0.03 - 0.025, 1e-6);
     EXPECT_NEAR(lawfulForce(response, {0.6 / 60, 0, 0}).x, -0.06 - 0.05, 1e-6) << "a higher velocity, a larger force";
 }
 
 TEST(ControlPoints, LiterallyPullDownAndJumpByTheTolerance) {
-    const double reach = 1e-3 * kUnit;  // z_tol, in scene units
+    const double reach = 1e-3 * kUnit;  // z_tol [scene unit]
     const Response over = felt(levelPatch(), placeAt(-reach * 0.999), paper(true));
     EXPECT_NEAR(over.push.z, -0.01, 2e-5) << "-z_tol F_M";
-    EXPECT_NEAR(over.drag, 10 / kUnit, 1e-9) << "and the gel is there at once";
+    EXPECT_NEAR(over.drag, 10 / kUnit, 1e-9) << "the gel effect is complete at once";
     const Response beyond = felt(levelPatch(), placeAt(-reach * 1.001), paper(true));
     EXPECT_EQ(beyond.push.z, 0);
     EXPECT_EQ(beyond.drag, 0);
@@ -77,10 +77,11 @@ TEST(ControlPoints, OtherwiseGrowFromNothingIntoTheLiteralForce) {
     const SurfacePatch level = levelPatch();
     EXPECT_EQ(felt(level, placeAt(0), paper()).push.z, 0);
     EXPECT_EQ(felt(level, placeAt(-reach / 2), paper()).push.z, 0);
-    // t² (2 - t) of z_tol F_M = 0.01 N: 7/64, 3/8 and 45/64 of it. A slope of t (4 - 3 t) is 13/16, 5/4 and 21/16 of
-    // F_M per unit length. Places are doubles near 1: off by 2e-16, which changes a force by less than 1e-12.
+    // The push is t² (2 - t) of z_tol F_M = 0.01 N: 7/64, 3/8 and 45/64 of it. Its slope is t (4 - 3 t): 13/16, 5/4 and
+    // 21/16 of F_M per unit length. Places are doubles near 1 with errors of 2e-16, which change a force by less than
+    // 1e-12.
     struct Row {
-        double part, newtons, rate;  // of z_tol; of F_M
+        double part, newtons, rate;  // part of z_tol; push; slope as a share of F_M
     };
     for (const auto& [part, newtons, rate] :
          {Row{0.25, 0.00109375, 0.8125}, Row{0.5, 0.00375, 1.25}, Row{0.75, 0.00703125, 1.3125}}) {
@@ -117,19 +118,21 @@ TEST(Interpolation, ArrivesAfterAsManyFramesAsTheLastSurfaceLasted) {
     };
     (void)equation9.at(true, true, true, {{0, 0, 1}, {0, 0, 1}, 2});
     for (int it = 1; it < 17; ++it) {
-        EXPECT_EQ(at(false, true, 9), 1) << "the only force there is";
+        EXPECT_EQ(at(false, true, 9), 1) << "only one force is known";
     }
     for (int it = 1; it <= 16; ++it) {
         EXPECT_NEAR(at(it == 1, true, 2), 1 + it / 17.0, 1e-12) << "itp is 17";
     }
-    EXPECT_NEAR(at(true, true, 4), 2 + 2 / 16.0, 1e-12) << "printed: from F, which was not reached; itp is 16 now";
+    EXPECT_NEAR(at(true, true, 4), 2 + 2 / 16.0, 1e-12)
+        << "as printed: begins at F, which was not reached; itp is now 16";
     for (int it = 2; it <= 20; ++it) {
         EXPECT_NEAR(at(false, true, 0), 2 + 2 * std::min(it / 16.0, 1.0), 1e-12);
     }
     EXPECT_NEAR(at(true, false, 8), 4 + 4 / 20.0, 1e-12);
     EXPECT_NEAR(at(false, false, 8), 4 + 8 / 20.0, 1e-12);
-    EXPECT_NEAR(at(true, false, 0), (4 + 8 / 20.0) / 2, 1e-12) << "otherwise from what was sent last; itp is 2";
-    EXPECT_EQ(at(true, true, 3), 3) << "a surface every frame leaves nothing to interpolate";
+    EXPECT_NEAR(at(true, false, 0), (4 + 8 / 20.0) / 2, 1e-12)
+        << "otherwise begins at the force that was sent last; itp is 2";
+    EXPECT_EQ(at(true, true, 3), 3) << "with a surface every frame, there is nothing to interpolate";
 }
 
 }  // namespace

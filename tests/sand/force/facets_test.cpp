@@ -20,9 +20,9 @@ using sand::tin::Place;
 using sand::tin::Triangles;
 using sand::tin::VertexSand;
 
-constexpr double kProbe = 1.0 / sand::kProbePerCell;  // [scene unit], a cell being one
+constexpr double kProbe = 1.0 / sand::kProbePerCell;  // [scene unit]; a cell is one scene unit
 
-/// A rough TIN of 48 x 48 cells, two sheer steps with constrained edges and a crowd of slivers in it.
+/// Returns a rough TIN of 48 x 48 cells with two sheer steps at constrained edges, and a group of slivers.
 VertexSand roughLayer(std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
@@ -46,7 +46,7 @@ VertexSand roughLayer(std::uint32_t seed) {
     return layer;
 }
 
-/// A slope with a hole of 8 x 8 cells in its middle.
+/// Returns a slope with a hole of 8 x 8 cells in its middle.
 VertexSand layerWithAHole() {
     const sand::tin::Cells cells = sand::tin::nominalCells(24 * 256, 24 * 256);
     std::vector<sand::tin::Holes::Run> runs;
@@ -68,8 +68,8 @@ VertexSand layerWithAHole() {
 
 sand::tin::SurfaceView viewOf(const VertexSand& layer) { return {layer.triangles(), layer.heights()}; }
 
-/// The heights of all triangles that hold the place, each as their plane has it, lowest and highest [cell], with the
-/// steepest slope of them, summed over both axes.
+/// Lowest and highest height at a place, over the planes of all triangles that contain it [cell], and the steepest of
+/// their slopes, summed over both axes.
 struct Found {
     double lowest = 1e30, highest = -1e30, slope = 0;
 };
@@ -119,7 +119,7 @@ TEST(Facets, AreTheTrianglesToAPartOfAHeightUnit) {
         const Found there = search(layer, 5200 + x, 6000 + y);
         const double height = facets.tangent((5200 + x) * kProbe, (6000 + y) * kProbe).value;
         const double error = std::max(height - there.highest, there.lowest - height);
-        // Half of 1/256 of a probe unit along each axis, and what doubles round.
+        // Half of 1/256 of a probe unit along each axis, and the rounding of doubles.
         ASSERT_LE(error, there.slope / 512 + 1e-9) << x << ", " << y;
         worst = std::max(worst, error);
     }
@@ -127,7 +127,7 @@ TEST(Facets, AreTheTrianglesToAPartOfAHeightUnit) {
     std::printf("at most %.3f height units off, over steps of %d\n", worst * sand::kUnitsPerCell, 1 << 20);
 }
 
-/// Twice the area of a, b and a place in parts of kParts of a probe unit: exact.
+/// Returns twice the area of a, b and a place in parts of a probe unit, which is exact. A probe unit has kParts parts.
 constexpr std::int64_t kParts = 256;
 std::int64_t areaWith(const Place& a, const Place& b, std::int64_t x, std::int64_t y) {
     return (std::int64_t{b.x} - a.x) * (y - kParts * a.y) - (std::int64_t{b.y} - a.y) * (x - kParts * a.x);
@@ -175,7 +175,7 @@ TEST(Facets, TellTheSideOfAnEdgeExactlyOfTheRoundedPlace) {
     EXPECT_GT(asked, 10000);
 }
 
-/// The mesh in other slots, its triangles begun at other corners.
+/// Returns the same mesh with other slots and with triangles that begin at other corners.
 Triangles shuffled(const Triangles& mesh, std::mt19937& random) {
     Triangles other = mesh;
     std::vector<std::int32_t> slot(mesh.triangles.size());

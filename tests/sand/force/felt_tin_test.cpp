@@ -20,7 +20,7 @@ using sand::force::SurfacePatch;
 
 constexpr double kNominal = 0.01;  // [scene unit]
 
-/// Level sand of 96 x 96 cells under a tool of eight.
+/// Returns level sand of 96 x 96 cells with a tool of eight cells.
 scene::Scene sceneOf(const std::string& shape, const std::string& tin) {
     const std::filesystem::path file =
         std::filesystem::temp_directory_path() / ("sandwall-felt-" + std::to_string(getpid()) + ".toml");
@@ -31,7 +31,7 @@ scene::Scene sceneOf(const std::string& shape, const std::string& tin) {
     return scene;
 }
 
-/// The force on a tool whose underside stands `depth` under the level, when the sand has come to rest around it.
+/// Returns the force on a tool whose underside is `depth` below the level, after the sand around it has come to rest.
 double upward(const std::string& shape, const std::string& tin, sand::ForceLaw law, double depth, double east = 0) {
     const scene::Scene scene = sceneOf(shape, tin);
     sand::Replica terrain(scene);
@@ -57,15 +57,15 @@ double upward(const std::string& shape, const std::string& tin, sand::ForceLaw l
     return respond(constants, patch, tool, {probe * at.x, probe * at.y, probe * at.z}).push.z;
 }
 
-/// A row of the table in docs/figures.md, [N].
+/// Row of the table in docs/figures.md [N].
 struct Agreement {
     sand::ForceLaw law;
     const char* shape;
-    double cells, fine, coarse;  // a TIN's points a cell apart, and two
+    double cells, fine, coarse;  // on cells, and on TINs whose points are one and two cells apart
 };
-// A ring far outside the outline is the same sand on both. Control points stand in the side of what an upright tool has
-// cut: a slope as wide as cells or points are apart, in which a height depends on where exactly they stand. A sphere
-// cuts no such side.
+// A ring far outside the outline contains the same sand on both. Control points of an upright tool are in the side of
+// its cut, which is a slope as wide as the distance of cells or points. A height there depends on the exact position. A
+// sphere has no such cut.
 constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.43, 16.33},
                                  Agreement{sand::ForceLaw::repulse, "circle", 20.23, 20.00, 19.01},
                                  Agreement{sand::ForceLaw::repulse, "ellipse", 16.16, 16.59, 17.07},
@@ -75,15 +75,15 @@ constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16
                                  Agreement{sand::ForceLaw::controlPoints, "ellipse", 0.28, 0.37, 0.29},
                                  Agreement{sand::ForceLaw::controlPoints, "footprint", 0.19, 0.17, 0.15}};
 
-// The sand is the same everywhere: a figure of the table holds to half of its last digit, and a tenth of that digit for
-// what it was rounded from.
+// The sand is the same everywhere. A figure of the table is exact to half of its last digit, plus a tenth of that digit
+// for the number that was rounded.
 TEST(FeltTin, AToolThatIsPressedIsHeldAsOnCells) {
     constexpr double kHundredth = 0.006;  // [N]
     for (const auto& [law, name, onCells, onFine, onCoarse] : kAgreements) {
         const std::string shape = name;
         SCOPED_TRACE(shape + (law == sand::ForceLaw::repulse ? ", repulse" : ", control points"));
         double cells = 0, fine = 0, coarse = 0;
-        for (const double east : {0.0, 0.5}) {  // [cell]: the outline lies now here, now there in a cell
+        for (const double east : {0.0, 0.5}) {  // [cell]; the outline lies at different places within a cell
             cells += upward(shape, "", law, 0.03, east * kNominal) / 2;
             fine += upward(shape, "[tin]\nspacing = 0.01\n", law, 0.03, east * kNominal) / 2;
             coarse += upward(shape, "[tin]\nspacing = 0.02\n", law, 0.03, east * kNominal) / 2;

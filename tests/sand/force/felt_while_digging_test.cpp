@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tool held in sand that steps under it, or dragged through it: what is felt from update to update.
+// A tool that is held in sand while the sand steps, or is dragged through it: the force from update to update.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,13 +17,13 @@ using namespace samples;
 using sand::Between;
 using sand::ForceConstants;
 
-/// A tool in sand that steps under it: what is felt at every tick.
+/// Force at every tick on a tool in sand that steps below it.
 struct Felt {
     double least = 1e9, most = 0;           // [N], |push|
-    double jumpAtUpdate = 0, jumpElse = 0;  // [N], of push and friction from a tick to the next
+    double jumpAtUpdate = 0, jumpElse = 0;  // change of push and friction between two ticks [N]
 };
 
-/// The tool's lowest point `depth` under the level sand, moving at `speed` [radius per step] after ten steps.
+/// Moves a tool whose lowest point is `depth` below the level sand, at `speed` [radius per step], after ten steps.
 Felt dragged(const ForceConstants& constants, double depth, double speed) {
     const int steps = 10 + (speed > 0 ? static_cast<int>(std::min(50.0, 12 / speed)) : 50);
     sand::Replica terrain(levelScene());
@@ -48,7 +48,7 @@ Felt dragged(const ForceConstants& constants, double depth, double speed) {
         const Vec3 force = lawfulForce(here, velocity);
         if (tick > 0) {
             double& jump = update ? felt.jumpAtUpdate : felt.jumpElse;
-            // That the hand starts to move is no update.
+            // The start of the hand's motion does not count as an update.
             jump = std::max(jump, moving > 0 && moving < speed * 0.061 ? 0 : norm(force - last));
         }
         last = force;
@@ -58,7 +58,7 @@ Felt dragged(const ForceConstants& constants, double depth, double speed) {
     return felt;
 }
 
-// docs/figures.md: either law's push stays within 1.1 %, and no update changes it by more than 0.0001 N.
+// docs/figures.md: the push of either law stays within 1.1 %, and no update changes it by more than 0.0001 N.
 TEST(LocalModel, HoldsSixtyStepsWhileTheToolIsHeld) {
     for (const auto law : kLaws) {
         const Felt felt = dragged(constantsOf(law), kRadius, 0);
@@ -70,7 +70,7 @@ TEST(LocalModel, HoldsSixtyStepsWhileTheToolIsHeld) {
     }
 }
 
-/// A row of the table of jumps in docs/figures.md.
+/// Row of the table of jumps in docs/figures.md.
 struct Jump {
     sand::ForceLaw law;
     double depth, speed;         // [tool radius], [tool radius/step]
@@ -90,8 +90,8 @@ constexpr std::array kJumps{Jump{sand::ForceLaw::repulse, 0.3, 0.1, 1.56, 1.72, 
                             Jump{sand::ForceLaw::controlPoints, 1.0, 0.3, 0.42, 0.54, 0.003, 0.061},
                             Jump{sand::ForceLaw::controlPoints, 1.0, 1.0, 0.40, 0.46, 0.005, 0.113}};
 
-// The sand is the same everywhere, and the force but for the last digits of a library's functions: a figure of the
-// table holds to half of its last digit, and a tenth of that digit for what it was rounded from.
+// Every machine computes the same sand. Forces differ only in the last digits of a library's functions. A figure of the
+// table is exact to half of its last digit, plus a tenth of that digit for the number that was rounded.
 TEST(LocalModel, DoesNotJumpAtAnUpdateWhileDragging) {
     constexpr double kHundredth = 0.006, kThousandth = 0.0006;  // [N]
     for (const Jump& row : kJumps) {

@@ -30,12 +30,13 @@ inline sand::ProbePoint probeAt(Vec3 place) {
     return {probe(place.x), probe(place.y), probe(place.z)};
 }
 
-/// The tool's centre, its lowest point at `depth` under height 0.
+/// Returns the tool's centre when its lowest point is `depth` below height 0.
 inline Vec3 placeAt(double depth, double east = 0, double north = 0) {
     return {kMiddle + east, kMiddle + north, kRadius - depth};
 }
 
-/// Around the middle of a field of heights [scene unit] over (east, north) of it.
+/// Returns a patch around the middle of a field. `height` gives the heights [scene unit] at (east, north) of that
+/// middle.
 template <class Height>
 SurfacePatch patchOf(const Height& height, double reach = kRadius) {
     sand::HeightField field(kSide, kSide, kCell);
@@ -50,11 +51,11 @@ SurfacePatch patchOf(const Height& height, double reach = kRadius) {
 inline SurfacePatch levelPatch() {
     return patchOf([](double, double) { return 0.0; });
 }
-/// Rising to the east.
+/// Returns a slope that rises to the east.
 inline SurfacePatch slopePatch(double slope) {
     return patchOf([slope](double east, double) { return slope * east; });
 }
-/// Heaps and holes of a few cells, up to a radius high.
+/// Returns heaps and holes of a few cells, up to a radius high.
 inline SurfacePatch roughPatch(std::uint32_t seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> phase(0, 6.28);
@@ -64,7 +65,7 @@ inline SurfacePatch roughPatch(std::uint32_t seed) {
     });
 }
 
-/// Level sand under a tool of ten cells, at sixty steps a second.
+/// Returns level sand with a tool of ten cells, at sixty steps per second.
 inline scene::Scene levelScene(std::int32_t sweepsPerStep = 40) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(kSide, kSide, kCell);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is felt between two surfaces: asked a thousand times a second, while the sand steps sixty times.
+// The force between two surfaces: computed a thousand times per second, while the sand steps sixty times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ TEST(LocalModel, FollowsTheLawToFirstOrderAndHoldDoesNot) {
                 ForceConstants constants = constantsOf(law, between);
                 constants.recoveryTime = 0;
                 ForceModel model(constants);
-                // Two surfaces, for what lies across is believed once it has come true.
+                // Two surfaces, because the model assumes a horizontal tangent only after it has come true.
                 (void)model.at(rough, 1, tool, placeAt(0.7 * kRadius, -0.11 * kRadius), 0);
                 (void)model.at(rough, 2, tool, placeAt(0.7 * kRadius), kTick);
                 const Vec3 there = model.at(rough, 2, tool, placeAt(0.7 * kRadius) + step, 2 * kTick).push;
@@ -61,7 +61,8 @@ TEST(LocalModel, IsMadeAnewBeyondItsRadius) {
     const ForceConstants constants = constantsOf(sand::ForceLaw::repulse);
     ForceModel model(constants);
     Vec3 last{};
-    // Four radii in 200 ticks, sixteen of its own radii: it keeps to the sand, and it never leaps.
+    // The tool moves four radii in 200 ticks, which is more than the model's validity. The push must follow the sand
+    // and must not jump.
     for (int tick = 0; tick <= 200; ++tick) {
         const Vec3 place = placeAt(0.7 * kRadius, kRadius * (tick / 50.0 - 2));
         const Vec3 push = model.at(rough, 1, tool, place, tick * kTick).push;

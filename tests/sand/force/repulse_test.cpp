@@ -87,7 +87,7 @@ TEST(Repulse, RubsWithItsAreaAndLiterallyInAnyDirectionThePaperMayMean) {
 }
 
 TEST(Repulse, MeasuresAnyToolOutsideItsOutline) {
-    // A trench of the tool's own breadth, as it has dug it: the ring lies on the sand beside it.
+    // A trench as broad as the tool, as the tool has dug it. The ring lies on the sand beside it.
     Contour ellipse = Contour::sphere(kRadius);
     for (Vec3& point : ellipse.points) {
         point = {point.x, 0.5 * point.y, -0.3 * kRadius};
@@ -99,7 +99,7 @@ TEST(Repulse, MeasuresAnyToolOutsideItsOutline) {
     EXPECT_NEAR(contact.depth.value, 0.3 * kRadius, 1e-6) << "its own lowest point under the sand beside it";
 }
 
-// What the guards and the local model build on: derivatives, against differences of the law itself.
+// Compares the derivatives with differences of the law itself. The guards and the local model depend on them.
 TEST(Repulse, KnowsItsJacobianOnRoughSand) {
     constexpr double kStep = 1e-7;
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {

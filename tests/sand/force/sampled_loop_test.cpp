@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device on the model, in a loop of a thousand ticks a second: what is stable, and what the sand gives and takes.
+// A device with the force model in a loop of a thousand ticks per second: which loops are stable, and how much energy
+// the sand gives and takes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,11 +19,12 @@ using namespace samples;
 using sand::Between;
 using support::PointMass;
 
-/// Level sand as a spring of `stiffness` [N/m] over a scene whose unit is the metre; a weight holds the mass at half a
-/// radius, and it starts 0.1 mm above. Whether it comes to rest: at 95 % of the limit that takes ten seconds.
+/// Returns whether a mass comes to rest on level sand. The sand is a spring of `stiffness` [N/m], and the scene's unit
+/// is the metre. A weight holds the mass at half a radius; the mass starts 0.1 mm above. At 95 % of the limit, coming
+/// to rest takes ten seconds.
 bool settles(Between between, double stiffness) {
     sand::ForceConstants constants;
-    constants.depthExponent = 1e-3;  // next to linear
+    constants.depthExponent = 1e-3;  // nearly linear
     constants.stiffness = stiffness / constants.depthExponent;
     constants.between = between;
     const SurfacePatch level = levelPatch();
@@ -32,7 +34,7 @@ bool settles(Between between, double stiffness) {
     mass.place = placeAt(kRadius / 2 - 1e-4);
     const Vec3 weight{0, 0, -stiffness * kRadius / 2};
     constexpr int kTicks = 20000;
-    double fastest = 0;  // [m/s], in the last tenth of a second
+    double fastest = 0;  // in the last tenth of a second [m/s]
     for (int tick = 0; tick < kTicks; ++tick) {
         const auto step = static_cast<std::uint64_t>(tick * 60 / 1000 + 1);
         mass.push(model.at(level, step, tool, mass.place, tick * kTick).push + weight, kTick);
@@ -52,20 +54,20 @@ TEST(SampledLoop, BearsAsMuchAsWhatLiesBetweenSurfacesAllows) {
     EXPECT_FALSE(settles(Between::local, 1050));
 }
 
-/// What became of a mass on sand that steps and slides under it.
+/// Result for a mass on sand that steps and slides below it.
 struct Session {
-    double given = 0, mostGiven = 0;  // [J], work of the sand on the mass, at the end and at most so far
-    double loss = 0, handWork = 0;    // [J], of the device's damping; of the hand and the weight
-    double energy = 0;                // [J], kinetic at the end
-    std::vector<double> fastest;      // [m/s], in every quarter of a second after the hand let go
-    double sandMoved = 0;             // [scene unit], the greatest change of any height
+    double given = 0, mostGiven = 0;  // work of the sand on the mass, at the end, and largest so far [J]
+    double loss = 0, handWork = 0;    // [J], taken by the device's damping; work of the hand and the weight [J]
+    double energy = 0;                // kinetic energy at the end [J]
+    std::vector<double> fastest;      // [m/s], in every quarter of a second after the release
+    double sandMoved = 0;             // largest change of any height [scene unit]
 };
 
 constexpr double kMetres = 0.08;  // of a scene unit: the field of Dorjgotov et al. 2007 is two units and 0.16 m wide
 constexpr double kWeight = 0.3;   // [N]
 constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
 
-/// A weighted device is pulled to and fro for two seconds, digging, and let go.
+/// Pulls a weighted device to and fro for two seconds while it digs, then releases it.
 Session pulledAndReleased(const sand::ForceConstants& constants) {
     sand::Replica terrain(levelScene());
     ForceModel model(constants);
@@ -116,8 +118,9 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
     return session;
 }
 
-// 400 N/m, where half of what b = 0.5 bears is 500. Sand that a press has raised answers a frame later: felt at once,
-// as a held or an exact force on each surface is, that delay alone shakes the mass for ever (docs/figures.md).
+// The stiffness is 400 N/m. A device with b = 0.5 bears 1000 N/m, and half of that is 500 N/m. Sand that a press has
+// raised answers a frame later. If it acts at once, as a held or an exact force on each surface does, that delay alone
+// shakes the mass forever (docs/figures.md).
 TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
         sand::ForceConstants constants;
@@ -132,19 +135,21 @@ TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
             std::printf(" %.3g", speed);
         }
         std::printf(" m/s; sand moved %.3g\n", session.sandMoved);
-        EXPECT_GT(session.sandMoved, kRadius / 2) << "the sand was left alone";
-        EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9) << "the books must balance";
-        EXPECT_LT(session.given, 0.05 * session.handWork) << "the sand is no motor";
-        EXPECT_LT(session.mostGiven, 0.3 * session.loss) << "and lends little";
+        EXPECT_GT(session.sandMoved, kRadius / 2) << "the tool did not move the sand";
+        EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9)
+            << "the energies must add up";
+        EXPECT_LT(session.given, 0.05 * session.handWork) << "the sand must not drive the mass";
+        EXPECT_LT(session.mostGiven, 0.3 * session.loss) << "the sand must give back little at any time";
         EXPECT_LT(session.fastest.back(), 1e-3);
         for (std::size_t i = 1; i < session.fastest.size(); ++i) {
             EXPECT_LT(session.fastest[i], std::max(session.fastest[i - 1], 1e-4)) << "quarter " << i << ": growth";
         }
-        constants.recoveryTime = 0;  // every surface felt at once
+        constants.recoveryTime = 0;  // every surface acts at once
         const Session shaken = pulledAndReleased(constants);
         std::printf("at once: sand gave %.3g mJ, hand and weight %.3g, damping took %.3g; at the end %.3g m/s\n",
                     1e3 * shaken.given, 1e3 * shaken.handWork, 1e3 * shaken.loss, shaken.fastest.back());
-        EXPECT_GT(shaken.fastest.back(), 1e-2) << "then why recover slowly?";
+        EXPECT_GT(shaken.fastest.back(), 1e-2)
+            << "without a slow recovery the mass must shake, or the recovery is not needed";
         EXPECT_GT(shaken.given, shaken.handWork);
     }
 }

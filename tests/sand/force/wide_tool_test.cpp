@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tool that is many cells wide is felt on the cells themselves.
+// A tool that is many cells wide feels the cells themselves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,15 +19,15 @@ namespace {
 using namespace sand::force;
 using namespace samples;
 
-/// Level sand from which a sphere was dug to its middle, with the heap around it: a wall a cell thick stands right
-/// under the control points, the hardest place there is to be read.
+/// Level sand from which a sphere was dug to its middle, with the heap around it. A wall of one cell thickness is
+/// directly below the control points, which is the hardest place to read.
 struct Bowl {
     int radius;     // [cell]
-    double middle;  // [cell], from the west; from the south it is 5 radii
+    double middle;  // position of the middle from the west [cell]; it is 5 radii from the south
     sand::HeightField field;
 
     Bowl(int cells, double aside) : radius(cells), middle(5 * cells + aside), field(10 * cells, 10 * cells, kCell) {
-        // Farther than 1.5 R from its middle the sand is level, at height 0.
+        // Farther than 1.5 R from the middle, the sand is level at height 0.
         const auto first = [cells](double from) { return static_cast<int>(from - 1.5 * cells); };
         for (int row = first(5 * cells); row < first(8 * cells); ++row) {
             for (int column = first(middle); column < first(middle + 3 * cells); ++column) {
@@ -43,7 +43,7 @@ struct Bowl {
     [[nodiscard]] Response felt(const sand::ForceConstants& constants) const {
         return respond(constants, {field, probeAt(place()), radius * kCell}, tool(), place());
     }
-    /// Between the middles of four cells [scene unit].
+    /// Returns the height between the middles of four cells [scene unit].
     [[nodiscard]] double height(double x, double y /* [scene unit] */) const {
         const double column = x / kCell - 0.5, row = y / kCell - 0.5;
         const int i = static_cast<int>(column), j = static_cast<int>(row);
@@ -78,7 +78,8 @@ struct Bowl {
 
 constexpr std::array kAsides{0.0, 0.25, 0.5, 0.8};  // [cell]
 
-/// The same sand on a TIN with a vertex in the middle of every cell: too many triangles around the tool to be copied.
+/// Returns the same sand on a TIN with a vertex in the middle of every cell. There are too many triangles around the
+/// tool to copy them.
 sand::Replica finelyMeshed(const Bowl& bowl) {
     sand::Start start;
     start.terrain = sand::HeightField(1, 1, kCell);
@@ -108,14 +109,14 @@ double worstOfPoints(int cells) {
     return worst;
 }
 
-// Floats hold a height of a radius to 6e-8 of itself.
+// A float represents a height of one radius with a relative error of 6e-8.
 TEST(WideTool, ControlPointsFeelEveryCell) {
     for (const int cells : {5, 11, 12, 31, 127}) {
         EXPECT_LT(worstOfPoints(cells), 1e-6) << cells << " cells";
     }
 }
 
-// The ring's 144 places are a sample: at most 1 % off on this bowl, whatever the radius.
+// The ring's 144 places are a sample. Its error is at most 1 % on this bowl, with any radius.
 TEST(WideTool, TheRingFeelsEveryCell) {
     for (const int cells : {11, 31, 127}) {
         for (const double aside : kAsides) {
@@ -127,15 +128,15 @@ TEST(WideTool, TheRingFeelsEveryCell) {
     }
 }
 
-/// Spheres of these radii, and the error of the push that docs/forces.md states for them.
+/// Spheres of these radii, with the error of the push that docs/forces.md states for them.
 struct Stated {
     std::vector<int> cells;
     double error;
 };
 
-// Sampled on every second to seventh cell. The bowl's wall is 0.4 R high, and where in it a control point reads is left
-// to chance: the error of a mean of 32 such does not shrink with the radius. The radii are the worst of 200 from 128 to
-// 1024 that were tried, beside others.
+// The patch samples every second to seventh cell. The bowl's wall is 0.4 R high. A control point reads it at a random
+// place, so that the error of a mean of 32 points does not shrink with the radius. The radii include the worst of 200
+// that were tried from 128 to 1024.
 TEST(WideTool, OverAHundredAndTwentySevenCellsItIsFeltWithinTheBound) {
     for (const auto& [radii, error] : {Stated{{128, 180, 193, 255, 256}, 0.07}, Stated{{258, 400, 512, 768}, 0.10}}) {
         double worst = 0;
@@ -149,7 +150,7 @@ TEST(WideTool, OverAHundredAndTwentySevenCellsItIsFeltWithinTheBound) {
     }
 }
 
-// On a TIN the outline is the foot of the cut, and control points lie half of a cell outside of it.
+// On a TIN, the outline is the foot of the cut. Control points lie half a cell outside it.
 double worstOnFineTin(int cells) {
     double worst = 0;
     for (const double aside : kAsides) {
@@ -174,7 +175,7 @@ double worstOnFineTin(int cells) {
     return worst;
 }
 
-// 96 heights on a side are R/12 apart, whatever the radius: the wall is as wide as that.
+// 96 heights on a side are R/12 apart with any radius. The wall is as wide as that.
 TEST(WideTool, OnAFineTinItIsFeltWithinTheBound) {
     for (const auto& [radii, error] :
          {Stated{{6, 8, 11}, 0.01}, Stated{{12, 31}, 0.10}, Stated{{26, 36}, 0.14}, Stated{{41}, 0.20}}) {

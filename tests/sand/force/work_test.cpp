@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which way the force points, and the work it does on paths that close, moved along so slowly that nothing else counts.
+// The direction of the force, and its work on closed paths that are so slow that no other effect counts.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -22,7 +22,7 @@ sand::ForceConstants workedConstants(sand::ForceLaw law) {
     return constants;
 }
 
-/// A closed path around half a radius' depth: three waves in every direction.
+/// Closed path around a depth of half a radius: three waves in every direction.
 class Loop {
 public:
     explicit Loop(std::uint32_t seed) {
@@ -51,10 +51,10 @@ private:
 };
 
 struct Work {
-    double net = 0, exchanged = 0;  // [N · scene unit], along the path; of either sign
+    double net = 0, exchanged = 0;  // [N · scene unit] along the path; exchanged: sum of both signs
 };
 
-/// The model's work along a loop, taken so slowly that a new tangent has always taken over.
+/// Returns the model's work along a loop. The loop is so slow that each new tangent takes over completely.
 Work around(const sand::ForceConstants& constants, const SurfacePatch& patch, std::uint32_t seed) {
     constexpr int kTicks = 20000;
     const Contour tool = Contour::sphere(kRadius);
@@ -85,8 +85,9 @@ TEST(Work, IsNothingOverAClosedPathOnLevelSand) {
     }
 }
 
-// Neither law has a potential on a slope: the first turns its force with the depth, the second pushes sideways by the
-// depth. What a loop gives or takes is bounded by what it exchanges, and `sandwall-bench force-work` reports it.
+// On a slope, the force of neither law has a potential. The law of Dorjgotov et al. 2007 turns its force with the
+// depth. The law of Purchart et al. 2012 pushes sideways in proportion to the depth. The exchanged work bounds the work
+// that a loop gives or takes; `sandwall-bench force-work` reports it.
 TEST(Work, StaysAPartOfWhatIsExchangedOnSlopes) {
     const SurfacePatch slope = slopePatch(0.5);
     for (const auto law : kWorkedLaws) {
@@ -95,8 +96,8 @@ TEST(Work, StaysAPartOfWhatIsExchangedOnSlopes) {
             const Work work = around(workedConstants(law), slope, seed);
             most = std::max(most, std::abs(work.net) / work.exchanged);
         }
-        std::printf("on a slope of a half: at most %.3g of what is exchanged\n", most);
-        EXPECT_GT(most, 1e-4) << "as if the law were conservative: then say so in docs/forces.md";
+        std::printf("on a slope of a half: at most %.3g of the exchanged work\n", most);
+        EXPECT_GT(most, 1e-4) << "the law seems to be conservative; docs/forces.md must then state that";
         EXPECT_LT(most, 0.5);
     }
 }
@@ -113,7 +114,7 @@ TEST(Push, PointsOutOfTheSandAndIsNothingOutsideIt) {
             for (int i = 0; i < 200; ++i) {
                 const Vec3 place = placeAt(depth(random), aside(random), aside(random));
                 const Vec3 push = ForceModel(constants).at(rough, 1, tool, place, 0).push;
-                double highest = -1;  // sand anywhere within two radii
+                double highest = -1;  // highest sand within two radii
                 for (int k = 0; k < 400; ++k) {
                     const double angle = 0.1 * k, reach = 2 * kRadius * std::sqrt(k / 400.0);
                     highest = std::max(
@@ -144,7 +145,7 @@ TEST(Push, GrowsFromNothingAndFallsToNothingAlongAnyPath) {
         ForceModel model(constants);
         double last = 0, steepest = 0;
         bool touched = false;
-        // Down two radii and up again at a radius per 20 ms, a tenth of that sideways.
+        // The tool moves down two radii and up again at one radius per 20 ms, and sideways at a tenth of that speed.
         for (int tick = 0; tick <= 160; ++tick) {
             const double down = kRadius * (2 - std::abs(tick - 80) / 20.0);
             const Response felt = model.at(rough, 1, tool, placeAt(down, kRadius * tick / 200), tick * kTick);

@@ -21,8 +21,8 @@ struct Way {
     sand::grid::CodePath path;
 };
 
-// A pairwise cover: each number of threads meets each size of block in one of the three kinds of build.
-// scripts/test.sh runs three builds of it, scripts/goldens.sh all levels of both compilers.
+// Pairwise cover: each number of threads meets each size of block in one of the three kinds of build. scripts/test.sh
+// runs three builds of it. scripts/goldens.sh runs all optimisation levels of both compilers.
 #ifndef __OPTIMIZE__
 constexpr int kBuild = 0;
 #elif defined(__clang__)
@@ -38,7 +38,7 @@ Way wayOf(std::size_t i) {
             i % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline};
 }
 
-/// Dunes on a field of odd size, whose sand may fall off.
+/// Dunes on a field of odd size with an open rim.
 scene::Scene coveredScene() {
     scene::Scene scene = samples::flatScene(97, 61, 2.56);
     scene.rules.sweepsPerStep = 4;
@@ -47,8 +47,8 @@ scene::Scene coveredScene() {
     return scene;
 }
 
-// Ten thousand edits, one number. It was accepted when the oracles beside this folder passed and all builds agreed;
-// whoever changes the algorithm raises kAlgorithmVersion and replaces it.
+// One number for ten thousand edits. It was accepted when the oracles beside this folder passed and all builds agreed.
+// A change of the algorithm raises kAlgorithmVersion and replaces it.
 TEST_P(Cover, TenThousandEditsHashAlike) {
     constexpr std::uint64_t kEdits = 10000;
     constexpr std::uint64_t kFew = 1000;  // for slow builds
@@ -58,7 +58,7 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     const base::Executor executor = team.executor();
     sand::Replica terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
-    std::uint64_t all = 0;  // of every step's hash, so that none may differ
+    std::uint64_t all = 0;  // combines every step's hash, so that each of them counts
     for (std::uint64_t edit = 1; edit <= (samples::kSlowBuild ? kFew : kEdits); ++edit) {
         terrain.apply(samples::randomStep(edit, scene.rules, random));
         all = all * 31 + terrain.stateHash();

@@ -13,7 +13,7 @@
 
 namespace {
 
-/// 400 steps of a senseless hand over dunes on an odd-sized field.
+/// Returns the hash after 400 steps of a random hand over dunes on a field of odd size.
 std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     scene::Scene scene = samples::flatScene(97, 61, 2.56);
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
@@ -27,9 +27,9 @@ std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     return terrain.stateHash();
 }
 
-// What the contract means in one number: any compiler, level of optimisation and machine must print these. They were
-// accepted when volume, symmetry and oracle tests beside this file passed, and g++ and clang agreed at -O0 to -O3.
-// Whoever changes the algorithm raises kAlgorithmVersion and replaces them.
+// These numbers must be the same with every compiler, level of optimisation and machine. They were accepted when
+// volume, symmetry and oracle tests beside this file passed, and g++ and clang agreed at -O0 to -O3. A change of the
+// algorithm raises kAlgorithmVersion and replaces them.
 TEST(Golden, SessionHashesAreTheSameEverywhere) {
     using enum sand::Scheme;
     using enum sand::Rim;
@@ -46,7 +46,7 @@ struct Variant {
     const char* hash;
 };
 
-/// Rock that rises to the east, bare in places, and a block and a stair of walls.
+/// Returns rock that rises to the east and is bare in places, with a block and a stair of walls.
 std::shared_ptr<const sand::Ground> groundOf(const Variant& variant, const sand::HeightField& field) {
     auto ground = std::make_shared<sand::Ground>(field.columns(), field.rows());
     for (int y = 0; y < field.rows(); ++y) {
@@ -79,8 +79,8 @@ std::uint64_t hashOf(const Variant& variant) {
     return terrain.stateHash();
 }
 
-// Each has a kernel of its own, or a term that plain sand does not have: doubles that the band, the limits of a layer
-// and the two lengths of a cell bring in. Accepted as those above.
+// Each variant has a kernel of its own, or uses doubles that plain sand does not have: for the band, the limits of a
+// layer, or the two lengths of a cell. They were accepted in the same way as the session hashes.
 TEST(Golden, BandRockWallsAndLongCellsAreTheSameEverywhere) {
     using enum sand::Rim;
     constexpr std::int32_t kOne = sand::kUnitsPerCell;
@@ -94,7 +94,8 @@ TEST(Golden, BandRockWallsAndLongCellsAreTheSameEverywhere) {
     }
 }
 
-// Tools of every shape, turned and switched at random: doubles that turn, square and divide must not be fused anywhere.
+// Tools of every shape, turned and changed at random. No compiler may fuse the operations of the doubles that turn,
+// square and divide.
 TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
     scene::Scene scene = samples::flatScene(45, 33, 6);
     sand::grid::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
@@ -109,7 +110,7 @@ TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
     EXPECT_EQ(fmt::format("{:016x}", terrain.stateHash()), "1f6997b76acf8b42");
 }
 
-/// What settle() makes of noise.
+/// Returns the hash of noise after settle().
 std::uint64_t hashOfSettled(sand::Rim rim) {
     scene::Scene scene = samples::flatScene(97, 61);
     std::mt19937 random(47);
@@ -119,8 +120,8 @@ std::uint64_t hashOfSettled(sand::Rim rim) {
     return sand::Replica(scene).stateHash();
 }
 
-// The projection works in doubles: whether to drop its momentum, and when to stop, hangs on sums that every compiler
-// must take in the same order. Accepted like the hashes above.
+// The projection computes with doubles. Their sums decide when to reset the momentum and when to stop, so that every
+// compiler must add them in the same order. The hashes were accepted in the same way as the session hashes.
 TEST(Golden, SettledFieldsAreTheSameEverywhere) {
     EXPECT_EQ(fmt::format("{:016x}", hashOfSettled(sand::Rim::closed)), "45a82b2d9e6b5943");
     EXPECT_EQ(fmt::format("{:016x}", hashOfSettled(sand::Rim::open)), "e3e9b287cf8b06da");

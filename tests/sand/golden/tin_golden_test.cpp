@@ -35,8 +35,9 @@ Vertex anyOf(const VertexSand& layer, std::mt19937& random) {
     return vertex;
 }
 
-/// Places are cut in, joined, taken out; sand falls; a tool stands in it in two steps of five; it slides. `anew`: every
-/// step by an erosion that knows nothing of the steps before. The outflow over an open rim is part of the hash.
+/// Returns the hash of a random session. Vertices are inserted, joined and removed; sand is poured; a tool is in the
+/// sand in two steps of five; the sand slides. With `anew`, each step has a new Erosion that does not know earlier
+/// steps. The hash includes the outflow over an open rim.
 std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim, bool anew) {
     std::mt19937 random(61);
     Mesh mesh(kSide, kSide);
@@ -88,7 +89,7 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
     return hash;
 }
 
-// As those beside it: any compiler, level of optimisation and machine must print these.
+// These numbers must be the same with every compiler, level of optimisation and machine, as in golden_test.cpp.
 TEST(TinGolden, SessionHashesAreTheSameEverywhere) {
     for (const bool anew : samples::kSlowBuild ? std::vector{false} : std::vector{false, true}) {
         const auto session = [anew](std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Leaving settled blocks alone must not show.
+// Skipping settled blocks must not change any result.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,8 +17,8 @@ using sand::HeightField;
 using sand::grid::CodePath;
 using sand::grid::Erosion;
 
-/// A plane that rises in the direction (3, 4) or one of its mirror images, just below 45 degrees, roughened by a few
-/// units so that it is critical here and there, with a bump at a corner of a block.
+/// Returns a plane that rises in the direction (3, 4) or one of its mirror images, just below 45 degrees. It is
+/// roughened by a few units, so that it is critical in some places. A bump lies at a corner of a block.
 HeightField nearCriticalPlane(int side, int block, std::mt19937& random) {
     const int eastward = random() % 2 == 0 ? 1 : -1;
     const int northward = random() % 2 == 0 ? 1 : -1;
@@ -39,7 +39,7 @@ HeightField nearCriticalPlane(int side, int block, std::mt19937& random) {
     return field;
 }
 
-// With edge neighbours only, a prototype lost sand in 84 of 3000 such runs; lumps alone never show it.
+// With edge neighbours only, a prototype lost sand in 84 of 3000 such runs. Heaps alone never show this fault.
 TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
     constexpr int kRuns = samples::kSanitized ? 300 : 3000;
     constexpr std::array kBlocks{8, 16, 32, 64};
@@ -60,7 +60,7 @@ TEST(ActiveBlocks, EqualFullSweepsOn3000NearCriticalPlanes) {
         ASSERT_EQ(field.volume(), start.volume()) << "run " << run << " of seed 17, blocks of " << block;
         moving += erosion.sweepsDone() > 1 ? 1 : 0;
     }
-    EXPECT_GE(moving, kRuns / 4) << "these planes are not near enough to critical to show anything";
+    EXPECT_GE(moving, kRuns / 4) << "these planes are too far from critical, so that this test proves nothing";
 }
 
 TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The band: sand at rest starts to slide at t (1 + band), and sand that slides stops at t.
+// The band: sand at rest starts to slide at t (1 + band), and sliding sand stops at t.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,11 +17,12 @@ using sand::HeightField;
 
 constexpr int kSide = 72;                       // [cell]
 constexpr double kTalus = 0.57735026918962576;  // of 30 degrees
-constexpr std::int32_t kThreshold = 37837;      // [unit] the same, from cell to cell
+constexpr std::int32_t kThreshold = 37837;      // [unit], the same talus as a difference between cells
 constexpr std::array kBands{0.001, 0.01, 0.05, 0.2, 0.5};
 constexpr std::array kDirections{0.0, 22.5, 45.0, 70.0, 90.0, 157.5, 225.0, 292.5};  // [degree]
 
-/// Rises at `slope` [talus] towards `degrees` across the middle of the field, 12 cells high, between two levels.
+/// Returns a bank that rises at `slope` [talus] towards `degrees` across the middle of the field. It is 12 cells high
+/// and lies between two levels.
 HeightField bank(double slope, double degrees) {
     const oracles::Line line{kSide / 2.0, kSide / 2.0, degrees};
     return oracles::fieldOf(kSide, kSide, [&](double x, double y) {
@@ -30,8 +31,8 @@ HeightField bank(double slope, double degrees) {
 }
 
 struct Rest {
-    double mean;      // slope of the sand that slid, over the talus
-    double steepest;  // face, over the talus
+    double mean;      // slope of the sand that slid [talus]
+    double steepest;  // steepest face [talus]
     std::int64_t sweeps;
     bool moved;
 };
@@ -43,7 +44,7 @@ Rest restOf(const HeightField& start, const Law& law) {
     int count = 0;
     for (int y = 1; y + 1 < kSide; ++y) {
         for (int x = 1; x + 1 < kSide; ++x) {
-            // A cell between the two levels that the slide changed; its slope is that of the plane through its
+            // A cell between the two levels that the slide has changed. Its slope is that of the plane through its
             // neighbours.
             const double height = field.height(x, y) / 65536.0;
             if (std::abs(height - 6) < 4 && field.height(x, y) != start.height(x, y)) {
@@ -67,7 +68,7 @@ TEST(Band, SandThatSlidStopsAtTheTalusInEveryDirection) {
                 ASSERT_TRUE(without.moved);
                 for (const double band : kBands) {
                     if (slope < 1 + band + 0.01) {
-                        continue;  // it never starts
+                        continue;  // the slide never starts
                     }
                     const Rest rest = restOf(start, {scheme, band});
                     SCOPED_TRACE(testing::Message()
@@ -81,7 +82,7 @@ TEST(Band, SandThatSlidStopsAtTheTalusInEveryDirection) {
     }
 }
 
-/// Where no face is steeper than the start threshold, nothing moves.
+/// Nothing moves while no face is steeper than the start threshold.
 TEST(Band, SandAtRestStaysUpToTheStartThreshold) {
     for (const sand::Scheme scheme : samples::kSchemes) {
         for (const double band : kBands) {
@@ -99,7 +100,7 @@ TEST(Band, SandAtRestSlidesBeyondTheStartThreshold) {
     for (const sand::Scheme scheme : samples::kSchemes) {
         for (const double band : kBands) {
             for (const double degrees : kDirections) {
-                // A step of the sixteenth of a cell that samples a bank is a share of 0.002 of its height.
+                // A bank is sampled in steps of a sixteenth of a cell. One step is a share of 0.002 of its height.
                 EXPECT_TRUE(restOf(bank((1 + band) * 1.01, degrees), {scheme, band}).moved)
                     << nameOf({scheme, band}) << ", " << degrees;
             }
@@ -107,7 +108,7 @@ TEST(Band, SandAtRestSlidesBeyondTheStartThreshold) {
     }
 }
 
-// A slide beside it changes nothing: what rests is a matter of its own slope.
+// A slide beside sand at rest changes nothing, because only the sand's own slope decides whether it moves.
 TEST(Band, ASlideLeavesTheSandThatItDoesNotReach) {
     for (const sand::Scheme scheme : samples::kSchemes) {
         for (const double band : {0.05, 0.5}) {

@@ -40,7 +40,7 @@ Certificate certificateOfSweeps(const HeightField& start, HeightField& rest, Law
     return certify(start, rest, flux, certifiedRules(start));
 }
 
-// The theorem itself, on data for which no pile is "the" right one.
+// Tests the theorem itself on data without a known right pile.
 TEST(Certificate, HoldsOnRoughFields) {
     constexpr unsigned kSeed = 31;
     std::mt19937 random(kSeed);
@@ -60,7 +60,7 @@ TEST(Certificate, HoldsOnRoughFields) {
     }
 }
 
-/// The projection as settle() computes it, as near as its gap can come.
+/// Returns the projection as settle() computes it, with the smallest gap that it can reach.
 HeightField projected(const HeightField& start, const sand::Rules& rules) {
     sand::grid::DualProjection projection(start, rules);
     projection.run(1e-9);
@@ -125,7 +125,7 @@ Certificate certificateOfCylinder(int n, Law law) {
     return certificateOfSweeps(start, rest, law);
 }
 
-// A prototype, whose bound was a laxer one, measured 1.0 % at N = 64 and 0.24 % at 128.
+// A prototype with a weaker bound measured 1.0 % at N = 64 and 0.24 % at 128.
 TEST(Certificate, OfPlainSweepsShrinksWithTheCells) {
     const Certificate coarse = certificateOfCylinder(32, reference::Isotropic());
     const Certificate middle = certificateOfCylinder(64, reference::Isotropic());
@@ -137,8 +137,8 @@ TEST(Certificate, OfPlainSweepsShrinksWithTheCells) {
     EXPECT_GT(fine.relative(), 0);
 }
 
-// A rule that looks along the axes only rests in a wrong pile at every cell size, along the diagonals too steep by the
-// root of two. Its certificate says so.
+// A rule that looks only along the axes rests in a wrong pile at every cell size. Along the diagonals the pile is too
+// steep by the square root of two. Its certificate shows this.
 TEST(Certificate, FailsOnThePileOfFourNeighbours) {
     EXPECT_GE(certificateOfCylinder(64, reference::FourNeighbours()).relative(), 0.07);
     EXPECT_GE(certificateOfCylinder(128, reference::FourNeighbours()).relative(), 0.07);

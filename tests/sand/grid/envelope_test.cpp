@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for any heap of sand, smooth or rough (its envelopes, and the bound at rest).
+// Bounds that hold for any heap of sand, smooth or rough: its envelopes, and the steepest slope at rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,9 @@ using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
 
-/// How far a field at rest lies outside the envelopes of its start [threshold]: below every slope at the talus that
-/// rises from a cell of the start, or above every one that falls from it. Negative: inside by as much.
+/// Returns how far a field at rest is outside the envelopes of its start [threshold]. The lower envelope is the minimum
+/// of all slopes at the talus that rise from a cell of the start. The upper envelope is the maximum of all slopes at
+/// the talus that fall from a cell. A negative result is a distance inside.
 double outsideEnvelopes(const HeightField& start, const HeightField& rest) {
     double outside = -1e300;
     for (int y = 0; y < rest.rows(); ++y) {
@@ -44,7 +45,8 @@ double outsideAtRest(const HeightField& start, const Law& law) {
     return outsideEnvelopes(start, rest);
 }
 
-/// Noise of `range` [threshold], averaged over squares of 2 blur + 1 cells and as strong again as before.
+/// Returns noise of `range` [threshold], averaged over squares of 2 blur + 1 cells and scaled back to its previous
+/// strength.
 HeightField roughField(int n, double range, int blur, std::uint32_t seed) {
     std::mt19937 random(seed);
     const HeightField noise =
@@ -75,10 +77,10 @@ TEST(Envelope, HoldsExactlyOnACylinder) {
     }
 }
 
-// High noise levels to its mean, far inside. With noise of a few thresholds the slope from cell to cell is not what the
-// law's mean of four sees, and a bound of 0.15 thresholds does not hold: over ten seeds, sand without inertia came 0.24
-// outside on raw noise and 0.34 on averaged; with inertia, which carries a cell past its neighbours' mean, 0.81 and
-// 0.31.
+// High noise levels to its mean, far inside the envelopes. With noise of a few thresholds, the slope between two cells
+// differs from the law's mean of four differences. A bound of 0.15 thresholds then does not hold. Over ten seeds, sand
+// without inertia was up to 0.24 outside on raw noise and 0.34 on averaged noise. Inertia carries a cell past its
+// neighbours' mean: 0.81 and 0.31.
 TEST(Envelope, HoldsOnRoughFieldsWithinAThreshold) {
     for (std::uint32_t seed = 1; seed <= 4U; ++seed) {
         for (const Law& law : samples::laws()) {
@@ -107,7 +109,7 @@ TEST(Envelope, NoFaceRestsMuchAboveTheThreshold) {
     }
 }
 
-// The test above can fail: a rule that looks along the axes only rests a good deal too steep on the diagonal.
+// The test above can fail: a rule that looks only along the axes rests much too steep on the diagonal.
 TEST(Envelope, FourNeighboursRestTooSteep) {
     std::mt19937 random(1);
     HeightField field = samples::randomField(61, 47, 1 << 24, random);

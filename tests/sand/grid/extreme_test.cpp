@@ -23,7 +23,7 @@ std::int32_t thresholdOf(double degrees) {
     return static_cast<std::int32_t>(std::tan(degrees * std::numbers::pi / 180) * sand::kUnitsPerCell);
 }
 
-/// Level ground at `base` with one cell at `height`.
+/// Returns level ground at `base` with one cell at `height`.
 HeightField spike(std::int32_t base, std::int32_t height) {
     HeightField field(33, 31, 1.0);
     for (int y = 0; y < 31; ++y) {
@@ -39,7 +39,7 @@ bool moves(HeightField field, const Law& law, std::int32_t threshold) {
     return !sameHeights(field, before);
 }
 
-// A face rests once a quarter of its difference is less than a unit.
+// A face is at rest if a quarter of its difference is less than a unit.
 TEST(ExtremeAngle, ZeroRestsWithinFourUnitsPerCell) {
     for (const Law& law : samples::laws()) {
         std::mt19937 random(19);
@@ -56,15 +56,15 @@ TEST(ExtremeAngle, ZeroRestsWithinFourUnitsPerCell) {
 
 TEST(ExtremeAngle, SpikesMoveBeyondTheThresholdAndNoOthers) {
     for (const Law& law : samples::laws()) {
-        const std::int32_t steep = thresholdOf(89.9);  // 573 cells from one to the next
+        const std::int32_t steep = thresholdOf(89.9);  // 573 cells between neighbouring cells
         EXPECT_FALSE(moves(spike(0, steep), law, steep)) << nameOf(law);
         const auto held = static_cast<std::int32_t>(law.band * steep);
         EXPECT_FALSE(moves(spike(0, steep + held), law, steep)) << nameOf(law);
         EXPECT_TRUE(moves(spike(0, steep + held + 1000), law, steep)) << nameOf(law);
-        const std::int32_t steeper = thresholdOf(89.99);  // 5730 cells: more than the range to one side of zero
+        const std::int32_t steeper = thresholdOf(89.99);  // 5730 cells, more than the range above zero
         EXPECT_FALSE(moves(spike(0, kMaxHeight), law, steeper)) << nameOf(law);
         EXPECT_TRUE(moves(spike(-kMaxHeight, kMaxHeight), law, steeper)) << nameOf(law);
-        // 89.995 degrees and all that is steeper: more than the whole range.
+        // 89.995 degrees and every steeper angle exceed the whole range.
         for (const std::int32_t steepest : {thresholdOf(89.995), 1 << 30}) {
             EXPECT_FALSE(moves(spike(-kMaxHeight, kMaxHeight), law, steepest)) << nameOf(law);
             EXPECT_FALSE(moves(spike(kMaxHeight, -kMaxHeight), law, steepest)) << nameOf(law);
@@ -126,24 +126,25 @@ TEST(ExtremeHeight, DifferencesOfAUnitRestAtAnyAngle) {
 }
 
 // Across cells r = 1000 times as long as wide, a flux moves so much sand that it must be a tiny share of the
-// difference: at most 0.45 / r² with inertia, and 0.4998 / (r² + 1) without. What exceeds the threshold by less than a
-// unit over that share rests: a dead band of 2.2 million units. On a threshold of r cells that is 3 %; where cells are
-// long from west to east, and heights come in units of that length, 34 times the threshold.
+// difference. The share is at most 0.45 / r² with inertia, and 0.4998 / (r² + 1) without. A face rests if its excess
+// over the threshold is less than a unit divided by that share: a dead band of 2.2 million units. That is 3 % of a
+// threshold of r cells. If cells are long from west to east, heights are in units of that length, and it is 34 times
+// the threshold.
 TEST(ExtremeCell, OneToAThousandRestsWithinItsDeadBand) {
     constexpr double kRatio = 1000;
     for (const Law& law : samples::laws()) {
         const double share = law.inertial() ? 0.45 / (kRatio * kRatio) : 0.4998 / (kRatio * kRatio + 1);
         if (samples::kSanitized && !law.inertial()) {
-            continue;  // ten times the sweeps without inertia
+            continue;  // takes ten times the sweeps without inertia
         }
         for (const bool longNorthward : {true, false}) {
-            // The nearer to its rest, the sooner there: two million sweeps go by for every e-fold.
+            // The start is near its rest, because the distance shrinks by a factor of e only in two million sweeps.
             const std::int32_t height = longNorthward ? 72000000 : 5000000;
             HeightField field(longNorthward ? 1 : 5, longNorthward ? 5 : 1, 1.0);
             const auto heightAt = [&](int i) { return longNorthward ? field.height(0, i) : field.height(i, 0); };
             longNorthward ? field.setHeight(0, 2, height) : field.setHeight(2, 0, height);
             sand::Rules rules = samples::rulesFor(field, law);
-            // Cells 1000 times as wide as long come out 993 times: a rule is a whole number of 2^-16.
+            // Cells 1000 times as wide as long become 993 times as wide, because a rule is a whole number of 2^-16.
             rules.aspect = longNorthward ? 1000 * sand::kUnitsPerCell : 66;
             samples::relax(field, rules, 100000000);
             const double threshold = (longNorthward ? kRatio : 1) * sand::kUnitsPerCell;

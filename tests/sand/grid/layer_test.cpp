@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand over bedrock and beside walls as the sweeps see it: thin layers, cliffs, and stable sand that stays.
+// Sand over bedrock and beside walls in sweeps: thin layers, cliffs, and stable sand that stays.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -44,7 +44,7 @@ struct Layer {
     }
 };
 
-/// Expects that nothing moves, whatever the law.
+/// Expects that nothing moves with any law.
 void expectStill(const Layer& start) {
     for (const Law& law : samples::laws()) {
         Layer layer = start;
@@ -55,15 +55,15 @@ void expectStill(const Layer& start) {
     }
 }
 
-/// A ramp of 0.9 of the talus, which rises to the north.
+/// Height of a ramp at 0.9 of the talus that rises to the north.
 std::int32_t ramp(int row) { return 58982 * row; }
 
-// Without the rule for transverse differences this ramp lost 4.4 % and still moved after 100,000 sweeps.
+// Without the rule for transverse differences, this ramp lost 4.4 % and still moved after 100,000 sweeps.
 TEST(Layer, AStableRampAlongAWallDoesNotMove) {
     for (const auto& isWall : std::initializer_list<std::function<bool(int, int)>>{
              [](int x, int) { return x < 4; },                            // along the western rim
              [](int x, int) { return x == 17; },                          // through the middle
-             [](int x, int y) { return x == y; },                         // aslant
+             [](int x, int y) { return x == y; },                         // diagonally
              [](int x, int y) { return x % 5 == 0 && y % 7 == 0; },       // single cells without data
              [](int x, int y) { return x == 36 || y == 28 || y == 0; }})  // along the rims
     {
@@ -80,11 +80,11 @@ TEST(Layer, AStableRampAlongAWallDoesNotMove) {
 }
 
 TEST(Layer, AStableRampBesideBareRockDoesNotMove) {
-    for (const int step : {20, 1000, -1}) {  // [cell], rock over the ramp
+    for (const int step : {20, 1000, -1}) {  // [cell], height of the rock above the ramp
         Layer layer;
         layer.forEachCell([&](int x, int y) {
             const bool bare = x < 6 || x == 20;
-            // Lower rock must leave the sand beside it stable: a gentle slope down to it.
+            // Lower rock must leave the sand beside it stable. The slope down to it is gentle.
             const std::int32_t height = step > 0 ? ramp(y) + step * sand::kUnitsPerCell : ramp(y) - 20000;
             layer.field.setHeight(x, y, bare ? height : ramp(y));
             layer.ground.setBedrock(x, y, bare ? height : ramp(y) - 5 * sand::kUnitsPerCell);
@@ -93,8 +93,8 @@ TEST(Layer, AStableRampBesideBareRockDoesNotMove) {
     }
 }
 
-// Over an open rim sand falls to height 0, so that a rim of 0.9 of the talus holds it. Rock that towers above the rim,
-// and a wall, leave it there.
+// Over an open rim sand falls to height 0, so that a rim at 0.9 of the talus keeps it. Rock that is much higher than
+// the rim, and a wall, do not change that.
 TEST(Layer, StableSandBesideACliffAtAnOpenRimDoesNotMove) {
     for (const bool wall : {false, true}) {
         Layer layer;
@@ -111,7 +111,7 @@ TEST(Layer, StableSandBesideACliffAtAnOpenRimDoesNotMove) {
     }
 }
 
-// What the tests above guard against does happen where the cliff is sand.
+// Without rock, the sand of the cliff slides. The tests above guard against that motion.
 TEST(Layer, TheSameCliffOfSandSlides) {
     Layer layer;
     layer.forEachCell(
@@ -121,7 +121,7 @@ TEST(Layer, TheSameCliffOfSandSlides) {
     EXPECT_GT(layer.field.height(7, 14), ramp(14));
 }
 
-// A face gives at most a quarter of what lies there, rounded down: three units are too few to divide.
+// A face gives at most a quarter of the sand of its cell, rounded down. Three units are too few to divide.
 TEST(Layer, UpToThreeUnitsStayWhereverTheyLie) {
     std::mt19937 random(19);
     Layer layer;
@@ -151,7 +151,7 @@ TEST(Layer, RockSteeperThanTheTalusKeepsNoMoreThanThat) {
         EXPECT_TRUE(erosion.settled()) << nameOf(law);
         EXPECT_EQ(layer.field.volume(), volume);
         layer.forEachCell([&](int x, int y) {
-            if (x >= 3) {  // all of it together fills less than the three western columns
+            if (x >= 3) {  // all sand together fills less than the three western columns
                 EXPECT_LE(layer.ground.sand(x, y, layer.field.height(x, y)), 3) << nameOf(law) << " " << x << " " << y;
             }
         });

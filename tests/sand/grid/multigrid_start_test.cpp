@@ -25,17 +25,18 @@ Rules rulesFor(const HeightField& field, sand::Rim rim = sand::Rim::closed) {
     return rules;
 }
 
-/// Hills and pits as wide as a quarter of the field, up to three times too steep along either axis: all of it moves.
+/// Returns hills and pits as wide as a quarter of the field. They are up to three times too steep along either axis, so
+/// that all sand moves.
 HeightField bumps(int columns, int rows) {
     const double width = columns / 4.0;
     const double height = 3 * width / (2 * std::numbers::pi);
     return oracles::fieldOf(columns, rows, [&](double x, double y) {
-        // 2 above 0, for an open rim holds no sand below.
+        // All heights are at least 0, because an open rim allows no sand below.
         return height * (2 + std::sin(2 * std::numbers::pi * x / width) + std::sin(2 * std::numbers::pi * y / width));
     });
 }
 
-/// Root of the summed squared differences [cell] between what two sets of fluxes make of one field.
+/// Returns the root of the summed squared differences [cell] between the results of two sets of fluxes on one field.
 double distanceBetween(const HeightField& field, const DualProjection& a, const DualProjection& b) {
     const auto rise = [](const DualProjection& p, int x, int y) {
         return static_cast<double>(p.eastFlux(x - 1, y) - p.eastFlux(x, y) + p.northFlux(x, y - 1) - p.northFlux(x, y));
@@ -67,14 +68,15 @@ struct Runs {
     int direct, nested;
 };
 
-/// Projects from nothing and from coarser cells, and expects the same pile.
+/// Projects directly and from coarser cells, and expects the same pile.
 Runs expectSamePile(const HeightField& field, const Rules& rules) {
     DualProjection direct(field, rules);
     DualProjection nested(field, rules);
     sand::grid::startFromCoarser(nested, field, rules);
     const Runs runs{direct.run(), nested.run()};
-    // Heights whose duality gap is g lie within the root of 2g of the projection where no quad is too steep, and either
-    // stops at 1e-5 of the squared change. They may be 3 % too steep here and there, which the gap does not see: twice.
+    // If no quad is too steep, heights with a duality gap g are within the root of 2g of the projection. Either run
+    // stops at 1e-5 of the squared change. Heights may be 3 % too steep in places, which the gap does not show.
+    // Therefore the distance is doubled.
     const double farthest = 2 * 2 * std::sqrt(2 * 1e-5 * squaredChange(field, direct));
     EXPECT_GT(farthest, 0);
     EXPECT_LE(distanceBetween(field, direct, nested), farthest);
@@ -101,12 +103,12 @@ TEST(CoarseStart, EndsInTheSamePileOnLongCells) {
     }
 }
 
-// What moves as a whole takes iterations in proportion to the side of the field, and the coarse cells make those.
+// Sand that moves as a whole takes iterations in proportion to the side of the field. The coarse cells do those.
 TEST(CoarseStart, SparesIterationsWhereEverythingMoves) {
     const HeightField plane = oracles::fieldOf(128, 128, [](double x, double y) { return 2.1 * (0.8 * x + 0.6 * y); });
     const Runs onPlane = expectSamePile(plane, rulesFor(plane));
     EXPECT_LE(onPlane.nested * 4, onPlane.direct);
-    // The larger the field the more it spares: little here, two thirds at 512 cells.
+    // The saving grows with the field: little here, two thirds at 512 cells.
     const HeightField hills = bumps(128, 128);
     const Runs onHills = expectSamePile(hills, rulesFor(hills));
     EXPECT_LT(onHills.nested, onHills.direct);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cylinders of sand and what must become of them (oracles.hpp, O1).
+// Cylinders of sand, and the piles that they must become (oracles.hpp, O1).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,13 +25,13 @@ struct Pile {
     oracles::Distance distance;
 };
 
-/// A cylinder in the middle of an n x n field.
+/// Returns a cylinder in the middle of an n x n field.
 HeightField cylinderOn(int n, const Cylinder& cylinder) {
     const double middle = n / 2.0;
     return oracles::fieldOf(n, n, oracles::around(middle, middle, [&](double r) { return cylinder.start(r); }));
 }
 
-/// Of a field at rest from the pile that the cylinder in its middle must become.
+/// Returns the distance of a field at rest from the pile that the cylinder in its middle must become.
 oracles::Distance distanceToRest(const HeightField& field, const Cylinder& cylinder) {
     const int n = field.columns();
     const double middle = n / 2.0;
@@ -45,8 +45,8 @@ Pile settledCylinder(int n, const Cylinder& cylinder, const Law& law) {
     return {field, distanceToRest(field, cylinder)};
 }
 
-/// Radius a quarter of the field, height 0.6 of the radius. Settled once, looked at by several tests of one
-/// process.
+/// Returns a pile of a cylinder whose radius is a quarter of the field, and whose height is 0.6 of the radius. It
+/// settles only once, although several tests of one process use it.
 const Pile& lowPile(int n, const Law& law) {
     static std::map<std::pair<int, Law>, Pile> piles;
     const auto found = piles.find({n, law});
@@ -64,7 +64,7 @@ TEST(PileOracle, LowCylinderBecomesItsFrustum) {
     }
 }
 
-// With inertia alone: without, it takes 25,000 sweeps.
+// Only with inertia, because without it the pile takes 25,000 sweeps.
 TEST(PileOracle, LowCylinderOn512CellsIsRightWithinOneIn5000) {
     for (const Law& law : samples::laws()) {
         if (law.inertial()) {
@@ -73,14 +73,16 @@ TEST(PileOracle, LowCylinderOn512CellsIsRightWithinOneIn5000) {
     }
 }
 
-/// Where a slope ends, the kink is rounded over a cell or two. That misplaces a cross-section of some fixed size per
-/// cell of the kink's length, whatever the grid: 0.05 to 0.25 cells² were measured.
+/// Returns the share that is misplaced at kinks. The kink at the end of a slope is rounded over one or two cells. This
+/// misplaces a cross-section of some fixed size per cell of the kink's length, on every grid. 0.05 to 0.25 cells² were
+/// measured.
 double misplacedAtKinks(const Cylinder& pile, double kink /* [cell²] */) {
     return kink * 2 * std::numbers::pi * (pile.foot() + pile.top()) / pile.volume();
 }
 
-/// A slope at rest may be steeper than the talus by the resting excess. Turning a cone's slope about its mean height by
-/// a share of it misplaces 0.59 of that share, a frustum's less.
+/// Returns the share that is misplaced by steepness. A slope at rest may be steeper than the talus by the resting
+/// excess. Turning a cone's slope about its mean height by a share of it misplaces 0.59 of that share. A frustum's
+/// slope misplaces less.
 double misplacedBySteepness() { return 0.59 * samples::restingExcess(sand::kUnitsPerCell) / sand::kUnitsPerCell; }
 
 struct Shape {
@@ -89,7 +91,8 @@ struct Shape {
     double kink;    // [cell²] allowed
 };
 
-// Nearly flat: a ramp of 1.6 cells at 64, whose kinks share most of their error. Tall: from sqrt(3) on it is a cone.
+// The flat cylinder becomes a ramp of 1.6 cells at 64, whose kinks share most of their error. A tall cylinder becomes a
+// cone from a ratio of sqrt(3) on.
 constexpr std::array kShapes{Shape{0.25, 0.1, 0.1}, Shape{0.25, 1.5, 0.25}, Shape{0.15, 3, 0.25}};
 
 TEST(PileOracle, FlatAndTallCylindersBecomeFrustumAndCone) {
@@ -98,7 +101,7 @@ TEST(PileOracle, FlatAndTallCylindersBecomeFrustumAndCone) {
             double coarser = 1;
             for (const int n : {64, 128, 256}) {
                 if (n > (law.inertial() ? 256 : 128)) {
-                    continue;  // seconds without inertia
+                    continue;  // takes seconds without inertia
                 }
                 const Cylinder cylinder(shape.radius * n, shape.ratio * shape.radius * n);
                 const double misplaced = settledCylinder(n, cylinder, law).distance.misplaced;
@@ -133,8 +136,8 @@ TEST(PileOracle, APileIsRound) {
     }
 }
 
-// The tests above can fail: a rule that looks along the axes only rests in another pile at every resolution, narrower
-// on the diagonals.
+// The tests above can fail: a rule that looks only along the axes rests in another pile at every resolution. That pile
+// is narrower on the diagonals.
 TEST(PileOracle, FourNeighboursMakeAWrongPile) {
     for (const int n : {64, 128}) {
         const Cylinder cylinder(0.25 * n, 0.15 * n);
@@ -148,8 +151,8 @@ TEST(PileOracle, FourNeighboursMakeAWrongPile) {
     }
 }
 
-/// Share misplaced of the same round pile on cells that are `aspect` times as long from south to north, in a square
-/// domain.
+/// Returns the misplaced share of the same round pile on cells that are `aspect` times as long from south to north, in
+/// a square domain.
 double misplacedOnOblong(int columns, int rows, double aspect, const Law& law) {
     const double side = std::min<double>(columns, rows * aspect);
     const Cylinder cylinder(0.25 * side, 0.15 * side);
@@ -164,9 +167,9 @@ double misplacedOnOblong(int columns, int rows, double aspect, const Law& law) {
     return oracles::distance(field, expected).misplaced;
 }
 
-// A prototype gave 0.046 % and 0.137 % for 2:1 and 4:1 at N = 256. Measured here, for a radius of 64 cells: 0.050 % and
-// 0.140 % with inertia, 0.050 % and 0.148 % without; half a cell's shift of the pile changes that by up to 15 %. The
-// tolerance is the measurement and that.
+// A prototype gave 0.046 % and 0.137 % for 2:1 and 4:1 at N = 256. Measured here with a radius of 64 cells: 0.050 % and
+// 0.140 % with inertia, 0.050 % and 0.148 % without. Shifting the pile by half a cell changes that by up to 15 %. The
+// tolerance is the measurement plus that change.
 TEST(PileOracle, CellsNeedNotBeSquare) {
     for (const Law& law : samples::laws()) {
         EXPECT_LE(misplacedOnOblong(256, 128, 2, law), 0.00058) << nameOf(law);

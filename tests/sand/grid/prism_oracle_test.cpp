@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walls of sand and tilted planes, along the grid's axes and across them (oracles.hpp, O2 and O5).
+// Long walls of sand and tilted planes, along the grid's axes and in other directions (oracles.hpp, O2 and O5).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -17,7 +17,7 @@ using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
 
-/// Share misplaced of an endless prism along a grid axis.
+/// Returns the misplaced share of an endless prism along a grid axis.
 double misplacedOnAxis(int n, const Prism& prism, bool alongRows, const Law& law) {
     constexpr int kLength = 8;  // [cell]; all cross-sections are the same
     const int columns = alongRows ? kLength : n;
@@ -31,7 +31,7 @@ double misplacedOnAxis(int n, const Prism& prism, bool alongRows, const Law& law
     return oracles::distance(field, expected).misplaced;
 }
 
-/// Share misplaced in the middle of a turned wall of sand, which ends within the field.
+/// Returns the misplaced share in the middle of a turned prism, which ends within the field.
 double misplacedAslant(int n, const Prism& prism, double degrees, const Law& law) {
     const Line line{n / 2.0, n / 2.0, degrees};
     HeightField field = oracles::fieldOf(n, n, [&](double x, double y) {
@@ -43,8 +43,8 @@ double misplacedAslant(int n, const Prism& prism, double degrees, const Law& law
     return oracles::distance(field, expected, inTheMiddle).misplaced;
 }
 
-/// Near `halfWidth`, such that the sides of a wall at 45 degrees lie between the 16 x 16 samples of its cells and its
-/// volume comes out exact: on a line of samples half of them would be missing.
+/// Returns a number near `halfWidth` for a prism at 45 degrees. Its sides then lie between the 16 x 16 samples of its
+/// cells, so that its volume is exact. On a line of samples, half of them would be missing.
 double betweenDiagonals(double halfWidth) {
     return (std::round(halfWidth * std::numbers::sqrt2) + 1.0 / 32) / std::numbers::sqrt2;
 }
@@ -54,7 +54,7 @@ struct Resolution {
     double allowed;
 };
 
-// Which share of the sand may be in the wrong place: less with smaller cells.
+// Largest misplaced share of the sand; it is smaller with smaller cells.
 constexpr std::array kResolutions{Resolution{64, 0.003}, Resolution{128, 0.0025}, Resolution{256, 0.0008}};
 
 TEST(PrismOracle, LowWallBecomesItsRampOnEitherAxis) {
@@ -81,8 +81,8 @@ TEST(PrismOracle, LowWallBecomesItsRampOffTheAxes) {
     }
 }
 
-// Two feet and a ridge that is twice as sharp are rounded like four kinks of 0.25 cells² each (pile_oracle_test.cpp);
-// and turning either slope about its mean height by its resting excess misplaces half of that.
+// Two feet and a ridge that is twice as sharp are rounded like four kinks of 0.25 cells² each (pile_oracle_test.cpp).
+// Turning either slope about its mean height by its resting excess misplaces half of that excess.
 double allowedForRoof(const Prism& prism) {
     return 4 * 0.25 / prism.area() + 0.5 * samples::restingExcess(sand::kUnitsPerCell) / sand::kUnitsPerCell;
 }
@@ -91,7 +91,7 @@ TEST(PrismOracle, TallWallBecomesARoofInAnyDirection) {
     for (const Law& law : samples::laws()) {
         for (const int n : {64, 128, 256}) {
             if (n > (law.inertial() ? 256 : 128)) {
-                continue;  // seconds without inertia
+                continue;  // takes seconds without inertia
             }
             const Prism prism(n / 16.0, n / 4.0);
             const double halfWidth = betweenDiagonals(n / 16.0);
@@ -106,7 +106,7 @@ TEST(PrismOracle, TallWallBecomesARoofInAnyDirection) {
 TEST(PlaneOracle, UpToTheTalusNothingMovesInAnyDirection) {
     for (const Law& law : samples::laws()) {
         for (int degrees = 0; degrees < 360; degrees += 15) {
-            // Rounded down twice, a difference may exceed the slope by a unit on either axis.
+            // Both heights are rounded down, so that a difference may exceed the slope by a unit on either axis.
             const double slope = sand::kUnitsPerCell - 2;
             const double east = slope * std::cos(degrees * std::numbers::pi / 180);
             const double north = slope * std::sin(degrees * std::numbers::pi / 180);
@@ -124,16 +124,16 @@ TEST(PlaneOracle, UpToTheTalusNothingMovesInAnyDirection) {
     }
 }
 
-// The profile is straight, so that no grid error remains: what remains are units. A difference rests once its flux is
-// less than a unit: up to 1 / 0.2499 units above the threshold without inertia, 1 / 0.45 with. Over half a field that
-// adds up to at most n / 2 times as much at the ends.
+// The profile is straight, so that only errors of units remain and no grid error. A difference is at rest if its flux
+// is less than a unit: up to 1 / 0.2499 units above the threshold without inertia, 1 / 0.45 with inertia. Over half a
+// field this adds up to at most n / 2 times as much at the ends.
 TEST(PlaneOracle, AboveTheTalusAPlaneTurnsAboutItsCentroid) {
     for (const Law& law : samples::laws()) {
         const double excess = law.inertial() ? 1 / 0.45 : 1 / 0.2499;  // [unit]
         for (const double slope : {1.2, 2.0, 5.0}) {
             for (const int n : {64, 128, 256}) {
                 if (n > (law.inertial() ? 256 : 128)) {
-                    continue;  // seconds without inertia
+                    continue;  // takes seconds without inertia
                 }
                 const oracles::TiltedPlane plane(n, slope);
                 HeightField field = oracles::fieldOf(n, 8, [&](double x, double) { return plane.start(x); });

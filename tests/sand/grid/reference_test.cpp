@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The solver against sweeps by the letter of the law (tests/support/reference_sand.hpp), bit for bit.
+// Compares the solver bit for bit with direct sweeps of the law (tests/support/reference_sand.hpp).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ using sand::grid::Erosion;
 constexpr std::array kBlocks{2, 8, 13, 32, 128};
 constexpr std::array kPaths{CodePath::automatic, CodePath::baseline};
 
-/// A world of any kind: a field, its laws, its ground and a tool, all drawn at random.
+/// Random case: a field, its laws, its ground and a tool.
 class World {
 public:
     explicit World(unsigned seed)
@@ -34,7 +34,7 @@ public:
 
     int below(int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); }
 
-    /// The tool at a place of its own, in one world of two.
+    /// Returns the tool at a random place, or nullopt in half of the cases.
     std::optional<sand::grid::Obstacle> tool() {
         if (below(2) == 0) {
             return std::nullopt;
@@ -59,9 +59,9 @@ public:
 private:
     void chooseRules() {
         constexpr std::array kThresholds{0, 100, sand::kUnitsPerCell / 2, sand::kUnitsPerCell, 4 * sand::kUnitsPerCell};
-        constexpr std::array kAspects{1, 1, 1, 2, 7};  // over 2
+        constexpr std::array kAspects{1, 1, 1, 2, 7};  // divided by 2
         rules.threshold = kThresholds.at(random() % kThresholds.size());
-        // The default of scenes, one unit, and bands that anyone would see.
+        // The default of scenes, one unit, and bands that are clearly visible.
         const std::array bands{0, rules.threshold / 1000, 1, rules.threshold / 10, rules.threshold};
         rules.startThreshold = rules.threshold + bands.at(random() % bands.size());
         rules.scheme = samples::kSchemes.at(random() % samples::kSchemes.size());
@@ -70,7 +70,7 @@ private:
             random() % 2 == 0 ? sand::kUnitsPerCell : kAspects.at(random() % kAspects.size()) * sand::kUnitsPerCell / 2;
     }
 
-    /// Noise, a slope near the talus with a few lumps, or dunes.
+    /// Chooses noise, a slope near the talus with a few heaps, or dunes.
     void chooseHeights() {
         const int kind = below(3);
         if (kind == 0) {
@@ -87,7 +87,7 @@ private:
         }
     }
 
-    /// Rock and walls, in two worlds of three.
+    /// Chooses rock and walls in two cases of three.
     void chooseGround() {
         const int kind = below(3);
         if (kind == 0) {
@@ -107,7 +107,7 @@ private:
     }
 };
 
-/// The solver and the reference in one world, with changes of the field, the tool and the rules in between.
+/// The solver and the reference on one case. The field, the tool and the rules change in between.
 class Pair {
 public:
     explicit Pair(unsigned seed)
@@ -124,7 +124,7 @@ public:
     }
 
     void sweep() {
-        // Now and then for so long that the momentum comes to its limit.
+        // Sometimes sweeps so often that the momentum reaches its limit.
         const int sweeps = 1 + world_.below(world_.below(8) == 0 ? 400 : 24);
         outflow_ += erosion_.sweep(field_, sweeps, expected_.tool);
         expected_.sweep(sweeps);
@@ -147,7 +147,7 @@ public:
     }
 
 private:
-    /// Somebody lifts or lowers a few cells, never below their rock.
+    /// Raises or lowers a few cells, but not below their rock.
     void lift() {
         const int x = world_.below(field_.columns()), y = world_.below(field_.rows());
         const sand::CellRect cells = sand::CellRect{x, y, x + 4, y + 3}.clippedTo(field_.bounds());

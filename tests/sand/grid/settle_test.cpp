@@ -39,7 +39,7 @@ void expectAtRest(const HeightField& field, const Rules& rules) {
     EXPECT_TRUE(sameHeights(swept, field));
 }
 
-/// Settles, checks what must hold for every field, and returns what settle() tells.
+/// Settles a field, checks the properties that every settled field has, and returns the result of settle().
 sand::grid::Settled settleAndCheck(HeightField& field, const Rules& rules) {
     const HeightField start = field;
     const auto [least, greatest] = extremes(start);
@@ -64,14 +64,14 @@ double errorOfCylinder(int n, double heightPerRadius) {
     return oracles::distance(field, expected).misplaced;
 }
 
-// O1: what plain sweeps must reach (pile_oracle_test.cpp), and they take a hundred times as long.
+// O1: the bounds are those of plain sweeps (pile_oracle_test.cpp), which take a hundred times as long.
 TEST(Settle, CylinderBecomesItsFrustum) {
     EXPECT_LE(errorOfCylinder(64, 0.6), 0.003);
     EXPECT_LE(errorOfCylinder(128, 0.6), 0.001);
     EXPECT_LE(errorOfCylinder(256, 0.6), 0.0004);
 }
 
-// A cone's apex is one cell that holds a kink in every direction: it may be further off than a frustum.
+// A cone's apex is one cell that has a kink in every direction, so that its error may be larger than a frustum's.
 TEST(Settle, TallCylinderBecomesItsCone) {
     EXPECT_LE(errorOfCylinder(64, 3), 0.005);
     EXPECT_LE(errorOfCylinder(128, 3), 0.0025);
@@ -85,7 +85,7 @@ double errorOfPrism(int n, double heightPerWidth) {
     return oracles::distance(field, expected).misplaced;
 }
 
-// O2: 0.25 % and 0.08 % at 128 and 256, for the low one and the tall one.
+// O2: low and tall prism have an error of 0.25 % at 128 cells and 0.08 % at 256 cells.
 TEST(Settle, PrismBecomesItsRamp) {
     for (const double height : {1.0, 4.0}) {
         EXPECT_LE(errorOfPrism(128, height), 0.0025) << height;
@@ -103,7 +103,7 @@ TEST(Settle, RestIsAFixedPoint) {
     EXPECT_EQ(again.iterations + again.sweeps, 0);
 }
 
-// Sand that a start threshold holds is at rest; sand that it does not hold settles to the threshold.
+// Sand that the start threshold holds is at rest. All other sand settles to the threshold.
 TEST(Settle, BandHoldsOrLetsGoOfEverything) {
     Rules rules = settlingRules(HeightField(40, 30, 1.0));
     rules.startThreshold = rules.threshold * 5 / 4;
@@ -124,13 +124,13 @@ TEST(Settle, SteepPlaneTurnsAboutItsCentroid) {
     HeightField field = oracles::fieldOf(96, 40, [&](double x, double) { return plane.start(x); });
     settleAndCheck(field, settlingRules(field));
     const auto expected = oracles::sampled(96, 40, [&](double x, double) { return plane.rest(x); });
-    // The iteration stops at a gap of 1e-5 of the squared change, so the pile is within the root of 2e-5 of the change,
-    // which is 55 cells on the mean and the pile 144 high.
+    // The iteration stops at a gap of 1e-5 of the squared change. The pile is therefore within the root of 2e-5 of the
+    // change. The mean change is 55 cells, and the pile is 144 cells high.
     EXPECT_LE(oracles::distance(field, expected).misplaced, 0.0017);
 }
 
-// O4: slopes rise from a ring of cells at height 0, half a cell beyond the field's edge. Along its diagonals the roof
-// of the table has a kink, over which a quad averages: half a cell on one cell in N/4.
+// O4: slopes rise from a ring of cells at height 0, half a cell beyond the field's edge. Along its diagonals, the roof
+// of the table has a kink. A quad averages over it: half a cell on one cell in N/4.
 TEST(Settle, OpenTableKeepsItsRoof) {
     const int n = 64;
     const oracles::OpenTable table(n, n);
@@ -154,7 +154,7 @@ TEST(Settle, RoughFieldsKeepVolumeAndExtremes) {
     }
 }
 
-// The stiff cases: spikes of the greatest height there is, a pit, a chequerboard, sides of one cell, angle 0.
+// Stiff cases: spikes of the largest height, a pit, a chequerboard, sides of one cell, angle 0.
 TEST(Settle, EndsWithSpikesOfEitherSign) {
     for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 2}, {31, 33}}) {
         for (const int sign : {-1, 1}) {
@@ -193,7 +193,7 @@ TEST(Settle, SandBelowAnOpenRimIsSwept) {
     EXPECT_GT(settled.sweeps, 0);
 }
 
-// Cells twice as long as wide: the same prism, along the one axis and along the other, must rest alike.
+// Cells twice as long as wide. One prism must rest in the same way along both axes.
 TEST(Settle, LongCellsRestAtTheTalusAlongBothAxes) {
     const oracles::Prism pile(16, 16);
     Rules rules = settlingRules(HeightField(8, 64, 1.0));
@@ -201,7 +201,7 @@ TEST(Settle, LongCellsRestAtTheTalusAlongBothAxes) {
     HeightField field = oracles::fieldOf(8, 64, [&](double, double y) { return pile.start(2 * y - 64); });
     settleAndCheck(field, rules);
     const auto expected = oracles::sampled(8, 64, [&](double, double y) { return pile.rest(2 * y - 64); });
-    EXPECT_LE(oracles::distance(field, expected).misplaced, 0.01);  // as on 64 square cells, O2
+    EXPECT_LE(oracles::distance(field, expected).misplaced, 0.01);  // the bound for 64 square cells, O2
 }
 
 TEST(Settle, InstructionSetChangesNothing) {

@@ -16,7 +16,7 @@ using samples::nameOf;
 using sand::HeightField;
 using sand::grid::Erosion;
 
-/// Adds `units` of sand to the square of cells within `reach` of (column, row), evenly and to the last unit.
+/// Adds `units` of sand to the square of cells within `reach` of (column, row), evenly and exactly.
 void pour(HeightField& field, int column, int row, int reach, std::int64_t units) {
     std::int64_t cells = (2 * reach + 1) * (2 * reach + 1);
     for (int y = row - reach; y <= row + reach; ++y) {
@@ -32,7 +32,8 @@ struct Poured {
     double misplaced, foot;
 };
 
-/// A cone poured in `portions` onto a spot of an eighth of the field's side, at rest after each of them.
+/// Returns a cone that is poured in `portions` onto a spot of an eighth of the field's side. The sand rests after each
+/// portion.
 Poured pouredCone(int n, int portions, const Law& law) {
     const double foot = 0.4 * n;
     const double volume = std::numbers::pi * foot * foot * foot / 3;
@@ -54,15 +55,16 @@ Poured pouredCone(int n, int portions, const Law& law) {
     return {oracles::distance(field, expected).misplaced, cone.foot()};
 }
 
-/// A foot's kink, in which sand trickles to rest portion by portion, is rounded over more cells than one that was
-/// formed at once (pile_oracle_test.cpp): at most 0.45 cells² per cell of its length were measured. Its length over
-/// the volume is 6 / foot². The slope may exceed the talus by the resting excess, which misplaces 0.59 of its share.
+/// Returns the share that may be misplaced in a cone. Sand trickles to rest at the foot's kink portion by portion. The
+/// kink is therefore rounded over more cells than a kink that formed at once (pile_oracle_test.cpp). At most 0.45
+/// cells² per cell of its length were measured. Its length divided by the volume is 6 / foot². The slope may exceed the
+/// talus by the resting excess, which misplaces 0.59 of its share.
 double allowedForCone(double foot) {
     return 0.45 * 6 / (foot * foot) + 0.59 * samples::restingExcess(sand::kUnitsPerCell) / sand::kUnitsPerCell;
 }
 
-// In a single portion it is a tower of 200 cells, whose inertia flattens the heap a little: 0.54 % at 64 cells against
-// 0.30 % without.
+// In a single portion, the sand is a tower of 200 cells. Its inertia flattens the heap a little: 0.54 % at 64 cells,
+// compared with 0.30 % without inertia.
 constexpr double kTowersOvershoot = 0.0008;
 
 TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
@@ -71,7 +73,7 @@ TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
             double coarser = 1;
             for (const int n : {32, 64, 128}) {
                 if (n > (law.inertial() ? 128 : 64)) {
-                    continue;  // seconds without inertia
+                    continue;  // takes seconds without inertia
                 }
                 const Poured poured = pouredCone(n, portions, law);
                 const bool overshoots = portions == 1 && law.inertial();
@@ -84,7 +86,8 @@ TEST(SourceOracle, WhatIsPouredOnASpotIsACone) {
     }
 }
 
-// A column of one cell is the steepest start there is: whoever lets inertia carry it away gets a plate, no cone.
+// A column of one cell is the steepest possible start. If inertia were too strong, the result would be a plate instead
+// of a cone.
 TEST(SourceOracle, ANeedleOfOneCellBecomesACone) {
     for (const Law& law : samples::laws()) {
         for (const int height : {800, 2196}) {
@@ -100,7 +103,8 @@ TEST(SourceOracle, ANeedleOfOneCellBecomesACone) {
     }
 }
 
-/// Share misplaced of what an open table keeps of a block of sand that was higher than it holds.
+/// Returns the misplaced share of the sand that an open table keeps. The block of sand at the start is higher than the
+/// table holds.
 double misplacedOnTable(int columns, int rows, const Law& law) {
     HeightField field(columns, rows, 1.0);
     for (int y = 0; y < rows; ++y) {
@@ -114,9 +118,9 @@ double misplacedOnTable(int columns, int rows, const Law& law) {
     return oracles::distance(field, expected).misplaced;
 }
 
-/// Error at the ridges alone, some 0.3 cells² of cross-section per cell: four of them rise from the corners at 45
-/// degrees, and one joins them in a table that is not square. The slopes run along the axes, where a face rests within
-/// four units.
+/// Returns the share that may be misplaced on a table. Errors occur only at the ridges, about 0.3 cells² of
+/// cross-section per cell. Four ridges rise from the corners at 45 degrees; one joins them if the table is not square.
+/// The slopes run along the axes, where a face rests within four units.
 double allowedOnTable(double columns, double rows) {
     const double shorter = std::min(columns, rows);
     const double longer = std::max(columns, rows);
@@ -130,7 +134,7 @@ TEST(TableOracle, AnOpenTableKeepsWhatItsRimsHold) {
         double coarser = 1;
         for (const int n : {32, 64, 128}) {
             if (n > (law.inertial() ? 128 : 64)) {
-                continue;  // seconds without inertia
+                continue;  // takes seconds without inertia
             }
             const double misplaced = misplacedOnTable(n, n, law);
             EXPECT_LE(misplaced, allowedOnTable(n, n)) << nameOf(law) << ", " << n << " cells";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sliding knows no direction, and rest is rest.
+// Sliding prefers no direction, and sand at rest stays at rest.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -15,8 +15,8 @@ using sand::HeightField;
 using sand::Rim;
 using sand::grid::Erosion;
 
-/// One of the eight ways to lay a rectangle onto a grid: bit 0 mirrors east and west, bit 1 north and south, and bit 2
-/// then exchanges columns and rows.
+/// Puts a rectangle onto a grid in one of eight ways. Bit 0 mirrors east and west, bit 1 mirrors north and south, and
+/// bit 2 then exchanges columns and rows.
 HeightField turned(const HeightField& field, unsigned way) {
     const bool transposed = (way & 4) != 0;
     HeightField result(transposed ? field.rows() : field.columns(), transposed ? field.columns() : field.rows(), 1.0);

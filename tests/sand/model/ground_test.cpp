@@ -66,7 +66,7 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
         return terrain.stateHash();
     };
     const std::uint64_t expected = hashWith({.skipSettled = false});
-    // Last task first: whoever depends on an order shows it.
+    // Runs the last task first, which reveals a dependence on the order.
     const base::Executor backwards = [](int count, const std::function<void(int)>& task) {
         for (int i = count - 1; i >= 0; --i) {
             task(i);
@@ -79,7 +79,7 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     }
 }
 
-// Rock so deep that nobody feels it must change nothing: the limiter is exact, not merely close.
+// Rock that is too deep for any effect must not change the sand: the limits are exact, not merely close.
 TEST(Ground, BottomlessRockIsAsGoodAsNone) {
     scene::Scene scene = samples::flatScene(50, 40);
     std::mt19937 random(13);

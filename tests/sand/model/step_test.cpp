@@ -48,7 +48,7 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
 }
 
-// Byte for byte, in journals and on the wire. The tool of a sphere is its radius alone.
+// Journals and messages have exactly these bytes. A sphere is encoded as its radius alone.
 TEST(Step, OfASphereTakesTheseBytes) {
     sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
     const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
@@ -133,7 +133,7 @@ TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
             refused(tuning);
         }
     }
-    refused({12, 11, 13, 17});  // sand at rest would slide before sand that slides
+    refused({12, 11, 13, 17});  // the start threshold would be below the threshold
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tools of every shape: what they print, and that no direction is special.
+// Tools of every shape: their imprints, and that all directions are equal.
 #include "sand/model/tool_shape.hpp"
 
 #include <gtest/gtest.h>
@@ -40,8 +40,8 @@ ToolShape shapeOf(ToolKind kind, double radius /* [cell] */) {
 
 Heading heading(double degrees, bool mirrored = false) { return *sand::headingOf(degrees, mirrored); }
 
-/// A place in half lengths and half widths, and how deep the tool is there in radii: from the definitions, in the
-/// widest floats there are. Nothing beside the tool.
+/// Returns the depth of a tool at a place [radius], computed from the definitions in the widest floats. The place is in
+/// half lengths and half widths. Returns nullopt beside the tool.
 std::optional<long double> depthBelow(ToolKind kind, long double along, long double across) {
     const long double square = along * along + across * across;
     if (kind == sphere || kind == ellipsoid) {
@@ -63,7 +63,7 @@ std::optional<long double> depthBelow(ToolKind kind, long double along, long dou
     return deepest;
 }
 
-/// The tool's own axes, as a heading that was quantised turns them.
+/// Returns the depth at (x, y), turned into the tool's own axes by the quantised heading.
 std::optional<long double> depthAt(const ToolShape& shape, const Heading& heading, long double x, long double y) {
     const long double length = std::hypot(static_cast<long double>(heading.x), static_cast<long double>(heading.y));
     const long double along = (x * heading.x + y * heading.y) / length;
@@ -97,7 +97,7 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
                 }
             }
             EXPECT_GT(below, 250) << sand::toolName(kind);
-            // A radius below the centre, whatever its kind; round ones have hardly a cell that low.
+            // A tool's lowest point is one radius below its centre. Few cells below a round tool are that low.
             const std::int32_t lowest = samples::extremesOf(field).lowest;
             EXPECT_GE(lowest, -4 * kUnitsPerCell) << sand::toolName(kind);
             EXPECT_LE(lowest, -4 * kUnitsPerCell + kUnitsPerCell / 20) << sand::toolName(kind);
@@ -105,8 +105,8 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
     }
 }
 
-/// One of the eight ways to lay a field onto a grid, as in symmetry_test.cpp: bit 0 mirrors east and west, bit 1 north
-/// and south, bit 2 then exchanges columns and rows.
+/// One of the eight ways to put a field onto a grid, as in symmetry_test.cpp. Bit 0 mirrors east and west, bit 1
+/// mirrors north and south, and bit 2 then exchanges columns and rows.
 struct Way {
     unsigned bits;
     int columns, rows;
@@ -140,7 +140,7 @@ struct Way {
     }
 };
 
-/// What a scene's sand is after a press, a drag and a turn of its tool; seen the way `way` looks at it.
+/// Returns a scene's sand after a press, a drag and a turn of its tool, put onto the grid by `way`.
 sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
     sand::Replica terrain(scene);
     for (std::uint64_t i = 1; i <= 12; ++i) {
@@ -154,11 +154,11 @@ sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& 
     return samples::fieldOf(terrain);
 }
 
-// A quarter of a turn is an exchange and a mirroring. Round tools are left out: their last odd units go by rows, as
-// they always have.
+// A quarter turn consists of an exchange and a mirroring. Round tools are left out, because they give their last units
+// by rows.
 TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
     std::mt19937 random(61);
-    // Values are the release build's to compare; two ways show the sanitizers all of the code.
+    // The release build compares the values. With sanitizers, two ways are enough to run all of the code.
     const std::vector<unsigned> ways =
         samples::kSanitized ? std::vector{3U, 6U} : std::vector{1U, 2U, 3U, 4U, 5U, 6U, 7U};
     for (const ToolKind kind : kTurned) {
@@ -202,7 +202,7 @@ TEST(ToolShape, AHeadingIsQuantisedOnceAndExactAlongTheAxes) {
     EXPECT_FALSE((Heading{100, 100, false}).valid());
 }
 
-/// Volume above the starting level on the side of a line through the tool's centre.
+/// Returns the volume above the starting level on one side of a line through the tool's centre.
 std::int64_t raisedWhere(const sand::HeightField& field, const auto& side) {
     std::int64_t sum = 0;
     for (int row = 0; row < field.rows(); ++row) {
@@ -227,7 +227,7 @@ TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
             << sand::toolName(kind) << ": the rest of a foot goes out at heel and toes";
         EXPECT_GT(all, 2 * imprint);
     }
-    // Along its length, the same blade ploughs a furrow that is no wider than it is.
+    // Along its length, the same blade cuts a furrow that is no wider than the blade.
     sand::HeightField field(120, 90, 1.0);
     const Displacement blade(shapeOf(rectangle, 16), heading(0));
     blade.drag(field, Rim::closed, nullptr, {probes(30), probes(45), probes(14)}, {probes(80), probes(45), probes(14)});
@@ -341,7 +341,8 @@ TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     EXPECT_EQ(terrain.heading(), heading(70)) << "the operator turned it";
 }
 
-// With whichever instructions: cell by cell it is one root at a time.
+// Undersides of a row equal those of single cells, with either instruction set. A single cell computes one root at a
+// time.
 TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
     std::mt19937 random(7);
     const auto anyOf = [&random](std::int64_t least, std::int64_t most) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What takes too long or too much memory for a test; scripts/soak.sh runs it and compares.
+// Session that takes too long or too much memory for a test. scripts/soak.sh runs it and compares the results.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -73,7 +73,8 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    host::CommandLine line("Random edits with a hash at every step; prints one hash over all of them.", "sand_soak");
+    host::CommandLine line(
+        "Applies random edits, hashes the sand after every step, and prints one hash over all steps.", "sand_soak");
     Options options;
     line.option("--edits", options.edits, "how many").showDefault();
     line.option("--columns", options.columns).range(1, sand::kMaxSide).showDefault();
