@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers that no sand can be made of: an error that names file, line, key and range.
+// Numbers that sand cannot have: the error names file, line, key and range.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -19,7 +19,7 @@ TEST_F(ExtremeInput, AnglesEndBelow90Degrees) {
     EXPECT_EQ(thresholdAt("45"), sand::kUnitsPerCell);
     EXPECT_NEAR(thresholdAt("89.9"), 572.957 * sand::kUnitsPerCell, sand::kUnitsPerCell);
     EXPECT_NEAR(thresholdAt("89.99"), 5729.578 * sand::kUnitsPerCell, sand::kUnitsPerCell);
-    EXPECT_EQ(thresholdAt("89.9999999999"), 1 << 30) << "more than any two heights differ";
+    EXPECT_EQ(thresholdAt("89.9999999999"), 1 << 30) << "larger than any difference of heights";
     for (const auto* angle : {"90", "90.0001", "1e300", "-1e-9", "inf", "-inf", "nan"}) {
         EXPECT_EQ(complaint(kFlat + "talus_deg = " + angle + "\n").find("s.toml:4: talus_deg must be "), 0U) << angle;
     }

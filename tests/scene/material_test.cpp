@@ -17,7 +17,7 @@ namespace {
 
 using sand::Edit;
 
-// One way from a scene file's numbers to integers: what an operator types gives the rules that a file would.
+// A scene file and an operator's command use the same conversion from numbers to rules.
 TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
     const scene::Scene plain = scene::loadScene(write("plain.toml", kFlat));
     const auto grid = plain.grid();
@@ -61,14 +61,14 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
         return test::refusalOf([&] { (void)scene::withTool(scene.material, change, scene.grid()); });
     };
     EXPECT_EQ(changed({.kind = sand::ToolKind::footprint, .radius = 1.5}),
-              "a footprint of radius 1.5 is 3 long, and the field 2");
+              "a footprint of radius 1.5 is 3 long, but the field only 2");
     EXPECT_EQ(changed({.width = 0.5}), "a sphere is as wide as it is long; leave width out");
     EXPECT_EQ(changed({.kind = sand::ToolKind::ellipse, .width = 0.01}),
               "a tool's width over its length must be within [0.05, 1], got 0.01");
     EXPECT_EQ(changed({.heading = std::nan("")}), "a tool's heading must be a number of degrees");
 }
 
-/// A pile at rest, and its talus halved by an operator.
+/// A pile at rest whose talus an operator halves.
 TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 16, 20);
@@ -91,7 +91,7 @@ TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     EXPECT_NE(terrain.stateHash(), hash);
 }
 
-// Two replicas whose sand is equal and whose tool is not will differ a step later: the hash must say so now.
+// Two replicas with equal sand and different tools differ one step later. The hash must show that at once.
 TEST(Tuning, IsPartOfTheHashAndOfTheState) {
     const scene::Scene scene = samples::flatScene(64, 64);
     sand::Tuning tuning = scene.rules.tuning();

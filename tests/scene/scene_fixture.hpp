@@ -11,14 +11,14 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 
-/// Writes scene files into a folder of its own and tells what the loader says of them.
+/// Writes scene files into a folder of its own and returns the loader's messages.
 class SceneFile : public test::FolderTest {
 protected:
     std::filesystem::path write(const std::string& name, const std::string& text) {
         std::ofstream(folder_ / name) << text;
         return folder_ / name;
     }
-    /// The one line a person reads, without the folder.
+    /// Returns the one line that a user reads, without the folder.
     std::string complaint(const std::string& text) {
         try {
             (void)scene::loadScene(write("s.toml", text));

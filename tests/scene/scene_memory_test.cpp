@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scene needs is asked before it is made, with figures in place of this machine's memory.
+// The memory of a scene is checked before the scene is made. The tests use fixed sizes instead of this machine's
+// memory.
 #include <fmt/format.h>
 
 #include <array>
@@ -16,12 +17,13 @@ constexpr std::int64_t kGigabyte = std::int64_t{1} << 30;
 
 class SceneMemory : public SceneFile {
 protected:
-    /// What loading refuses while `free` bytes are free; "nothing" if it loads.
+    /// Returns the loader's refusal while `free` bytes are free, or "nothing" if it loads.
     std::string refusalOn(std::int64_t free, const std::string& text) {
         const std::filesystem::path file = write("s.toml", text);
         return test::refusalOf([&] { (void)scene::loadScene(file, scene::checksOfOneReplica("s.toml", free)); });
     }
-    /// What is asked while a scene is loaded, in its order: "raster 3 x 2", "field 3 x 2", "TIN 3 x 2".
+    /// Returns the checks that are called while a scene is loaded, in their order: "raster 3 x 2", "field 3 x 2", "TIN
+    /// 3 x 2".
     std::vector<std::string> asked(const std::string& text) {
         std::vector<std::string> all;
         (void)scene::loadScene(
@@ -63,7 +65,7 @@ TEST_F(SceneMemory, OfATinIsThatOfItsVertices) {
               "machine with more memory");
 }
 
-// Where a pixel should be stands a word, which would be refused if it were read.
+// A word stands in place of a pixel. Reading it would be refused with another message.
 TEST_F(SceneMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
     const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
     const std::string text = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest;
@@ -90,7 +92,7 @@ TEST_F(SceneMemory, OfTheFieldIsAskedBeforeThePixelsWhereTheHeaderMarksNoData) {
     EXPECT_EQ(refused(head, "[tin]\n"), "4096 x 4096 true");
     const std::string masked = refused(head + "NODATA_value -1\n", "");
     EXPECT_NE(masked.find("t.asc:5: a height must be"), std::string::npos)
-        << "edges without data may be cut off, and nobody knows yet how many: " << masked;
+        << "edges without data may be cut off, so that the size is still unknown: " << masked;
 }
 
 TEST_F(SceneMemory, IsAskedOnceOfEachRasterAndOfTheField) {
@@ -104,7 +106,7 @@ TEST_F(SceneMemory, IsAskedOnceOfEachRasterAndOfTheField) {
     EXPECT_EQ(asked(text + "\"cut.asc\"\n" + kRest), (Asked{"raster 3 x 2", "field 2 x 2"}));
     EXPECT_EQ(asked(text + "\"cut.asc\"\nbedrock = \"rock.asc\"\n" + kRest),
               (Asked{"raster 3 x 2", "field 3 x 2", "raster 3 x 2"}))
-        << "with rock the edges stay";
+        << "with rock the edges are not cut off";
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ long residentKilobytes() {
     return usage.ru_maxrss;
 }
 
-// 16384 x 16384 heights are 1 GiB: a host that lacks it must say so at once, and not after it has made them.
+// 16384 x 16384 heights are 1 GiB. A host without that memory must report it before it makes the heights.
 TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
     const std::string huge = "[field]\ncolumns = 16384\nrows = 16384\n[material]\n";
     const long before = residentKilobytes();
@@ -141,7 +141,7 @@ TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
     EXPECT_EQ(tool("shape = \"ellipse\"\nfoot = \"left\"\n"),
               "s.toml:6: only a footprint is left or right, not this ellipse");
     EXPECT_EQ(tool("shape = \"footprint\"\nradius = 1.5\n"),
-              "s.toml:6: a footprint of radius 1.5 is 3 long, and the field 2");
+              "s.toml:6: a footprint of radius 1.5 is 3 long, but the field only 2");
 }
 
 TEST_F(SceneFile, ALevelOfDetailThatCannotHoldItsErrorIsRefused) {
@@ -221,7 +221,7 @@ TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
         EXPECT_TRUE(sameHeights(copy.terrain, scene.terrain)) << entry.path();
         scenes.insert(entry.path().filename().string());
     }
-    // A level field, one of dunes, and a TIN: the loop has loaded each kind.
+    // The loop has loaded each kind: a level field, a field of dunes, and a TIN.
     for (const char* name : {"sandbox.toml", "dunes.toml", "gis_tin.toml"}) {
         EXPECT_TRUE(scenes.contains(name)) << name << " was not loaded";
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the [tin] of a scene file may ask for.
+// The keys of [tin] in a scene file.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -35,7 +35,7 @@ protected:
         std::ofstream(folder_ / "s.toml") << text;
         return scene::loadScene(folder_ / "s.toml");
     }
-    /// Without the folder.
+    /// Returns the refusal without the folder.
     template <class Load>
     [[nodiscard]] std::string refusal(const Load& load) const {
         try {
@@ -86,7 +86,7 @@ TEST_F(TinScene, HasNoMoreVerticesThanTheFileAllows) {
     }
 }
 
-/// The farthest that a start is from the field that the scene file has without its [tin] [unit].
+/// Returns the largest distance of a start from the field that the scene file gives without its [tin] [unit].
 double errorOf(const scene::Scene& tin, const sand::HeightField& field) {
     const sand::Replica replica(tin);
     double worst = 0;
@@ -106,7 +106,7 @@ TEST_F(TinScene, IsAsNearToItsTerrainAsMaxErrorAtEveryWidest) {
     for (const double maxError : {0.0, 0.0005, 0.004}) {
         for (const char* widest : {"", "widest = 0\n", "widest = 0.03\n", "widest = 0.1\n", "widest = 1\n"}) {
             const scene::Scene read = loaded(dunes + fmt::format("[tin]\nmax_error = {}\n{}", maxError, widest));
-            // max_error is a whole number of units, and what a quotient rounds is far less than another.
+            // max_error is a whole number of units. The rounding of a quotient is far less than one unit.
             EXPECT_LE(errorOf(read, field), read.tin->settings.maxError + 1e-6) << maxError << ' ' << widest;
             EXPECT_TRUE(read.warnings.empty());
         }
@@ -191,7 +191,7 @@ TEST_F(TinScene, RefusesPointsThatLieNearerThanItsVerticesAllow) {
 TEST_F(TinScene, PointsAtWidestMayBeMoreThanTheUsualVertices) {
     const scene::Scene read = scene(512, "flat", "widest = 0.00390625\n");
     EXPECT_EQ(read.tin->places.size(), 4U + 512 * 512);
-    EXPECT_EQ(read.tin->settings.mostVertices, 4 + 512 * 512) << "and the tool makes none";
+    EXPECT_EQ(read.tin->settings.mostVertices, 4 + 512 * 512) << "the tool can make no further vertices";
     EXPECT_EQ(scene(512, "flat", "").tin->settings.mostVertices, 1 << 18);
 }
 
@@ -218,11 +218,11 @@ TEST_F(TinScene, RefusesASpacingThatWouldPutMorePointsAroundTheToolThanItsVertic
               "spacing must be at least 0.00390625");
     EXPECT_EQ(scene(512, "flat", "spacing = 0.000442504883\n").tin->settings.spacing, 29);
     EXPECT_EQ(scene(512, "flat", "vertices = 4\nspacing = 0.00390625\n").tin->settings.spacing, 256)
-        << "a cell is never too little";
+        << "a spacing of one cell is always allowed";
 }
 
 #ifndef __SANITIZE_ADDRESS__  // a sanitizer's heap does not tell
-// Of this and other scenes 329 to 401 bytes a vertex were measured.
+// 329 to 401 bytes per vertex were measured with this and other scenes.
 TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     const base::Bytes bytes = scene(256, "flat", "widest = 0.0078125\n").encode();
     const auto taken = [] {

@@ -39,7 +39,7 @@ TEST_F(Import, TheGeoreferenceTravelsWithTheSceneAndOlderScenesHaveNone) {
     nowhere.georeference = {};
     const base::Bytes older = nowhere.encode();
     ASSERT_LT(older.size(), bytes.size());
-    EXPECT_TRUE(std::equal(older.begin(), older.end(), bytes.begin())) << "what stands before it is as it was";
+    EXPECT_TRUE(std::equal(older.begin(), older.end(), bytes.begin())) << "the bytes before it have not changed";
     EXPECT_EQ(scene::Scene::decode(older).georeference, scene::Georeference{});
     EXPECT_EQ(nowhere.rules.digest(), scene.rules.digest());
     bytes[older.size()] = 200;
@@ -70,7 +70,7 @@ TEST_F(Import, TransparentPixelsAreWalls) {
                           .bands = 2,
                           .options = {"ALPHA=YES"}});
     const scene::Scene scene = load(kDem);
-    ASSERT_NE(scene.ground, nullptr) << "both bands hold the same, and where the second is 0 nothing is known";
+    ASSERT_NE(scene.ground, nullptr) << "both bands hold the same; pixels are masked where the second is 0";
     EXPECT_TRUE(scene.ground->isWall(1, 0));
     EXPECT_FALSE(scene.ground->isWall(1, 1));
 }
@@ -81,7 +81,7 @@ TEST_F(Import, PixelsThatArePointsLieHalfAPixelFurther) {
     point.pixelIs = "Point";
     writeRaster("t.tif", area);
     const scene::Scene areas = load(kDem);
-    // GDAL hands corners to whoever writes; in the file stands the middle, which is read as a corner again.
+    // GDAL returns corners to a program that writes. The file contains the middle, which is read as a corner again.
     writeRaster("t.tif", point);
     EXPECT_EQ(load(kDem).georeference, areas.georeference);
 }
@@ -99,7 +99,7 @@ TEST_F(Import, HeightsInFeetOverMetresAreConverted) {
     const scene::Scene scene = load(kDem);
     EXPECT_EQ(scene.terrain.height(0, 0), std::lround(304.8 / 10 * sand::kUnitsPerCell));
     EXPECT_NEAR(scene.georeference.cubicMetres(), 1, 1e-12);
-    // EPSG 2227 counts in survey feet, lengths and heights alike: nothing is to be done but for cubic metres.
+    // EPSG 2227 counts lengths and heights in survey feet. Only cubic metres need a conversion.
     writeRaster("t.tif", {.columns = 1, .rows = 2, .heights = {0, 1000}, .epsg = 2227});
     const scene::Scene feet = load(kDem);
     EXPECT_EQ(feet.terrain.height(0, 0), 100 * sand::kUnitsPerCell);
@@ -132,7 +132,7 @@ TEST_F(Import, DegreesAreRefusedWithTheCommandThatMakesMetres) {
     EXPECT_EQ(refusal(kDem),
               "t.tif: its coordinates (WGS 84) are degrees, but sand needs lengths; make metres of them: gdalwarp "
               "-t_srs EPSG:32610 -r bilinear t.tif metres.tif");
-    // A tile of the shuttle's mission: 1201 x 1201 big-endian numbers, its place in its name.
+    // A tile of the shuttle mission: 1201 x 1201 big-endian numbers, with its place in its name.
     write("S23W043.hgt", std::string(2 * 1201 * 1201, '\1'));
     EXPECT_EQ(
         refusal("[terrain]\nkind = \"dem\"\nfile = \"S23W043.hgt\"\n"),
@@ -162,7 +162,7 @@ TEST_F(Import, RastersThatAreNoFieldSayWhy) {
     EXPECT_EQ(refused([](Raster& r) { r.bands = 3; }),
               "t.tif: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER");
     EXPECT_EQ(refused([](Raster& r) { r.unit = "fathom"; }),
-              "t.tif: heights in 'fathom', which is no unit known here; say what they are: gdal_edit.py -units m");
+              "t.tif: heights in 'fathom', which is not a known unit; set their unit: gdal_edit.py -units m");
     EXPECT_EQ(refused([](Raster& r) { r.type = GDT_CFloat32; }), "t.tif: holds complex numbers instead of heights");
     EXPECT_EQ(
         refused([](Raster& r) { r.heights[2] = std::numeric_limits<double>::infinity(); }),

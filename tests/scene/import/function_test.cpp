@@ -20,7 +20,7 @@ TEST_F(Import, AFunctionIsEvaluatedInTheMiddleOfEveryCell) {
     EXPECT_EQ(scene.georeference.west, -1);
 }
 
-// It is nowhere a number: whoever evaluated it first would complain of that.
+// The function has no finite value anywhere. Evaluating it first would give another message.
 TEST_F(Import, AFunctionsSizeIsLookedAtBeforeItIsEvaluated) {
     const std::string file = write("s.toml", text(function("sqrt(-1)", "columns = 400")));
     const auto tooLarge = [](int columns, int rows, bool) {

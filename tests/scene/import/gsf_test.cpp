@@ -10,7 +10,7 @@
 namespace {
 
 const std::string kScan = "[terrain]\nkind = \"gsf\"\nfile = \"t.gsf\"\n";
-// A square of 200 nm.
+// A square with a side of 200 nm.
 const std::string kHeader =
     "Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 2\nXReal = 2e-07\nYReal = 2e-07\nXYUnits = m\nZUnits = m\n";
 
@@ -82,7 +82,7 @@ TEST_F(Import, ScansThatAreNoneSayWhy) {
     EXPECT_EQ(refused(scan(kHeader + "YReal = 4e-07\n", four)),
               "s.toml:3: t.gsf has cells of 1 x 2; a scene's are square; resample it in Gwyddion: Data Process > Basic "
               "Operations > Resample")
-        << "no tool of GDAL's opens it";
+        << "GDAL's tools cannot open it";
 }
 
 }  // namespace

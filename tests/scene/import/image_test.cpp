@@ -29,7 +29,7 @@ TEST_F(Import, APicturesWhiteIsTheHighestGround) {
     EXPECT_TRUE(sameHeights(load(kImage).terrain, eight.terrain)) << "a TIFF, whatever its name";
 }
 
-/// Writes grey numbers of so many bits as a PNG, by libpng.
+/// Writes grey numbers of `bits` bits as a PNG with libpng.
 void writeGreys(const std::string& file, int columns, int rows, int bits, bool interlaced,
                 const std::vector<int>& greys) {
     std::FILE* const stream = std::fopen(file.c_str(), "wb");
@@ -40,7 +40,7 @@ void writeGreys(const std::string& file, int columns, int rows, int bits, bool i
                  PNG_COLOR_TYPE_GRAY, interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
-    png_set_packing(png);  // a byte for each number of less than 8 bits
+    png_set_packing(png);  // one byte for each number of less than 8 bits
     const std::size_t size = bits == 16 ? 2 : 1, width = static_cast<std::size_t>(columns);
     std::vector<png_byte> bytes;
     for (const int grey : greys) {
@@ -59,7 +59,7 @@ void writeGreys(const std::string& file, int columns, int rows, int bits, bool i
     std::fclose(stream);
 }
 
-// GDAL 3.6.2 swaps the bytes of a picture that is both interlaced and of 16 bits: 258 is 0x0102, and came as 513.
+// GDAL 3.6.2 swaps the bytes of a picture that is interlaced and has 16 bits: it reads 258, which is 0x0102, as 513.
 TEST_F(Import, APictureIsReadAlikeInterlacedOrNot) {
     constexpr int kColumns = 11, kRows = 9;  // some pixels in each of the seven passes
     for (const int bits : {1, 2, 4, 8, 16}) {
@@ -81,7 +81,7 @@ TEST_F(Import, APictureIsReadAlikeInterlacedOrNot) {
     }
 }
 
-// A world file beside it makes a DEM of a picture: middle of the north-west pixel, and sizes.
+// A world file beside a picture turns it into a DEM. The file holds sizes and the middle of the north-west pixel.
 TEST_F(Import, ADemFromAnInterlacedPictureHasItsNumbers) {
     writeGreys(path("t.png"), 2, 2, 16, true, {258, 1, 256, 513});
     write("t.wld", "1000\n0\n0\n-1000\n500\n1500\n");
@@ -91,7 +91,8 @@ TEST_F(Import, ADemFromAnInterlacedPictureHasItsNumbers) {
     EXPECT_EQ(grid.westEdge, 0);
 }
 
-// Beside the picture GDAL keeps which number has no data: it is the file's, not GDAL's own of it.
+// GDAL keeps the no-data number in a file beside the picture. That number refers to the file's own numbers. GDAL may
+// read different ones.
 TEST_F(Import, TheNumberWithoutDataIsTheFiles) {
     writeGreys(path("t.png"), 2, 2, 16, true, {258, 513, 513, 7});
     write("t.png.aux.xml",

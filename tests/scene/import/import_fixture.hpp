@@ -16,12 +16,12 @@
 #include "tests/scene/scene_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
-/// A raster file to be written; rows from the north.
+/// Raster file to write; rows from the north.
 struct Raster {
     int columns = 1, rows = 1;
     std::vector<double> heights{};
-    std::optional<std::array<double, 6>> place{{1000, 10, 0, 2000, 0, -10}};  // as GDAL says it
-    int epsg = 32633;                                                         // 0: none
+    std::optional<std::array<double, 6>> place{{1000, 10, 0, 2000, 0, -10}};  // in GDAL's order
+    int epsg = 32633;                                                         // 0 without a system
     GDALDataType type = GDT_Float32;
     std::optional<double> noData{};
     const char* unit = nullptr;
@@ -31,14 +31,15 @@ struct Raster {
     const char* pixelIs = nullptr;  // "Area" or "Point"
 };
 
-/// Writes rasters through GDAL, and scenes and programs that read them.
+/// Writes rasters through GDAL, and runs scenes and programs that read them.
 class Import : public SceneFile {
 protected:
     void SetUp() override { GDALAllRegister(); }
 
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-    /// PNG and its like are copied from a raster in memory: their drivers cannot begin one.
+    /// Writes a raster. Formats such as PNG are copied from a raster in memory, because their drivers cannot create
+    /// one.
     void writeRaster(const std::string& name, Raster raster) const {
         raster.options.push_back(nullptr);
         GDALDriverH driver = GDALGetDriverByName(raster.driver);
@@ -58,7 +59,7 @@ protected:
         GDALClose(dataset);
     }
 
-    /// A coordinate reference system as it stands beside a text grid.
+    /// Writes a coordinate reference system in the form of the file beside a text grid.
     void writePrj(const std::string& name, int epsg) {
         OGRSpatialReferenceH reference = OSRNewSpatialReference(nullptr);
         OSRImportFromEPSG(reference, epsg);
@@ -69,7 +70,7 @@ protected:
         OSRDestroySpatialReference(reference);
     }
 
-    /// The scene of a terrain, all else as it begins; the tool so large that nobody warns.
+    /// Loads the scene of a terrain, with defaults for everything else. The tool is large enough to avoid a warning.
     [[nodiscard]] scene::Scene load(const std::string& terrain) {
         return scene::loadScene(write("s.toml", text(terrain)));
     }

@@ -19,7 +19,7 @@ TEST_F(Import, OnlyScenesThatNameASourceMapItsLibraries) {
     EXPECT_EQ(mapped("[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\""), none);
     EXPECT_EQ(mapped("[field]\ncolumns = 4\n[terrain]\nkind = \"function\"\nx = [0, 1]\ny = [0, 1]\nz = \"x\""),
               "sandwall-import mapped\nlibgdal mapped\nlibmuparser mapped\nlibproj mapped\n")
-        << "so that this test can fail";
+        << "without it this test could not fail";
 }
 
 TEST_F(Import, RelaxingTextMapsNoLibraryOfOtherFormats) {
@@ -68,7 +68,7 @@ TEST_F(Import, RelaxedTextHasItsSystemBesideItAgain) {
     const support::Ran ran =
         support::runProgram("sandwall-relax", path("t.asc") + " " + path("out.asc") + " --talus 30");
     EXPECT_EQ(ran.output, "sandwall-relax: " + path("t.asc") + ":8: more values than ncols x nrows = 4\n")
-        << "by its line, as without";
+        << "names the line, as it does without a .prj file";
 }
 
 TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {
@@ -91,7 +91,8 @@ TEST_F(Import, ARelaxedGeoTiffKeepsItsPlaceItsMaskAndWhatDidNotMove) {
     GDALRasterBandH band = GDALGetRasterBand(out, 1);
     EXPECT_STREQ(GDALGetRasterUnitType(band), "m");
     int hasNoData = 0;
-    EXPECT_TRUE(std::isnan(GDALGetRasterNoDataValue(band, &hasNoData))) << "docs/relax.md: whatever the source's is";
+    EXPECT_TRUE(std::isnan(GDALGetRasterNoDataValue(band, &hasNoData)))
+        << "docs/relax.md: NaN, whatever number the source has";
     EXPECT_NE(hasNoData, 0);
     std::array<double, 9> heights{};
     std::array<unsigned char, 9> known{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words, numbers that are none, and no data, in every kind of terrain: the table of docs/terrain.md.
+// Words, NaN, infinity and no data in every kind of terrain: the table of docs/terrain.md.
 #include "scene/import/no_data.hpp"
 
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 
 class NoData : public Import {
 protected:
-    /// What a grid of 3 x 2 cells is refused with as a terrain of this kind; "accepted" otherwise.
+    /// Returns the refusal of a grid of 3 x 2 cells as a terrain of this kind, or "accepted".
     std::string refusedAs(const std::string& kind, const std::string& numbers, const std::string& more = "",
                           const std::string& name = "t.asc") {
         write(name, "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + more + numbers);
@@ -23,7 +23,7 @@ protected:
     static std::string terrainOf(const std::string& kind, const std::string& file) {
         return "[terrain]\nkind = \"" + kind + "\"\nfile = \"" + file + "\"\n";
     }
-    /// The warnings of a scene that are not of its tool, without the folder.
+    /// Returns the warnings of a scene without those about its tool, and without the folder.
     std::vector<std::string> warningsOf(const std::string& terrain) {
         std::vector<std::string> warnings = load(terrain).warnings;
         std::erase_if(warnings, [](const std::string& line) { return line.starts_with("a tool of radius "); });
@@ -36,7 +36,7 @@ protected:
     using Lines = std::vector<std::string>;
 };
 
-// GDAL reads "abc" and "inf" as 0, and the scene would begin with a pit.
+// GDAL reads "abc" and "inf" as 0. The scene would then begin with a pit.
 TEST_F(NoData, EitherKindRefusesAnEsriGridWithTheSameLine) {
     for (const std::string kind : {"esri_ascii", "dem"}) {
         for (const std::string word : {"abc", "nan", "inf", "1,5", "1e999"}) {
@@ -120,7 +120,7 @@ TEST_F(NoData, OfAScanIsNotANumber) {
     EXPECT_EQ(warningsOf(terrainOf("gsf", "t.gsf")), Lines{});
 }
 
-// GDAL writes and reads this place for programs that know none.
+// GDAL writes and reads this place for programs that know no place.
 TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
     const std::string warning =
         "t.tif: has no coordinate system, and cells of 1 x 1 at (0, 0), as if it had no georeferencing; slopes are "
@@ -140,7 +140,7 @@ TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
     for (const Place& place : {Place{0, 2, 0, 0, 0, -2}, Place{7, 1, 0, 0, 0, -1}}) {
         raster.place = place;
         writeRaster("t.tif", raster);
-        EXPECT_EQ(warningsOf(terrainOf("dem", "t.tif")), Lines{}) << "a place that somebody chose";
+        EXPECT_EQ(warningsOf(terrainOf("dem", "t.tif")), Lines{}) << "a place that a user has chosen";
     }
     raster.place = Place{0, 1, 0, 2, 0, -1};
     raster.epsg = 32633;

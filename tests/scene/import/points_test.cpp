@@ -52,7 +52,7 @@ TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
                    rest)
                   .size(),
               4U)
-        << "as spreadsheets write it";
+        << "a byte-order mark, as spreadsheets write it";
     EXPECT_EQ(refused("nan,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'nan'");
     EXPECT_EQ(refused("-inf,nan,-nan(ind)\n" + rest), "p.csv:1: x must be a finite number, got '-inf'");
     EXPECT_EQ(refused("1e999,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1e999'");
@@ -103,8 +103,8 @@ TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
         }
     }
     EXPECT_EQ(refused("id,lon,lat,h\n1,10.2,47.1,1200\n"),
-              "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4; 'lon' is in degrees, and sand "
-              "wants lengths");
+              "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4; 'lon' is in degrees, but sand "
+              "needs lengths");
     EXPECT_EQ(refused("10.2m,47,3\n"), "p.csv:1: x must be a finite number, got '10.2m'");
     EXPECT_EQ(refused("E,47,3\n"), "p.csv:1: x must be a finite number, got 'E'");
 }
@@ -143,7 +143,7 @@ TEST_F(Import, DevicesThatNeverEndAreNoTerrain) {
 
 TEST_F(PointsFile, AFileThatCannotBeReadToItsEndIsNotTakenForItsBeginning) {
     try {
-        (void)scene::readPoints("/proc/self/mem");  // opens, and nothing lies at its beginning
+        (void)scene::readPoints("/proc/self/mem");  // opens, but its first byte cannot be read
         FAIL() << "accepted";
     } catch (const base::InputError& error) {
         EXPECT_STREQ(error.what(), "/proc/self/mem: cannot be read to its end; check the disk it lies on");

@@ -23,7 +23,7 @@ namespace {
 constexpr int kColumns = 24;
 constexpr int kRows = 16;
 
-/// A session on a DEM of hills with a hole in it, and what sandwall-replay makes of its journal.
+/// A session on a DEM of hills with a hole, and the output of sandwall-replay for its journal.
 class Results : public Import {
 protected:
     Results() : terrain_(samples::flatScene(1, 1)) {}
@@ -55,7 +55,7 @@ protected:
         std::ifstream stream(path(name), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// [scene unit], by how much the sand of a cell has risen.
+    /// Returns how much the sand of a cell has risen [scene unit].
     [[nodiscard]] double risen(int column, int row) const {
         return (samples::fieldOf(terrain_).height(column, row) - scene_.terrain.height(column, row)) *
                scene_.terrain.unit();

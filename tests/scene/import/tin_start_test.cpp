@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of the TIN that a session starts with, measured between exported rasters and the terrain's source.
+// The error of the TIN with which a session starts, measured between exported rasters and the terrain's source.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 constexpr int kAcross = 72, kDown = 56;  // [cell]
 constexpr unsigned kGroundSeed = 83;
 
-/// Ground that is smooth in the west and jagged in the east, between 0 and 1, row by row from the north.
+/// Returns ground between 0 and 1 that is smooth in the west and jagged in the east, row by row from the north.
 std::vector<double> jaggedGround() {
     std::mt19937 random(kGroundSeed);
     std::vector<double> heights;
@@ -34,10 +34,10 @@ std::vector<double> jaggedGround() {
     return heights;
 }
 
-/// Scenes with a [tin], and what comes of them as rasters.
+/// Scenes with a [tin], and the rasters that they are exported to.
 class StartOfTin : public Import {
 protected:
-    /// The raster that sandwall-replay writes of a session without any step.
+    /// Returns the raster that sandwall-replay writes of a session without any step.
     [[nodiscard]] scene::EsriGrid exported(const scene::Scene& scene) const {
         sand::Replica replica(scene);
         master::JournalWriter writer(path("s.journal"), scene, "test");
@@ -55,8 +55,8 @@ protected:
         return warnings;
     }
 
-    /// Makes a TIN of a terrain at each of several distances `widest`, in cells, and expects that no cell of the raster
-    /// is farther from its height than max_error. `heights`: row by row from the north, not a number without data.
+    /// Makes a TIN of a terrain at each of several distances `widest` [cell]. Expects that no cell of the raster is
+    /// farther from its height than max_error. `heights` are row by row from the north; NaN is no data.
     void expectWithin(const std::string& terrain, const std::vector<double>& heights, double maxError) {
         for (const double widest : {0.0, 1.0, 3.0, 7.0, 16.0, 500.0}) {
             const scene::Scene plain = load(terrain);
@@ -72,12 +72,12 @@ protected:
                 ASSERT_EQ(std::isnan(grid.heights[i]), std::isnan(heights[i])) << i;
                 worst = std::isnan(heights[i]) ? worst : std::max(worst, std::abs(grid.heights[i] - heights[i]));
             }
-            // Half a unit each: of max_error, of the terrain's heights, and of those exported, whose decimals are right
-            // within a hundredth of one more.
+            // Half a unit for each rounding: of max_error, of the terrain's heights, and of the exported heights. The
+            // decimals of the latter add at most a hundredth of a unit.
             const double roundings = 1.51 * cell / sand::kUnitsPerCell;
             EXPECT_LE(worst, maxError + roundings) << "widest " << widest << " cells, seed " << kGroundSeed;
-            if (widest != 1) {  // then every cell has a vertex
-                EXPECT_GT(worst, maxError / 2) << "a finer TIN than was asked for, seed " << kGroundSeed;
+            if (widest != 1) {  // with 1, every cell has a vertex
+                EXPECT_GT(worst, maxError / 2) << "the TIN is finer than requested, seed " << kGroundSeed;
             }
         }
     }

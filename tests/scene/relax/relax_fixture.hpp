@@ -24,11 +24,11 @@ protected:
         std::ifstream stream(path(name));
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// A grid of square cells of side 1, its heights from the north.
+    /// Writes a grid of square cells with side 1; the heights begin in the north.
     void writeGrid(const std::string& name, int columns, int rows, const std::vector<double>& heights) const {
         scene::writeEsriGrid({columns, rows, 1, 0, 0, heights}, path(name));
     }
-    /// In the test's folder, so that files go by their names. `before` are words of the shell.
+    /// Runs the program in the test's folder, so that arguments are plain file names. `before` are words of the shell.
     [[nodiscard]] support::Ran run(const std::string& arguments, const std::string& before = "") const {
         const std::filesystem::path root = std::filesystem::current_path();
         std::filesystem::current_path(folder_);
@@ -37,7 +37,8 @@ protected:
         std::filesystem::current_path(root);
         return ran;
     }
-    /// Runs it to success, and returns its one line; on a slow machine lines of progress stand before it.
+    /// Runs the program, expects success, and returns its report line. On a slow machine, progress lines come before
+    /// it.
     [[nodiscard]] nlohmann::json relax(const std::string& arguments) const {
         const support::Ran ran = run(arguments);
         EXPECT_EQ(ran.status, 0) << ran.output;
@@ -46,7 +47,7 @@ protected:
         EXPECT_EQ(ran.output.find('\n', line), ran.output.size() - 1) << ran.output;
         return nlohmann::json::parse(ran.output.substr(std::min(line, ran.output.size())), nullptr, false);
     }
-    /// Status 2, one line that holds `words`, and no file of this name.
+    /// Expects status 2, one line that contains `words`, and no file `out`.
     void expectRefused(const std::string& arguments, const std::string& words, const std::string& out) const {
         const support::Ran ran = run(arguments);
         EXPECT_EQ(ran.status, 2) << arguments << '\n' << ran.output;

@@ -73,7 +73,7 @@ TEST_F(RelaxInput, GridsThatCannotBeSandAreRefusedWithTheirLine) {
                       "bad.asc: cells of 1 x 1001 are too oblong; sides must be within 1 : 1000");
 }
 
-// A raster's pixels take 16 bytes each while they are read. Were they read first, the word would be refused.
+// A raster's pixels take 16 bytes each while they are read. If they were read first, the word would be refused.
 TEST_F(RelaxInput, ARasterThatDoesNotFitTheMemoryIsRefusedBeforeItsPixelsAreRead) {
     write("bad.asc", "ncols 16384\nnrows 16384\ncellsize 1\n1 word\n");
     for (const char* arguments : {"bad.asc out.asc --talus 30", "in.asc out.asc --talus 30 --bedrock bad.asc",
@@ -91,7 +91,7 @@ TEST_F(RelaxInput, ATalusWithoutUnitsIsRefusedWithAWayOut) {
                   "in.asc: a talus of 0.001 degrees is 1 height units of 1.526e-05 "
                   "from cell to cell, and 4 is the least, except for 0 degrees");
     expectGridRefused(kGrid + "1 2\n3 4e8\n",
-                      "heights from 1 to 400000000 span 4e+08 cells: if some are no terrain, "
+                      "heights from 1 to 400000000 span 4e+08 cells: if some are not terrain, "
                       "make them no-data");
 }
 
@@ -104,7 +104,7 @@ TEST_F(RelaxInput, ACoarseTalusWarnsWithTheFigure) {
             "cell: slopes may come to rest 0.66 % too steep\n"),
         0U)
         << coarse.output;
-    (void)relax("in.asc out.asc --talus 3.6");  // 4123 units: no second line
+    (void)relax("in.asc out.asc --talus 3.6");  // 4123 units: no warning
 }
 
 TEST_F(RelaxInput, BedrockThatDoesNotMatchIsRefused) {
@@ -113,8 +113,8 @@ TEST_F(RelaxInput, BedrockThatDoesNotMatchIsRefused) {
         expectRefused("in.asc out.asc --talus 30 --bedrock rock.asc", words);
     };
     refused(kGrid + "0 0\n3.5 0\n",
-            "rock.asc:8: column 1 of this row: rock at 3.5 lies above in.asc's height of 3: a "
-            "layer below zero");
+            "rock.asc:8: column 1 of this row: rock at 3.5 lies above in.asc's height of 3; "
+            "rock must not be higher");
     refused(kGrid + "0 0\n0 -1\n", "rock.asc:8: column 2 of this row: no rock under in.asc's height of 4");
     refused("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0\n",
             "rock.asc: 2 x 1 cells of 1 x 1 from (0, 0), but in.asc: 2 x 2 cells of 1 x 1 from (0, 0): they must be");

@@ -34,7 +34,8 @@ void expectHeights(const std::string& file, const sand::HeightField& expected) {
     }
 }
 
-// In one call of the library and sweep by sweep in the program, around another datum: the sand knows neither.
+// The library runs in one call, the program sweep by sweep and with another datum. The result does not depend on
+// either.
 TEST_F(Relax, GivesWhatTheLibraryGives) {
     const sand::HeightField start = samples::cylinder(64, 16, 9.6);
     writeGrid("in.asc", 64, 64, heightsOf(start));
@@ -70,7 +71,8 @@ TEST_F(Relax, TellsWhatItDidInOneLine) {
     EXPECT_EQ(json["volume_above"], 0.0);
     EXPECT_EQ(json["at_rest"], true);
     EXPECT_GT(json["seconds"], 0.0);
-    EXPECT_LE(json["steepest_over_talus"], 1.01) << "a threshold of 4096 units or more rests within a percent";
+    EXPECT_LE(json["steepest_over_talus"], 1.01)
+        << "with a threshold of 4096 units or more, slopes rest within a percent";
     EXPECT_GT(json["steepest_over_talus"], 0.9) << "a pile lies at its talus";
     EXPECT_NEAR(json["steepest_deg"], 45, 0.3);
     EXPECT_GT(json["certificate"]["bound"], 0.0);
@@ -105,7 +107,8 @@ TEST_F(Relax, StableSandComesBackCharacterForCharacter) {
 }
 
 TEST_F(Relax, NoDataIsAWallAndComesBack) {
-    // A wall of no-data with a gap in the north divides a high bank in the west from low ground in the east.
+    // A wall of cells without data, with a gap in the north, divides a high bank in the west from low ground in the
+    // east.
     std::string cells;
     for (int row = 0; row < 12; ++row) {
         for (int column = 0; column < 12; ++column) {
@@ -167,7 +170,7 @@ TEST_F(Relax, StopsAfterAsManySweepsAsItIsTold) {
     EXPECT_EQ(json["volume_after"], start.volume());
 }
 
-// A 0.9 ramp along a bare cliff is stable, though the step down the cliff is as steep as can be.
+// A ramp at 0.9 of the talus along a bare cliff is stable, although the step down the cliff is as steep as possible.
 TEST_F(Relax, StableSandBesideBareRockStays) {
     std::vector<double> surface, rock;
     for (int row = 0; row < 20; ++row) {
@@ -183,7 +186,7 @@ TEST_F(Relax, StableSandBesideBareRockStays) {
     const auto json = relax("in.asc out.asc --talus 45 --bedrock rock.asc");
     EXPECT_EQ(read("out.asc"), read("in.asc"));
     EXPECT_EQ(json["volume_above"], "bedrock");
-    EXPECT_LT(json["steepest_over_talus"], 1.0) << "bare rock is no sand";
+    EXPECT_LT(json["steepest_over_talus"], 1.0) << "bare rock does not count as sand";
     EXPECT_GT(json["steepest_over_talus"], 0.8);
 }
 
@@ -232,13 +235,14 @@ TEST_F(Relax, CellsThatAreNotSquareRestAtTheSameAngle) {
     EXPECT_NEAR(steepestY, step, 3.3 * kUnit);
 }
 
-/// The bound of docs/relax.md for a face across cells `ratio` times as long as along it: a share of the talus.
+/// Returns the bound of docs/relax.md for a face across cells `ratio` times as long as along it, as a share of the
+/// talus.
 double statedExcess(double talusUnits, double ratio, const std::string& scheme) {
     const double k = scheme == "g_plain" ? 0.4998 / (1 + ratio * ratio) : 0.45 / std::max(1.0, ratio * ratio);
     return (std::cbrt(talusUnits / (2 * k * k)) + 1 / k) / talusUnits;
 }
 
-/// Cones and cylinders of sand, at random places, on cells of dx by dy.
+/// Returns cones and cylinders of sand at random places, on cells of dx by dy.
 std::string hills(double dx, double dy, std::uint32_t seed) {
     constexpr int kSide = 40;
     std::mt19937 random(seed);

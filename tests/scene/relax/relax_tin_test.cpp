@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kWest = 361015.25, kSouth = 5070223.5;  // somewhere in a UTM zone
 
-/// Points and rasters in, meshes out.
+/// Runs that read points and rasters and write meshes.
 class RelaxTin : public Relax {
 protected:
     void writePoints(const std::string& name, const scene::Points& points) const {
@@ -53,7 +53,8 @@ protected:
     }
 };
 
-/// A point somewhere in the middle half of every cell of 2 m, the corners of the field, and heights from a function.
+/// Returns one point in the middle half of every cell of 2 m, and the corners of the field. A function gives the
+/// heights.
 template <class HeightAt>
 scene::Points survey(int side, unsigned seed, HeightAt heightAt) {
     std::mt19937 random(seed);
@@ -73,22 +74,23 @@ scene::Points survey(int side, unsigned seed, HeightAt heightAt) {
     return points;
 }
 
-/// Twice a triangle's area. Coordinates of up to seven digits before the point, and of triangles whose height is more
-/// than a micrometre: what doubles round is far less.
+/// Returns twice a triangle's area. Coordinates have up to seven digits before the point, and triangles are more than a
+/// micrometre high. The rounding of doubles is far less.
 double doubledAreaOf(const scene::Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
     const auto &p = mesh.vertices[triangle[0]], &q = mesh.vertices[triangle[1]], &r = mesh.vertices[triangle[2]];
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/// Every triangle counter-clockwise, every edge of two triangles, or of one at the boundary, which is one closed line;
-/// and no vertex without a triangle. Such triangles lie nowhere on one another.
+/// Expects a surface. Every triangle is counter-clockwise. Every edge belongs to two triangles, or to one at the
+/// boundary, which is one closed line. Every vertex has a triangle. Such triangles do not overlap.
 void expectSurface(const scene::Mesh& mesh) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
     std::set<std::uint32_t> used;
     for (const auto& triangle : mesh.triangles) {
         ASSERT_GT(doubledAreaOf(mesh, triangle), 0);
         for (std::size_t k = 0; k < 3; ++k) {
-            ASSERT_TRUE(edges.emplace(triangle.at(k), triangle.at((k + 1) % 3)).second) << "an edge of two alike";
+            ASSERT_TRUE(edges.emplace(triangle.at(k), triangle.at((k + 1) % 3)).second)
+                << "two triangles have the same directed edge";
             used.insert(triangle.at(k));
         }
     }
@@ -103,11 +105,11 @@ void expectSurface(const scene::Mesh& mesh) {
     for (std::uint32_t at = boundary.begin()->second; at != boundary.begin()->first; at = boundary.at(at)) {
         ++length;
     }
-    EXPECT_EQ(length, boundary.size()) << "a boundary of several lines";
+    EXPECT_EQ(length, boundary.size()) << "the boundary consists of several lines";
     EXPECT_EQ(used.size(), mesh.vertices.size());
 }
 
-/// docs/relax.md: how steep a triangle may be at rest, over the bound that the page gives for it.
+/// docs/relax.md: returns the steepest triangle at rest, divided by the bound of that page.
 double steepestOverBound(const scene::Mesh& mesh, const nlohmann::json& line) {
     const double talus = std::tan(line["talus_deg"].get<double>() * std::numbers::pi / 180);
     const double unit = line["unit"], step = line["lattice"];
@@ -169,17 +171,17 @@ TEST_F(RelaxTin, PointsSlideToTheTalusWhereTheyLie) {
     }
     EXPECT_LE(highest, 1215);
     EXPECT_GT(highest, 1205);
-    // What the line says in whole numbers is the volume under the triangles of the file.
+    // The whole numbers of the report line give the volume under the triangles of the file.
     const double volume = json["volume_after"].get<double>() * json["volume_unit"].get<double>();
     EXPECT_NEAR(volumeOf(mesh) - 1200.0 * 80 * 80, volume, 1e-3 * volume);
 }
 
-/// A parcel of 1000 x 600 m, surveyed to the millimetre: a point every 10 m along its rim, each off by some millimetres
-/// along and across, and one in every square of 20 m. A hill and a bank are steeper than sand.
+/// Returns a parcel of 1000 x 600 m, surveyed to the millimetre. Its rim has a point every 10 m, each off by some
+/// millimetres along and across. Every square of 20 m has one more point. A hill and a bank are steeper than sand.
 scene::Points parcel(unsigned seed, double noise /* [m], standard deviation */) {
     std::mt19937 random(seed);
     const auto chance = [&] { return static_cast<double>(random()) / 4294967296.0; };
-    const auto off = [&] {  // nearly Gaussian, the same with every library
+    const auto off = [&] {  // nearly Gaussian; the same with every library
         double sum = -6;
         for (int i = 0; i < 12; ++i) {
             sum += chance();
@@ -210,8 +212,8 @@ scene::Points parcel(unsigned seed, double noise /* [m], standard deviation */) 
     return points;
 }
 
-// Written as it was, one of these had 2 to 21 clockwise triangles, and took some 3 million sweeps to rest at 1.2 times
-// the talus.
+// Without the removal of slivers, one of these surveys had 2 to 21 clockwise triangles. It needed about 3 million
+// sweeps to rest, at 1.2 times the talus.
 TEST_F(RelaxTin, ASurveyWithMillimetresOfNoiseAlongItsRimIsASurfaceThatRests) {
     for (unsigned seed = 1; seed <= 16; ++seed) {
         const double noise = seed % 4 == 0 ? 0.02 : 0.002;
@@ -234,10 +236,10 @@ TEST_F(RelaxTin, ASurveyWithMillimetresOfNoiseAlongItsRimIsASurfaceThatRests) {
         EXPECT_TRUE(std::includes(written.begin(), written.end(), read.begin(), read.end())) << "a point is missing";
         EXPECT_LE(written.size() - read.size(), 4U) << "corners of the rectangle";
         EXPECT_LE(steepestOverBound(mesh, json), 1);
-        // By a part in 1024, and because places are off by 1.4 mm at most in triangles that are a metre high.
+        // The excess is a part in 1024, and places are off by at most 1.4 mm in triangles that are a metre high.
         EXPECT_LE(json["steepest_over_talus"], (1 + 1.0 / 1024) * (1 + 3 * 0.0014));
         EXPECT_LT(json["sweeps"], 2000);
-        // The rectangle is terrain but for a strip that is as wide as the noise.
+        // The whole rectangle is terrain, except a strip as wide as the noise.
         double area = 0;
         for (const auto& triangle : mesh.triangles) {
             area += doubledAreaOf(mesh, triangle) / 2;
@@ -277,10 +279,10 @@ TEST_F(RelaxTin, PointsNearerThanTheLatticeTellsTheirPlacesKeepTrianglesCounterC
         EXPECT_EQ(json["places_moved"], elsewhere);
         moved += elsewhere;
     }
-    EXPECT_GT(moved, 0) << "nothing was put to the test";
+    EXPECT_GT(moved, 0) << "no point was moved, so that this test proves nothing";
 }
 
-/// The height of a grid there, linear between the middles of four cells.
+/// Returns the height of a grid at (x, y), linear between the middles of four cells.
 double between(const scene::EsriGrid& grid, double x, double y) {
     const double east = std::clamp((x - grid.westEdge) / grid.cellSize - 0.5, 0.0, grid.columns - 1.001);
     const double north = std::clamp((y - grid.southEdge) / grid.cellSize - 0.5, 0.0, grid.rows - 1.001);
@@ -308,8 +310,8 @@ TEST_F(RelaxTin, ATinAndAGridOfTheSamePileAgree) {
         off += std::abs(z - between(grid, x, y));
         all += z;
     }
-    // 1.0 % here, and 1.1 to 1.8 % with seven other seeds: as much as the cylinder's jagged edge falls otherwise on
-    // points than on cells, half a cell around 57.
+    // Measured: 1.0 % here, and 1.1 to 1.8 % with seven other seeds. The cylinder's jagged edge falls differently on
+    // points than on cells: half a cell around 57 causes as much.
     EXPECT_LT(off / all, 0.02) << "seed " << kSeed;
 }
 
@@ -455,7 +457,8 @@ TEST_F(RelaxTin, CellsWithoutDataAreAHoleInTheMesh) {
         const double x = ((a[0] + b[0] + c[0]) / 3 - kWest) / 2, y = ((a[1] + b[1] + c[1]) / 3 - kSouth) / 2;
         EXPECT_FALSE(x > 3 && x < 6 && y > 3 && y < 7) << x << ", " << y;
     }
-    // From middle to middle of the outermost cells; the gap in the corner is one and a half cells by a half.
+    // The area reaches from middle to middle of the outermost cells. The gap in the corner is one and a half cells by
+    // half a cell.
     EXPECT_NEAR(area, 4 * (11 * 8 - 3 * 4 - 1.5 * 0.5), 1e-6);
     for (const auto& [x, y, z] : mesh.vertices) {
         EXPECT_GE(z, 5 - 1e-6);
