@@ -7,7 +7,7 @@ namespace sand::force {
 
 /// Local linear model: the sand as the law saw it at the last stable surface, and its tangent there.
 ///
-/// The model is linear in the numbers that the law reads (Gauges), not in the force. Where the model was made, value
+/// The model is linear in the numbers that the law reads (Gauges), not in the force. At its origin, value
 /// and Jacobian are therefore the law's own. Away from there, the force never pulls, and it ends where the tool leaves
 /// the sand.
 ///

@@ -38,7 +38,8 @@ public:
     [[nodiscard]] double steepest() const;
     /// Returns the slope north per difference, divided by the slope east per difference.
     [[nodiscard]] double northing() const { return northing_; }
-    /// Returns how often each cell counts: twice if it lies beside its mirror image.
+    /// Returns how often each cell counts. The mirror image doubles the count for each axis along which a closed field
+    /// is one cell long.
     [[nodiscard]] double images() const;
 
     /// Moves heights until no quad is steeper than `threshold` [unit], except for rounding. The iteration keeps the
