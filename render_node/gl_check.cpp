@@ -55,11 +55,11 @@ int probe(const Options& options) {
 
 int probeMain(int argc, char** argv) {
     host::CommandLine line(
-        "Tries what a render rank draws with on this machine; the wall file comes on standard input.",
+        "Checks a render rank's backend and windows on this machine. Reads the wall file from standard input.",
         "sandwall-render-node");
     Options options;
-    line.option("--probe", options.rank, "which rank of the wall; 0: none, off screen").range(0, walls::kMaxTiles);
-    line.option("--gl", options.gl, "what draws: auto, osmesa, egl, glfw").showDefault();
+    line.option("--probe", options.rank, "rank of the wall; 0: off screen, without a wall").range(0, walls::kMaxTiles);
+    line.option("--gl", options.gl, "backend: auto, osmesa, egl, glfw").showDefault();
     line.flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
     return host::runMain(line, argc, argv, [&] { return probe(options); });
 }

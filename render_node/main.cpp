@@ -12,7 +12,7 @@
 #include "scene/scene.hpp"
 
 int main(int argc, char** argv) {
-    // Questions about this program and this host, asked before a job: they need no MPI.
+    // Options about this program and this host are answered before a job, and need no MPI.
     const std::string_view question = argc > 1 ? argv[1] : "";
     if (host::answersVersion(argc, argv, "sandwall-render-node",
                              {{"algorithm", sand::kAlgorithmVersion}, {"state", sand::kStateVersion}})) {
@@ -22,13 +22,13 @@ int main(int argc, char** argv) {
         return render_node::probeMain(argc, argv);
     }
     host::CommandLine line(
-        "A render rank of a wall: one tile. Started by mpirun beside sandwall-master, which tells it everything.",
+        "Draws one tile of a wall. mpirun starts it beside sandwall-master, which sends it everything it needs.",
         "sandwall-render-node");
-    line.footer("Alone: --probe RANK < WALL tries what that rank would draw with.");
+    line.footer("Without mpirun: --probe RANK < WALL checks the backend and the windows of that rank.");
     std::string gl = "auto";
     line.option("--gl", gl,
-                "what draws: osmesa in memory, egl on a graphics card without a display, glfw in windows; auto takes "
-                "glfw where the wall file names a display, a monitor or a window's place, else osmesa")
+                "backend: osmesa draws in memory, egl on a graphics card without a display, glfw in windows. auto "
+                "chooses glfw if the wall file names a display, a monitor or a window's place, else osmesa")
         .oneOf({"auto", "osmesa", "egl", "glfw"})
         .showDefault();
     int sandThreads = 1;
