@@ -15,7 +15,8 @@ void giveBackCompilerMemory() {
     malloc_trim(0);
     std::ifstream maps("/proc/self/maps");
     for (std::string line; std::getline(maps, line);) {
-        // Code alone: it is the file's, unchanged. The library's tables hold addresses that the loader has put in.
+        // Only code pages can be dropped, because they equal the file. The library's tables hold addresses that the
+        // loader wrote.
         if (line.find("/libLLVM") == std::string::npos || line.find(" r-xp ") == std::string::npos) {
             continue;
         }
@@ -24,7 +25,7 @@ void giveBackCompilerMemory() {
         std::uintptr_t end = 0;
         char dash = 0;
         if (range >> std::hex >> begin >> dash >> end && begin < end) {
-            // A refusal costs memory and nothing else.
+            // If the kernel refuses, only memory is lost.
             (void)madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
         }
     }

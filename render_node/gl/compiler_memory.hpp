@@ -4,10 +4,11 @@
 
 namespace render_node {
 
-/// Hands back what compiling shaders has left behind in a software renderer: the heap's free pages, and the pages of
-/// LLVM's code, some 50 MB, which come back from the page cache if a shader must be compiled after all.
+/// Returns memory that a software renderer keeps after compiling shaders to the operating system.
 ///
-/// Linux only; does nothing where the driver brings no LLVM of its own library. Milliseconds.
+/// The memory consists of free pages of the heap and of the pages of LLVM's code, some 50 MB. The pages of code come
+/// back from the page cache if a shader must be compiled later. Works on Linux only. Leaves the code in memory if LLVM
+/// is not a shared library. Takes milliseconds.
 void giveBackCompilerMemory();
 
 }  // namespace render_node

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module sandwall-gl-egl.so.
+// Module sandwall-gl-egl.so.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 using base::InputError;
 
-/// Whether a list such as "EGL_KHR_image EGL_KHR_fence_sync" has the whole word.
+/// Returns whether a list such as "EGL_KHR_image EGL_KHR_fence_sync" contains the name.
 bool lists(const char* extensions, std::string_view name) {
     std::istringstream words(extensions == nullptr ? "" : extensions);
     return std::find(std::istream_iterator<std::string>(words), {}, name) != std::istream_iterator<std::string>();
@@ -31,7 +31,7 @@ Function load(const char* name) {
     return reinterpret_cast<Function>(eglGetProcAddress(name));
 }
 
-/// The graphics cards, and Mesa's software renderer, as EGL numbers them.
+/// List of EGL's devices: the graphics cards and Mesa's software renderer.
 class Devices {
 public:
     Devices() {
@@ -54,13 +54,13 @@ public:
         }
         return devices_[static_cast<std::size_t>(number)];
     }
-    /// "there are 0 (/dev/dri/card0), 1 (software)".
+    /// Returns a text such as "there are 0 (/dev/dri/card0), 1 (software)".
     [[nodiscard]] std::string list() const {
         std::string text;
         for (std::size_t i = 0; i < devices_.size(); ++i) {
             text += (i == 0 ? "there are " : ", ") + std::to_string(i) + " (" + name(devices_[i]) + ")";
         }
-        return text.empty() ? "there are none: install libegl-mesa0 or the graphics card's driver" : text;
+        return text.empty() ? "there is no EGL device: install libegl-mesa0 or the graphics card's driver" : text;
     }
 
 private:
@@ -90,7 +90,7 @@ EGLDisplay surfaceless() {
     return eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
-/// Off screen on a graphics card, or in Mesa's software renderer.
+/// Platform that draws off screen, on a graphics card or in Mesa's software renderer.
 class Egl final : public GlPlatform {
 public:
     explicit Egl(int device)
@@ -113,7 +113,7 @@ public:
     }
 
     void makeCurrent(std::size_t /* context */) override {
-        // Which API contexts belong to is kept for each thread, and starts as OpenGL ES.
+        // EGL keeps the API of new contexts for each thread and starts with OpenGL ES.
         eglBindAPI(EGL_OPENGL_API);
         if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) {
             throw InputError(where_ + " makes no OpenGL context current without a surface; " + Devices().list());
@@ -126,7 +126,7 @@ private:
         if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) {
             return EGL_NO_CONTEXT;
         }
-        // Everything is drawn into frame buffers of our own: no kind of surface is needed.
+        // No type of surface is needed, because everything is drawn into our own frame buffers.
         constexpr std::array<EGLint, 5> kConfig{EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
         EGLConfig config = nullptr;
         EGLint count = 0;

@@ -48,7 +48,7 @@ std::vector<std::uint8_t> EyeTarget::read() const {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.id());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
-    // GL's first row is the lowest.
+    // GL's first row is the bottom row.
     for (std::size_t top = 0, bottom = static_cast<std::size_t>(height_) - 1; top < bottom; ++top, --bottom) {
         const auto row = [&](std::size_t index) {
             return pixels.begin() + static_cast<std::ptrdiff_t>(index * rowBytes);

@@ -9,30 +9,32 @@
 
 namespace render_node {
 
-/// A picture of a tile in a frame buffer of its own, which keeps its pixels from frame to frame (a window's back
-/// buffer is undefined after a swap): what one eye sees, with depth, or an output put together from both eyes, without.
+/// Picture of a tile in its own frame buffer. The pixels stay from frame to frame, while a window's back buffer is
+/// undefined after a swap.
 ///
-/// Lives on the thread of its context.
+/// The picture is either the view of one eye, with depth, or an output that is composed from both eyes, without depth.
+/// Used by the thread of its context.
 class EyeTarget {
 public:
     enum class Depth : std::uint8_t { tested, none };
 
-    /// Throws std::runtime_error when the driver refuses the size, with the size in the message.
+    /// Throws std::runtime_error if the driver refuses the size. The message contains the size.
     EyeTarget(int width, int height /* [pixel] */, Depth depth = Depth::tested);
 
     [[nodiscard]] int width() const { return width_; }    // [pixel]
     [[nodiscard]] int height() const { return height_; }  // [pixel]
     [[nodiscard]] GLuint framebuffer() const { return framebuffer_.id(); }
-    /// Its colours as a texture without mipmaps; texel (0, 0) is at the lower left.
+    /// Returns the colours as a texture without mipmaps. Texel (0, 0) is at the lower left.
     [[nodiscard]] GLuint colour() const { return colour_.id(); }
-    /// What it holds in GL's memory: 4 bytes a pixel for colour, 4 more for depth.
+    /// Returns the memory in GL [byte]: 4 bytes per pixel for colour, and 4 bytes more for depth.
     [[nodiscard]] std::int64_t bytes() const;
 
-    /// Makes it the target of what is drawn next, viewport included.
+    /// Makes this the target of all further drawing, and sets the viewport to its size.
     void bind() const;
-    /// Waits until everything drawn so far, on this context, is in its pixels.
+    /// Waits until everything that this context has drawn so far is in the pixels.
     void finish() const { glFinish(); }
-    /// 8-bit sRGB, three bytes a pixel, row by row without padding, top row first. Waits for the drawing.
+    /// Returns the pixels as 8-bit sRGB: three bytes per pixel, row by row without padding, top row first. Waits for
+    /// the drawing.
     [[nodiscard]] std::vector<std::uint8_t> read() const;
 
 private:

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> kNames{"auto", "osmesa", "egl", "glfw"};
 
-/// Pictures that stay in their frame buffers.
+/// Context without windows: the pictures stay in their frame buffers.
 class OffscreenContext final : public GlContext {
 public:
     OffscreenContext(Backend backend, std::unique_ptr<GlPlatform> platform)
@@ -42,7 +42,7 @@ std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& req
     } else {
         context = makeWindowContext(std::move(platform), request.windows);
     }
-    giveBackCompilerMemory();  // of starting the driver
+    giveBackCompilerMemory();  // memory from starting the driver
     return context;
 }
 
@@ -53,7 +53,7 @@ std::string_view backendName(Backend backend) { return kNames.at(static_cast<std
 Backend backendNamed(std::string_view name) {
     const auto* const found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) {
-        throw base::InputError("--gl: '" + std::string(name) + "' is none of auto, osmesa, egl, glfw");
+        throw base::InputError("--gl: '" + std::string(name) + "' is not a backend; choose auto, osmesa, egl or glfw");
     }
     return static_cast<Backend>(found - kNames.begin());
 }
@@ -88,7 +88,8 @@ std::string GlContext::renderer() const {
 
 void GlContext::finishFrame() {
     glFinish();
-    // After 1, 2, 4, 8 … frames: shaders are compiled when something is first seen, ever more rarely.
+    // Runs after 1, 2, 4, 8 … frames. A shader is compiled when it is first drawn with, and that becomes rarer with
+    // time.
     if (std::has_single_bit(++frames_)) {
         giveBackCompilerMemory();
     }

@@ -14,30 +14,31 @@ namespace render_node {
 
 class EyeTarget;
 
-/// What gives this process OpenGL. One loadable module per backend; the rest of the program does not know which it is.
+/// Source of a process's OpenGL context. Each backend is one loadable module; all other code is the same for every
+/// backend.
 enum class Backend : std::uint8_t {
-    automatic,  // glfw for a tile whose wall file names a display, a monitor or a window's place, else osmesa
-    osmesa,     // in memory: no display, no graphics card
-    egl,        // off screen on a graphics card, or in Mesa's software renderer
+    automatic,  // glfw if the wall file gives the tile a display, a monitor or a window's place; otherwise osmesa
+    osmesa,     // draws into memory, without a display or a graphics card
+    egl,        // draws off screen on a graphics card or in Mesa's software renderer
     glfw        // windows on an X display
 };
-/// "auto", "osmesa", "egl", "glfw": as --gl takes them.
+/// Returns the backend's name for --gl: "auto", "osmesa", "egl" or "glfw".
 [[nodiscard]] std::string_view backendName(Backend backend);
-/// The other way round. Throws base::InputError for any other word.
+/// Returns the backend with this name. Throws base::InputError if there is no such backend.
 [[nodiscard]] Backend backendNamed(std::string_view name);
-/// What `automatic` means for a tile; any other backend is itself.
+/// Returns the backend that `automatic` chooses for `tile`. Returns every other backend unchanged.
 [[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
 
-/// What one output shows in a frame: one picture, or both eyes' where one window shows them in turn.
+/// Pictures that one output shows in a frame: one picture, or both eyes' pictures if one window shows the eyes in turn.
 struct OutputPicture {
-    const EyeTarget* picture = nullptr;  // the only one, or the left eye's
-    const EyeTarget* right = nullptr;    // null unless the stereo is active
+    const EyeTarget* picture = nullptr;  // the only picture, or the left eye's
+    const EyeTarget* right = nullptr;    // the right eye's picture; null unless the stereo mode is active
 };
 
-/// An OpenGL 3.3 core context, current on the thread that made it and used by that thread alone, and the windows of
-/// the tile where it has some.
+/// OpenGL 3.3 core context and, if the backend has windows, the windows of the tile.
 ///
-/// Everything that holds GL objects (EyeTarget, ScenePainter) must be destroyed before its context is.
+/// The context is current on the thread that made it, and only that thread uses it. Objects that own GL objects
+/// (EyeTarget, ScenePainter) must be destroyed before the context.
 class GlContext {
 public:
     GlContext() = default;
@@ -46,32 +47,36 @@ public:
     virtual ~GlContext() = default;
 
     virtual void makeCurrent() = 0;
-    [[nodiscard]] virtual std::string name() const = 0;  // as --gl takes it: "osmesa"
-    /// What draws, as GL_RENDERER and GL_VERSION name it. The context must be current.
+    [[nodiscard]] virtual std::string name() const = 0;  // backend's name for --gl, such as "osmesa"
+    /// Returns the renderer, from GL_RENDERER and GL_VERSION. The context must be current.
     [[nodiscard]] std::string renderer() const;
 
-    /// Copies the outputs' pictures, in the order of tile.outputs, to where the screens will take them from, and waits
-    /// until GL has done so. `frame` is the wall's: with eyes in turn, even frames show the left one. Off screen it
-    /// only waits. Throws std::runtime_error when a window is lost, with its output in the message.
+    /// Copies the pictures of the outputs, in the order of tile.outputs, to the windows' back buffers, and waits until
+    /// GL has copied them. Off screen it only waits. Throws std::runtime_error, which names the output, if a window is
+    /// lost.
+    ///
+    /// @param frame  Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
     virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame) = 0;
-    /// Whether a frame shows one eye alone: active stereo in windows without quad buffers.
+    /// Returns whether each frame shows only one eye. This is so for active stereo in windows without quad buffers.
     [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
-    /// Shows what was presented; nobody swaps before all ranks have agreed. Nothing off screen.
+    /// Shows the presented pictures. The caller swaps only after all ranks have agreed. Off screen it does nothing.
     virtual void swap() {}
-    /// The keys pressed in the windows since the last call, one character each. None off screen.
+    /// Returns the keys that were pressed in the windows since the last call, one character each. Off screen it returns
+    /// "".
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
-    /// What the wall file asks for and this machine cannot do, one line each, for the operator.
+    /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
-    /// Whether the swaps of several graphics cards are locked in hardware: "none" off screen, "no extension",
-    /// "refused", "joined, no barrier" (the windows of one card), "joined" (all cards with a sync signal).
+    /// Returns whether hardware locks the swaps of several graphics cards. Off screen it returns "none". If only the
+    /// windows of one card are locked, it returns "joined, no barrier". If all cards with a sync signal are locked, it
+    /// returns "joined". Otherwise it returns "no extension" or "refused".
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
-    /// How many frames from the start a hardware barrier needs to settle: they do not count in the skew.
+    /// Returns the number of first frames in which a hardware barrier settles. These frames do not count in the skew.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
-    /// Of the windows' own back buffers, at the least [byte].
+    /// Returns a lower bound of the memory of the windows' back buffers [byte].
     [[nodiscard]] virtual std::int64_t frameBufferBytes() const { return 0; }
 
 protected:
-    /// Waits for GL; now and then, the first time after the first frame, gives back what compiling shaders has left.
+    /// Waits for GL. After frames 1, 2, 4, 8 and so on, also returns the memory that compiling shaders has left.
     void finishFrame();
     [[nodiscard]] std::uint64_t framesFinished() const { return frames_; }
 
@@ -79,11 +84,11 @@ private:
     std::uint64_t frames_ = 0;
 };
 
-/// Makes a context for the outputs of a tile, current on this thread, with the GL functions loaded. Throws
-/// base::InputError in one line that says what to install or to choose instead.
+/// Makes a context for the outputs of `tile`, current on this thread, and loads the GL functions. Throws
+/// base::InputError, with one line that gives the package to install or the backend to choose.
 [[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
 
-/// The same without any output: for tests and measurements.
+/// Makes a context without outputs, as makeContext() does, for tests and measurements.
 [[nodiscard]] std::unique_ptr<GlContext> makeOffscreenContext(Backend backend);
 
 }  // namespace render_node

@@ -7,7 +7,8 @@
 
 namespace render_node {
 
-/// Owns one GL object. The context it was made in must be current when it is made and when it is destroyed.
+/// Owner of one GL object. The context in which the object is made must be current when it is made and when it is
+/// destroyed.
 template <class Kind>
 class GlHandle {
 public:

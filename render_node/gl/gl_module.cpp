@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Debian's packages with the library a module is linked to, and with its headers.
+/// Debian's packages for a backend's module: the library that the module links, and the headers.
 struct Packages {
     const char* library;
     const char* headers;

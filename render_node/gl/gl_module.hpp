@@ -11,8 +11,9 @@
 
 namespace render_node {
 
-/// Loads the backend's module, and with it the libraries of that backend alone, and has it do what is asked. Throws
-/// base::InputError in one line when the module or one of its libraries is missing, or what the module throws.
+/// Loads the backend's module and the libraries of that backend, and returns the platform that the module makes for
+/// `request`. Throws base::InputError, with one line, if the module or one of its libraries is missing. Passes on
+/// exceptions of the module.
 [[nodiscard]] std::unique_ptr<GlPlatform> loadPlatform(
     Backend backend, const PlatformRequest& request,
     const std::vector<std::filesystem::path>& folders = host::moduleFolders());

@@ -12,24 +12,27 @@ namespace render_node {
 
 using GlFunction = void (*)();
 
-/// A window to open: an output, and the size of what it shows.
+/// Window to open: an output, and the size of its picture [pixel].
 struct WindowRequest {
     walls::Output output;
     glm::ivec2 pixels{1, 1};
 };
 
-/// What a backend is asked for. No windows: OpenGL off screen.
+/// Request for a backend. Without windows the backend draws off screen.
 struct PlatformRequest {
-    std::string who = "this process";  // "rank 3 (r1c3)": begins the last line of a process whose X server is gone
+    std::string who = "this process";  // such as "rank 3 (r1c3)"; begins the last line that a process prints when its X
+                                       // server is lost
     std::string display;               // X display; empty: $DISPLAY
-    int device = -1;                   // EGL device; -1: the driver's choice
-    bool eyesInTurn = false;           // active stereo: quad buffers, else frame by frame
+    int device = -1;                   // number of the EGL device; -1: the driver chooses
+    bool eyesInTurn = false;           // active stereo; without quad buffers, one eye per frame in turn
     double refreshHz = 60;
     std::vector<WindowRequest> windows;
 };
 
-/// What a backend's module gives: contexts and windows, but no drawing, so that OpenGL's functions are loaded once, by
-/// the program. Used by one thread. Constants and pure virtual functions only: a module needs no symbol of the program.
+/// Interface of a backend's module: contexts and windows.
+///
+/// A module does no drawing, so that OpenGL's functions are loaded once, by the program. The class has only constants
+/// and pure virtual functions, so that a module needs no symbol of the program. Used by one thread.
 class GlPlatform {
 public:
     GlPlatform() = default;
@@ -37,17 +40,17 @@ public:
     GlPlatform& operator=(const GlPlatform&) = delete;
     virtual ~GlPlatform() = default;
 
-    /// Context 0 draws the pictures and shows window 0; the others share its objects and show one window each. Throws
-    /// base::InputError when the driver refuses.
+    /// Makes context number `context` current. Context 0 draws the pictures and shows window 0. Each other context
+    /// shares its objects and shows one window. Throws base::InputError if the driver refuses.
     virtual void makeCurrent(std::size_t context) = 0;
     [[nodiscard]] virtual GlFunction functionNamed(const char* name) = 0;
 
-    // Windows. Off screen there are none, and none of the rest is called.
+    // The functions below are for windows. They are not called off screen.
     [[nodiscard]] virtual bool quadBuffers(std::size_t /* window */) const { return false; }
-    /// Takes in what the window system has to say. Throws std::runtime_error with the output's name when a window is
+    /// Processes the events of the window system. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     virtual void check() {}
-    /// Swaps all windows. `frame` is the wall's, for eyes in turn.
+    /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn.
     virtual void swap(std::uint64_t /* frame */) {}
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
@@ -55,7 +58,7 @@ public:
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
 };
 
-/// The one symbol of a module, by this name; the number changes with this header. Throws base::InputError.
+/// The only symbol of a module. Its number changes with this header. Throws base::InputError.
 extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& request);
 inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform1";
 

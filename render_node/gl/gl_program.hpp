@@ -11,41 +11,43 @@
 
 namespace render_node {
 
-/// One file of render_node/shaders, embedded at build time.
+/// Shader file from render_node/shaders, embedded at build time.
 struct ShaderSource {
-    std::string file;  // its name without folder, as messages show it
+    std::string file;  // file name without folder, as messages show it
     std::string text;  // GLSL 3.30 without the #version line
 };
 
-/// All of them, in the order of CMakeLists.txt.
+/// Returns all shader files, in the order of CMakeLists.txt.
 [[nodiscard]] const std::vector<ShaderSource>& shaderSources();
-/// Throws std::out_of_range for a file that was not embedded.
+/// Returns one shader file. Throws std::out_of_range if `file` was not embedded.
 [[nodiscard]] const ShaderSource& shaderSource(std::string_view file);
 
-/// Names of embedded files that make a program.
+/// Names of the embedded files of a program.
 struct ProgramFiles {
     std::string_view vertex, fragment;
-    std::string_view look{};              // put before both, behind light.glsl and the tool's
-    std::string_view geometry{};          // between them
-    std::string_view tool = "ball.glsl";  // put before both, behind light.glsl: the light that the tool takes
+    std::string_view look{};      // put before the other files, after light.glsl and the tool's file
+    std::string_view geometry{};  // geometry shader; empty: none
+    std::string_view tool =
+        "ball.glsl";  // put before the other files, after light.glsl: the light that the tool takes away
 };
 
 /// Linked shaders and their uniforms.
 class GlProgram {
 public:
-    /// `light` is put before both. Throws std::runtime_error, one line "render_node/shaders/FILE: message", with
-    /// the first complaint of the driver's compiler.
+    /// Compiles and links the shaders. `light` is put before both. Throws std::runtime_error, with one line
+    /// "render_node/shaders/FILE: message" that contains the first error of the driver's compiler.
     GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment);
-    /// From embedded files; light.glsl is put before all. Throws as above.
+    /// Compiles and links embedded files. light.glsl is put before all of them. Throws std::runtime_error if a file
+    /// does not compile or link.
     explicit GlProgram(const ProgramFiles& files);
     GlProgram(std::string_view vertexFile, std::string_view fragmentFile)
         : GlProgram(ProgramFiles{vertexFile, fragmentFile}) {}
 
     void use() const { glUseProgram(program_.id()); }
-    /// To be said behind draw calls with it: software drivers compile at the first, and what that took is given back
-    /// before the next program's is added to it.
+    /// Must be called after draw calls with this program. Software drivers compile at the first draw call. drawn() then
+    /// returns the memory of that compilation before the next program is compiled.
     void drawn() const;
-    // The program must be in use. A name that the shader does not have is ignored, as GL does.
+    // The program must be in use. As in GL, a name that the shader does not have is ignored.
     void set(const char* name, int value) const { glUniform1i(find(name), value); }
     void set(const char* name, float value) const { glUniform1f(find(name), value); }
     void set(const char* name, const glm::vec2& value) const { glUniform2fv(find(name), 1, &value[0]); }
@@ -57,7 +59,7 @@ public:
     void set(const char* name, const glm::mat4& value) const {
         glUniformMatrix4fv(find(name), 1, GL_FALSE, &value[0][0]);
     }
-    /// An array from its first element on.
+    /// Sets an array, from its first element.
     void set(const char* name, std::span<const GLuint> values) const {
         glUniform1uiv(find(name), static_cast<GLsizei>(values.size()), values.data());
     }

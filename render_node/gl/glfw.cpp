@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module sandwall-gl-glfw.so.
+// Module sandwall-gl-glfw.so.
 #define GLFW_INCLUDE_NONE
 #define GLFW_EXPOSE_NATIVE_X11
 #define GLFW_EXPOSE_NATIVE_GLX
@@ -21,7 +21,7 @@
 namespace render_node {
 namespace {
 
-/// Windows on an X display.
+/// Platform with windows on an X display.
 class Glfw final : public GlPlatform {
 public:
     explicit Glfw(const PlatformRequest& request)
@@ -110,14 +110,15 @@ private:
                     eyes_[i].reset();
                 }
             }
-            // The software barrier paces everything else; a second wait would only make ranks late for it.
+            // Other windows do not wait for a retrace. The software barrier paces them, and a second wait would only
+            // delay the ranks.
             makeCurrent(i);
             glfwSwapInterval(inTurn || group_->joined() ? 1 : 0);
         }
         makeCurrent(0);
     }
 
-    // In this order: windows go before the library, the library before the handlers of X errors.
+    // The order matters. The windows are destroyed first, then the library, then the handlers of X errors.
     XWatch watch_;
     GlfwLibrary library_;
     std::vector<GlfwWindow> windows_;

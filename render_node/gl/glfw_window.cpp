@@ -18,7 +18,7 @@ namespace {
 
 using base::InputError;
 
-std::string lastComplaint;  // GLFW's handler gets nothing of ours
+std::string lastComplaint;  // global, because GLFW passes no user data to its error handler
 
 std::string sizeText(glm::ivec2 size) { return fmt::format("{} x {}", size.x, size.y); }
 std::string placeText(glm::ivec2 place) { return fmt::format("({}, {})", place.x, place.y); }
@@ -29,7 +29,7 @@ std::span<GLFWmonitor*> monitors() {
     return {first, static_cast<std::size_t>(count)};
 }
 
-/// Where a monitor's picture lies on the X screen.
+/// Returns the area of a monitor's picture on the X screen.
 ScreenRect areaOf(GLFWmonitor* monitor) {
     ScreenRect area;
     glfwGetMonitorPos(monitor, &area.low.x, &area.low.y);
@@ -43,7 +43,7 @@ std::vector<ScreenRect> lightedAreas() {
     for (GLFWmonitor* monitor : monitors()) {
         areas.push_back(areaOf(monitor));
     }
-    if (areas.empty()) {  // no cable plugged in, or a server without monitors
+    if (areas.empty()) {  // no cable is plugged in, or the server has no monitors
         Screen* screen = ScreenOfDisplay(glfwGetX11Display(), displayScreen());
         areas.push_back({{0, 0}, {WidthOfScreen(screen), HeightOfScreen(screen)}});
     }
@@ -78,7 +78,7 @@ void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {
                      "; correct the pixels in the wall file");
 }
 
-/// The rate that full screen shall have: the one asked for, else the one there is.
+/// Returns the refresh rate for full screen: the requested rate, or the current one if none is requested.
 int refreshRate(GLFWmonitor* monitor, const WindowRequest& wanted, double refreshHz) {
     const GLFWvidmode* now = glfwGetVideoMode(monitor);
     if (refreshHz > 0) {
@@ -94,7 +94,7 @@ void hintContext(bool visible) {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    // Pictures come from frame buffers of our own: the window needs colours alone.
+    // The pictures come from our own frame buffers, so that the window needs colours only.
     for (const int unused : {GLFW_ALPHA_BITS, GLFW_DEPTH_BITS, GLFW_STENCIL_BITS}) {
         glfwWindowHint(unused, 0);
     }

@@ -11,9 +11,9 @@ namespace {
 constexpr int kMask = kGrainSide - 1;
 static_assert((kGrainSide & kMask) == 0, "the pattern wraps by masking");
 constexpr std::size_t kChannels = 4;
-constexpr std::size_t kGrains = 2;  // the first channels: colours and relief
+constexpr std::size_t kGrains = 2;  // the first two channels: colours and relief
 
-/// 0 … 255 per lattice point (the finaliser of MurmurHash3 on 32 bits).
+/// Returns a hash of a lattice point, 0 … 255, by the finaliser of MurmurHash3 for 32 bits.
 int hashAt(int x, int y, std::uint32_t seed) {
     std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9e3779b1U + static_cast<std::uint32_t>(y) * 0x85ebca6bU + seed;
     h = (h ^ (h >> 16)) * 0x85ebca6bU;
@@ -21,7 +21,7 @@ int hashAt(int x, int y, std::uint32_t seed) {
     return static_cast<int>((h ^ (h >> 16)) & 0xffU);
 }
 
-/// How high the grains lie at a texel, 0 … 4080: white noise under a small binomial blur.
+/// Returns the height of the grains at a texel, 0 … 4080: white noise, smoothed by a small binomial filter.
 int bump(int x, int y) {
     constexpr std::array<int, 3> kWeight{1, 2, 1};
     int sum = 0;
@@ -34,7 +34,7 @@ int bump(int x, int y) {
     return sum;
 }
 
-/// Bilinear noise with features of `size` texels, 0 … 255.
+/// Returns bilinear noise with features of `size` texels, 0 … 255.
 int slowNoise(int x, int y, int size, std::uint32_t seed) {
     const int lattice = kGrainSide / size;
     const auto at = [&](int i, int j) { return hashAt(i & (lattice - 1), j & (lattice - 1), seed); };
@@ -49,7 +49,7 @@ int slowNoise(int x, int y, int size, std::uint32_t seed) {
 
 std::uint8_t toByte(int value) { return static_cast<std::uint8_t>(std::clamp(value, 0, 255)); }
 
-/// RGBA, a level of half the side: the mean of each four.
+/// Returns the next mip level, with half the side. Each RGBA texel is the mean of four.
 std::vector<float> halved(const std::vector<float>& texels, std::size_t side) {
     std::vector<float> half;
     half.reserve(texels.size() / 4);
@@ -66,12 +66,14 @@ std::vector<float> halved(const std::vector<float>& texels, std::size_t side) {
     return half;
 }
 
-/// By how much a level's grains stand out more than as the mean of those below them: it is chosen by the longer side of
-/// what a pixel spans, and is too pale for the shorter one. By eye, where one level ends and another begins, and less
-/// than what a picture of many more pixels shows (tests/render_node/look_test.cpp).
+/// Returns the factor by which the contrast of a level's grains is raised.
+///
+/// GL chooses the level by the longer side of a pixel's footprint, so that the grains are too pale along the shorter
+/// side. The factor was chosen by eye, so that no border shows between two levels. It stays below the contrast of a
+/// picture with many more pixels (tests/render_node/look_test.cpp).
 float contrastOf(int level) { return level == 0 ? 1 : 1.1F * std::pow(1.35F, static_cast<float>(level - 1)); }
 
-/// A level as it is drawn.
+/// Returns the bytes of a level, with the contrast of its grains raised.
 std::vector<std::uint8_t> drawn(const std::vector<float>& texels, float contrast) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(texels.size());
@@ -86,7 +88,7 @@ std::vector<std::uint8_t> drawn(const std::vector<float>& texels, float contrast
 }  // namespace
 
 int mottlingAt(int column, int row) {
-    // Computing it took a third of the time of a vertex.
+    // The table is computed once, because computing each value took a third of the time of a vertex.
     static const std::vector<std::uint8_t> kAll = [] {
         std::vector<std::uint8_t> all;
         for (int y = 0; y < kGrainSide; ++y) {
@@ -108,7 +110,7 @@ std::vector<std::uint8_t> makeGrain(const glm::vec2& sun) {
     texels.reserve(4UL * kGrainSide * kGrainSide);
     for (int y = 0; y < kGrainSide; ++y) {
         for (int x = 0; x < kGrainSide; ++x) {
-            // Quartz of many shades; one grain in 32 is a dark mineral, one in 32 glints.
+            // The sand is quartz of many shades. One grain in 32 is a dark mineral, and one in 32 glints.
             const int kind = hashAt(x, y, 7);
             const int odd = kind < 8 ? -48 : kind > 247 ? 40 : 0;
             const int clumps = (slowNoise(x, y, 4, 5) - 128) / 10;
@@ -123,7 +125,8 @@ std::vector<std::uint8_t> makeGrain(const glm::vec2& sun) {
     return texels;
 }
 
-// One level a pixel: between two of them a software renderer took a fifth of the time of all that it draws.
+// Each pixel reads one level. Interpolating between two levels took a fifth of a software renderer's whole drawing
+// time.
 GrainTexture::GrainTexture(const glm::vec2& sun) {
     glBindTexture(GL_TEXTURE_2D, texture_.id());
     const std::vector<std::uint8_t> finest = makeGrain(sun);

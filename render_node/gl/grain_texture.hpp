@@ -10,21 +10,23 @@
 namespace render_node {
 
 inline constexpr int kGrainSide = 256;         // [texel]
-inline constexpr double kGrainTexel = 0.0006;  // [m], room: about the pixel of a wall
+inline constexpr double kGrainTexel = 0.0006;  // [m] in the room, about the size of a wall's pixel
 
-/// RGBA of a square of sand that repeats seamlessly, row by row: shade of the grains' own colours, shade of their
-/// relief under a sun that stands in this direction (both with mean 1/2), slow noise, nothing. From an integer hash:
-/// the same on every machine but for a rounding of the relief.
+/// Returns the RGBA texels of a square of sand that repeats without seams, row by row.
+///
+/// The channels are: shade of the grains' colours, shade of the grains' relief, slow noise, and 255. The relief is lit
+/// by a sun in direction `sun`. Both shades have the mean 1/2. All values come from an integer hash, so that all
+/// machines agree except for rounding of the relief.
 [[nodiscard]] std::vector<std::uint8_t> makeGrain(const glm::vec2& sun /* east, north */);
 
-/// Slow change of the sand's shade from place to place, 0 … 255, which repeats after 256 cells.
+/// Returns the slow change of the sand's shade from place to place, 0 … 255. It repeats after 256 cells.
 [[nodiscard]] int mottlingAt(int column, int row);
 
-/// makeGrain() in GL, with its mip levels.
+/// Texture of makeGrain() in GL, with its mip levels.
 class GrainTexture {
 public:
     explicit GrainTexture(const glm::vec2& sun /* east, north */);
-    /// For the sampler of this texture unit.
+    /// Binds the texture to texture unit `unit`.
     void bind(int unit) const;
 
 private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The module sandwall-gl-osmesa.so.
+// Module sandwall-gl-osmesa.so.
 #include <GL/osmesa.h>
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace render_node {
 namespace {
 
-/// Mesa drawing into memory: no window, no display server, no graphics card.
+/// Platform in which Mesa draws into memory, without a window, a display server or a graphics card.
 class Osmesa final : public GlPlatform {
 public:
     Osmesa() : context_(create()) {}
@@ -45,7 +45,7 @@ private:
         return context;
     }
 
-    static constexpr int kSide = 4;  // [pixel]: everything is drawn into frame buffers of our own
+    static constexpr int kSide = 4;  // [pixel]; small, because everything is drawn into our own frame buffers
     std::array<unsigned char, 4 * kSide * kSide> surface_{};
     OSMesaContext context_;
 };

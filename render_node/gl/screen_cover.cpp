@@ -18,7 +18,7 @@ std::int64_t hiddenPixels(const ScreenRect& window, std::span<const ScreenRect> 
     if (low.x >= high.x || low.y >= high.y) {
         return hiddenPixels(window, others);
     }
-    // What is left: a strip above, one below, and two between them.
+    // Four strips remain: one above the monitor, one below it, and two beside it.
     return hiddenPixels({window.low, {window.high.x, low.y}}, others) +
            hiddenPixels({{window.low.x, high.y}, window.high}, others) +
            hiddenPixels({{window.low.x, low.y}, {low.x, high.y}}, others) +

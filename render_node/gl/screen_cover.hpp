@@ -7,12 +7,12 @@
 
 namespace render_node {
 
-/// Pixels from `low` up to, but without, `high`; y down as on an X screen.
+/// Rectangle of pixels from `low` (included) to `high` (excluded). y points down, as on an X screen.
 struct ScreenRect {
     glm::ivec2 low{0}, high{0};
 };
 
-/// How many pixels of a window no monitor shows.
+/// Returns the number of a window's pixels that are on no monitor.
 [[nodiscard]] std::int64_t hiddenPixels(const ScreenRect& window, std::span<const ScreenRect> monitors);
 
 }  // namespace render_node

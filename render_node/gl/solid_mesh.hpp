@@ -8,22 +8,22 @@
 
 namespace render_node {
 
-/// A vertex of anything but the sand's surface. solid.vert.glsl takes it.
+/// Vertex of a solid body: anything except the sand's surface. Input of solid.vert.glsl.
 struct SolidVertex {
     glm::vec3 position;  // in the model's unit
     glm::vec3 normal;
-    glm::vec2 along;  // along and across the grain of wood, in the model's unit
+    glm::vec2 along;  // place along and across the grain of wood, in the model's unit
 };
 
-/// Triangles, counter-clockwise from outside, in GL. One thread, its context current.
+/// Triangles in GL, counter-clockwise seen from outside. Used by one thread, with its context current.
 class SolidMesh {
 public:
     SolidMesh();
-    /// Replaces the triangles: three vertices each.
+    /// Replaces the triangles. Each triangle has three vertices.
     void set(const std::vector<SolidVertex>& triangles);
-    /// The program must be in use.
+    /// Draws all triangles. The program must be in use.
     void draw() const { draw(0, count_); }
-    /// Some of its triangles.
+    /// Draws some of the triangles. The program must be in use.
     void draw(GLint firstVertex, GLsizei vertices) const;
 
 private:

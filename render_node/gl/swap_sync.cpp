@@ -6,8 +6,8 @@
 namespace render_node {
 namespace {
 
-constexpr unsigned kGroup = 1;    // 0 is "none" in both
-constexpr unsigned kBarrier = 1;  // cards on the same sync signal meet in the barrier of the same number
+constexpr unsigned kGroup = 1;    // in both functions 0 means "none"
+constexpr unsigned kBarrier = 1;  // cards with the same sync signal meet in the barrier of this number
 
 template <class Function>
 Function load(const GlxLoader& loader, const char* name) {
@@ -26,7 +26,7 @@ SwapGroup::SwapGroup(GlxLoader loader, const std::vector<GlxDrawable>& windows)
 SwapGroup::~SwapGroup() { leave(); }
 
 std::string SwapGroup::join(const std::vector<GlxDrawable>& windows) {
-    // The dispatch library has an address for any name: only the extension's own word counts.
+    // The dispatch library returns an address for any name, so only the extension list counts.
     if (!loader_.supports("GLX_NV_swap_group")) {
         return "no extension";
     }
@@ -43,7 +43,7 @@ std::string SwapGroup::join(const std::vector<GlxDrawable>& windows) {
     }
     for (const GlxDrawable window : windows) {
         if (joinGroup(loader_.display, window, kGroup) == 0) {
-            leave();  // half a group would wait for nobody, or for ever
+            leave();  // an incomplete group has no use, or could block without end
             return "refused";
         }
         joined_.push_back(window);
@@ -72,7 +72,7 @@ EyesByRetrace::EyesByRetrace(GlxLoader loader, GlxDrawable window) : loader_(std
     std::int64_t ust = 0;
     std::int64_t msc = 0;
     std::int64_t sbc = 0;
-    // Drivers name the extension for screens that have no retrace, too.
+    // Some drivers list the extension even for screens without a retrace.
     if (counts_ == nullptr || swap_ == nullptr || counts_(loader_.display, window_, &ust, &msc, &sbc) == 0) {
         swap_ = nullptr;
     }
@@ -90,7 +90,8 @@ bool EyesByRetrace::swap(std::uint64_t frame) {
         if (counts_(loader_.display, window_, &ust, &msc, &sbc) == 0) {
             return false;
         }
-        // Cards count from different retraces. All show their first frame in the same one, the next.
+        // Cards count retraces from different starts. All cards show their first frame at the same retrace, the next
+        // one.
         phase_ = (msc + 1 + parity) % 2;
     }
     return swap_(loader_.display, window_, 0, 2, (parity + *phase_) % 2) >= 0;

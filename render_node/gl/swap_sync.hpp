@@ -9,7 +9,7 @@
 
 namespace render_node {
 
-/// Where GLX's extensions come from; a test brings its own. Drawables and displays are GLX's, opaque here.
+/// Source of GLX's extensions. Tests simulate it. Drawables and displays are opaque here.
 struct GlxLoader {
     std::function<bool(const char* extension)> supports;
     std::function<void (*(const char* function))()> functionNamed;
@@ -18,10 +18,10 @@ struct GlxLoader {
 };
 using GlxDrawable = unsigned long;
 
-/// Swaps of several windows, cards and hosts locked in hardware: GLX_NV_swap_group, where the driver has it.
+/// Hardware lock of the swaps of several windows, cards and hosts. Uses GLX_NV_swap_group if the driver has it.
 ///
-/// It comes on top of the software barrier, never instead: the driver answers "joined" also where no sync cable is
-/// plugged in. Leaves the group when it goes; the windows must still be there.
+/// The software barrier stays in use, because the driver answers "joined" even if no sync cable is plugged in. The
+/// destructor leaves the group; the windows must still exist then.
 class SwapGroup {
 public:
     SwapGroup(GlxLoader loader, const std::vector<GlxDrawable>& windows);
@@ -29,10 +29,10 @@ public:
     SwapGroup(const SwapGroup&) = delete;
     SwapGroup& operator=(const SwapGroup&) = delete;
 
-    /// "no extension", "refused", "joined, no barrier", "joined".
+    /// Returns "no extension", "refused", "joined, no barrier" or "joined".
     [[nodiscard]] const std::string& state() const { return state_; }
     [[nodiscard]] bool joined() const { return !joined_.empty(); }
-    /// The first frames of a hardware barrier find the cards out of step.
+    /// Returns the number of first frames in which a hardware barrier finds the cards out of step.
     [[nodiscard]] int framesToIgnore() const { return bound_ ? 8 : 0; }
 
 private:
@@ -45,16 +45,17 @@ private:
     std::string state_;
 };
 
-/// Keeps eyes in turn on the retraces they belong to: GLX_OML_sync_control, where the driver has it.
+/// Swaps each eye's picture at a retrace of that eye. Uses GLX_OML_sync_control if the driver has it.
 ///
-/// Glasses change eyes with every retrace, seen or missed. So a swap is asked for a retrace of the right parity: one
-/// that comes late waits one retrace more, and no eye sees the other's picture.
+/// Shutter glasses change eyes with every retrace, even if a frame is late. So each swap is requested for a retrace of
+/// the right parity. A late swap waits one more retrace, and no eye sees the other eye's picture.
 class EyesByRetrace {
 public:
     EyesByRetrace(GlxLoader loader, GlxDrawable window);
 
     [[nodiscard]] bool available() const { return swap_ != nullptr; }
-    /// Asks for the swap of the wall's frame. False where that is not possible and the caller must swap.
+    /// Requests the swap for the wall's frame `frame`. Returns false if that is not possible. The caller must then
+    /// swap.
     [[nodiscard]] bool swap(std::uint64_t frame);
 
 private:

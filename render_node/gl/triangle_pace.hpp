@@ -7,11 +7,11 @@
 
 namespace render_node {
 
-/// Keeps a software driver's memory small while many triangles are drawn. One thread, its context current.
+/// Bounds a software driver's memory while many triangles are drawn. Used by one thread, with its context current.
 ///
-/// llvmpipe keeps some 270 bytes for each triangle until it fills pixels, and much more for each draw call, in scenes
-/// of 36 MB that it never returns: a field of 512 x 512 cells held 110 MB. Filling pixels more often bounds that, and
-/// costs no time that can be measured.
+/// llvmpipe keeps some 270 bytes for each triangle, and much more for each draw call, until it fills pixels. It keeps
+/// them in scenes of 36 MB that it never returns: a field of 512 × 512 cells held 110 MB. Calling glFinish() more often
+/// bounds this memory and costs no measurable time.
 class TrianglePace {
 public:
     TrianglePace() {
@@ -19,7 +19,7 @@ public:
         software_ =
             renderer != nullptr && std::string_view(reinterpret_cast<const char*>(renderer)).starts_with("llvmpipe");
     }
-    /// To be said behind each draw call.
+    /// Must be called after each draw call, with its number of triangles.
     void drawn(int triangles) {
         waiting_ += triangles + kTrianglesPerDraw;
         if (software_ && waiting_ >= kTrianglesPerFinish) {
@@ -30,7 +30,8 @@ public:
 
 private:
     static constexpr int kTrianglesPerFinish = 32768;
-    static constexpr int kTrianglesPerDraw = 128;  // which take as much as what else is kept of a draw call
+    static constexpr int kTrianglesPerDraw =
+        128;  // the other data of one draw call take as much memory as 128 triangles
     bool software_ = false;
     int waiting_ = 0;
 };

@@ -11,7 +11,7 @@
 namespace render_node {
 namespace {
 
-/// The colours of a picture as its own context knows them; contexts share these, but no frame buffer objects.
+/// Name of a picture's colour buffer. All contexts share textures and renderbuffers, but not frame buffer objects.
 struct Colours {
     GLint object = 0;
     bool texture = false;
@@ -27,7 +27,8 @@ Colours coloursOf(const EyeTarget& picture) {
     return {ask(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_NAME), ask(GL_FRAMEBUFFER_ATTACHMENT_OBJECT_TYPE) == GL_TEXTURE};
 }
 
-/// Attached anew for every copy: that is when a context sees what another one has changed.
+/// Attaches a colour buffer for reading. This is done before every copy, because a context sees the changes of another
+/// context only after attaching.
 void attach(const Colours& colours) {
     const auto object = static_cast<GLuint>(colours.object);
     if (colours.texture) {
@@ -63,8 +64,8 @@ public:
         }
         frame_ = frame;
         platform_->check();
-        glFinish();  // the other contexts may only take what this one has finished
-        // Last to first, so that the context that draws is current in the end.
+        glFinish();  // other contexts may read only finished pictures
+        // From the last window to the first, so that the drawing context is current at the end.
         inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
             show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
@@ -99,7 +100,7 @@ private:
         if (window != 0) {
             platform_->makeCurrent(window);
         }
-        // A scissor that the drawing has left behind would cut the copy.
+        // A scissor rectangle that is left from drawing would cut off the copy.
         const GLboolean scissor = glIsEnabled(GL_SCISSOR_TEST);
         glDisable(GL_SCISSOR_TEST);
         glBindFramebuffer(GL_READ_FRAMEBUFFER, readers_[window]);
@@ -120,15 +121,15 @@ private:
         }
         glFinish();
         if (framesFinished() == 0) {
-            giveBackCompilerMemory();  // every window has a context of its own, with copying shaders of its own
+            giveBackCompilerMemory();  // each window's context compiles its own copying shaders
         }
     }
 
     std::unique_ptr<GlPlatform> platform_;
     std::vector<WindowRequest> windows_;
-    std::vector<GLuint> readers_;  // one frame buffer object in each window's context; they go with it
+    std::vector<GLuint> readers_;  // one frame buffer object in each window's context, which destroys it
     std::uint64_t frame_ = 0;
-    bool inTurn_ = false;  // known since the first frame
+    bool inTurn_ = false;  // known after the first frame
 };
 
 }  // namespace

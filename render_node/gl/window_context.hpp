@@ -11,28 +11,31 @@
 
 namespace render_node {
 
-/// The back buffers of a window that pictures go to.
+/// Back buffer of a window that a picture is copied to.
 enum class BackBuffer : std::uint8_t { only, left, right };
 
-/// One picture on its way to a window.
+/// Copy of one picture to a back buffer of a window.
 struct Copy {
     const EyeTarget* picture = nullptr;
     BackBuffer to = BackBuffer::only;
     friend bool operator==(const Copy&, const Copy&) = default;
 };
 
-/// What goes where in a frame: both eyes at once into quad buffers; without them the left one in even frames of the
-/// wall and the right one in odd frames, so that all tiles show the same eye whatever each has missed.
+/// Returns the copies to make for `output` in frame `frame`.
+///
+/// With quad buffers both eyes are copied at once. Without quad buffers, even frames of the wall show the left eye and
+/// odd frames the right one. So all tiles show the same eye, even if some have missed frames.
 [[nodiscard]] std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::uint64_t frame);
 
-/// Returns what a tile of the wall asks its backend for: windows where `backend` shows some, and with eyes in turn the
-/// wall's refresh rate for its monitors.
+/// Returns the request for the backend of `tile`. It has windows if `backend` shows windows. With eyes in turn it has
+/// the wall's refresh rate for its monitors.
 [[nodiscard]] PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
 
-/// Loads OpenGL's functions through the platform, whose context 0 must be current. Throws base::InputError.
+/// Loads OpenGL's functions through `platform`. Its context 0 must be current. Throws base::InputError if one is
+/// missing.
 void loadFunctions(GlPlatform& platform);
 
-/// A context that shows its pictures in the windows of the platform, one for each of `windows`.
+/// Returns a context that shows its pictures in the platform's windows, one for each of `windows`.
 [[nodiscard]] std::unique_ptr<GlContext> makeWindowContext(std::unique_ptr<GlPlatform> platform,
                                                            const std::vector<WindowRequest>& windows);
 

@@ -14,13 +14,13 @@
 namespace render_node {
 namespace {
 
-// Xlib's handlers get nothing of ours, so what they need stands here.
+// These variables are global, because Xlib passes no user data to its handlers.
 std::string lastWords;
 std::string refusal;
 
 int endWithoutServer(Display* /* display */) {
     (void)!write(STDERR_FILENO, lastWords.data(), lastWords.size());
-    // Not exit(): what it would clean up talks to the server, or waits for other ranks.
+    // Does not call exit(), because the cleanup would talk to the server or wait for other ranks.
     _exit(1);
 }
 
@@ -92,7 +92,8 @@ void XWatch::takeEvents() {
 int XWatch::firstLost() {
     takeEvents();
     if (lost_ < 0 && !refusal.empty()) {
-        // The refusal came over GLFW's connection; that a window is gone may still be on its way over ours.
+        // The refusal came over GLFW's connection. The event of a lost window may still be on its way over this
+        // connection.
         XSync(display_, False);
         takeEvents();
         if (lost_ < 0) {

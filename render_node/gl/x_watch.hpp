@@ -9,23 +9,27 @@ struct _XDisplay;  // NOLINT(bugprone-reserved-identifier): Xlib's own name of i
 
 namespace render_node {
 
-/// A connection to the X server beside GLFW's, which keeps to itself what it hears of windows that are gone.
+/// Second connection to the X server, beside GLFW's. It watches the windows and reports a lost window to its owner
+/// only.
 ///
-/// Xlib has one error handler per process: one at a time may live. Not thread-safe.
+/// Only one object may live at a time, because Xlib has one error handler per process. Not thread-safe.
 class XWatch {
 public:
-    /// `display` as in a wall file; empty: $DISPLAY, which is set to it otherwise. Throws base::InputError when there
-    /// is none or it cannot be opened. From here on, a lost X server ends the process with status 1 and one line that
-    /// begins with `who` and the host: Xlib cannot go on, and whoever waits for this rank must not wait.
+    /// Connects to `display`, written as in a wall file, and sets $DISPLAY to it. If `display` is empty, connects to
+    /// $DISPLAY. Throws base::InputError if there is no display or if it cannot be opened.
+    ///
+    /// From then on, a lost X server ends the process with status 1 and one line that begins with `who` and the host.
+    /// The process must end because Xlib cannot continue and other ranks wait for this rank.
     XWatch(const std::string& display, const std::string& who);
     ~XWatch();
     XWatch(const XWatch&) = delete;
     XWatch& operator=(const XWatch&) = delete;
 
-    /// Once GLFW has made its windows (it puts back Xlib's deadly handler whenever it makes one).
+    /// Starts watching `windows`. Must be called after GLFW has made its windows, because GLFW restores Xlib's error
+    /// handler, which ends the process, each time it makes one.
     void watch(const std::vector<unsigned long>& windows);
-    /// The first window that is gone, by its place in the list, else -1. Throws std::runtime_error when the server has
-    /// refused a request for any other reason.
+    /// Returns the index of the first lost window, or -1. Throws std::runtime_error if the server refused a request for
+    /// another reason.
     [[nodiscard]] int firstLost();
     [[nodiscard]] const std::string& name() const { return name_; }  // ":1"
 
