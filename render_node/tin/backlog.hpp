@@ -13,16 +13,19 @@
 
 namespace render_node {
 
-/// Damage of a TIN that no camera has seen yet: most tiles of a wall never look where sand is dug, and to light a TIN
-/// anew takes as long as to draw it. Not thread-safe.
+/// Damage of a TIN that no camera has seen yet.
+///
+/// Most tiles of a wall never show the place where sand is dug, and lighting a TIN takes as long as drawing it. Not
+/// thread-safe.
 class TinBacklog {
 public:
-    /// All of it lies within the box.
+    /// Adds damage that lies within `box`.
     void add(const sand::TinChange& damage, const Box& box);
-    /// Whether one of these cameras (each from the scene to clip coordinates) sees some of it; without any, whether
-    /// there is some.
+    /// Returns whether a camera sees some of the damage. `cameras` are matrices from the scene to clip coordinates. If
+    /// the list is empty, returns whether there is any damage.
     [[nodiscard]] bool isSeen(std::span<const glm::dmat4> cameras) const;
-    /// Everything that was added since this was called last; holds until then what has long been put right again, too.
+    /// Returns all damage since the last call and removes it. It includes triangles and vertices that have since
+    /// returned to their drawn state.
     [[nodiscard]] sand::TinChange take();
     void clear();
 

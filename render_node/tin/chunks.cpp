@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles of a TIN lie close together.
+// Assigns the triangles of a TIN to chunks and parts of triangles that are close together.
 #include <algorithm>
 #include <compare>
 #include <utility>
@@ -9,12 +9,12 @@
 namespace render_node {
 namespace {
 
-/// A triangle of a chunk, as chunks have them in order.
+/// Triangle of a chunk, with the order in which a chunk sorts its triangles.
 struct Ordered {
     int part = 0;
     std::array<sand::tin::Vertex, 3> corner{};
     std::int32_t slot = 0;
-    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
+    // clang-tidy 14 reports the 0 in the operator that it generates itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Ordered&, const Ordered&) = default;
 };
 
@@ -37,7 +37,7 @@ void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
 }
 
 TinSurface::InChunk TinSurface::homeOf(const TinTriangle& triangle) const {
-    double x = 0, y = 0;  // [probe unit], three times
+    double x = 0, y = 0;  // [probe unit], sum of three corners
     for (const Vertex corner : triangle.corner) {
         x += vertices_[static_cast<std::size_t>(corner)].x;
         y += vertices_[static_cast<std::size_t>(corner)].y;
@@ -48,7 +48,8 @@ TinSurface::InChunk TinSurface::homeOf(const TinTriangle& triangle) const {
             .part = row % kPartsAcross * kPartsAcross + column % kPartsAcross};
 }
 
-/// Of a triangle with the corners it had, some of which stand elsewhere: numbers are given again.
+/// Moves a triangle to the right chunk and part after its corners have moved. Its corners still have the same numbers,
+/// because a removed vertex's number can be given to a vertex at another place.
 void TinSurface::keepHome(std::int32_t slot) {
     const TinTriangle same = triangle(slot);
     const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(same);
@@ -75,7 +76,7 @@ glm::dvec3 TinSurface::at(Vertex number) const {
 
 Box TinSurface::boxOf(const TinTriangle& triangle) const {
     const glm::dvec3 a = at(triangle.corner[0]), b = at(triangle.corner[1]), c = at(triangle.corner[2]);
-    const double margin = 0.01 * cellSize_;  // for what GL's floats may round
+    const double margin = 0.01 * cellSize_;  // for rounding of GL's floats
     return {glm::min(a, glm::min(b, c)) - margin, glm::max(a, glm::max(b, c)) + margin};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light on a TIN: normals, mottling, and how much sky its vertices see.
+// Computes the light on a TIN: normals, mottling, and the visible share of the sky at its vertices.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,9 +18,9 @@ using sand::tin::Triangle;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
 
-// Height units in a probe unit: normals are computed in these.
+// Height units per probe unit. Normals are computed in height units.
 constexpr double kUnitsPerProbe = double{sand::kUnitsPerCell} / sand::kProbePerCell;
-// How far a place looks, and the cell beyond that its last look is between [cell].
+// Largest distance at which a place reads heights: the largest sky distance, and two cells for interpolation [cell].
 constexpr int kLightReach = kSkyDistances.back() + 2;
 
 struct Pair {
@@ -47,7 +47,8 @@ bool overlapOnGround(const Box& a, const Box& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
 
-/// The mean normal of the triangles around a vertex by their areas, not of length 1 [unit²]. `around` is scratch.
+/// Returns the mean normal of the triangles around a vertex, weighted by their areas. It does not have length 1
+/// [unit²]. `around` is scratch memory.
 glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& around) {
     const Triangles& mesh = tin.triangles;
     const auto at = [&](Vertex corner) {
@@ -66,7 +67,7 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
     if (around.empty()) {
         return {0, 0, 1};  // in a hole, where nothing is drawn
     }
-    // A sum of floats depends on its order, and where a star begins is left to chance.
+    // A sum of floats depends on its order, and the first triangle of a star is arbitrary.
     std::ranges::sort(around, {}, &Pair::first);
     const glm::dvec3 here = at(vertex);
     glm::dvec3 sum(0);
@@ -84,11 +85,12 @@ std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
     const auto between = [&](int at) {
         return mottlingAt(column, at) * (kCell - alongX) + mottlingAt(column + 1, at) * alongX;
     };
-    const int sum = between(row) * (kCell - alongY) + between(row + 1) * alongY;  // of kCell² · 255
+    const int sum = between(row) * (kCell - alongY) + between(row + 1) * alongY;  // at most kCell² · 255
     return static_cast<std::uint16_t>(static_cast<double>(sum) * 257 / (double{kCell} * kCell));
 }
 
-/// The vertices whose light is another since these triangles are; triangles around them are damaged.
+/// Returns the vertices whose light has changed because of these triangles. Adds the triangles around them to the
+/// damage.
 std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
     lit_.clear();
     for (const std::int32_t slot : reshaped) {
@@ -115,7 +117,7 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
         aroundVertex(tin.triangles, number, [this](std::int32_t slot, int) { shaded_.add(slot); });
     }
     for (const std::int32_t slot : shaded_.all()) {
-        if (triangle(slot).alive()) {  // and no hole
+        if (triangle(slot).alive()) {  // triangles in holes are not drawn
             damaged_.add(boxOf(triangle(slot)));
         }
     }
@@ -154,7 +156,8 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
             std::ranges::for_each(triangle(slot).corner, addDrawn);
         }
     }
-    // What is drawn in a star's slots now either is that star or was another's damage before, and in its box.
+    // The drawn triangles in a star's slots need no box here. They either belong to that star, or were damaged earlier,
+    // and the box of that damage contains them.
     for (const Vertex number : damage.vertices) {
         addDrawn(number);
         if (mesh.alive(number)) {
@@ -172,7 +175,7 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
     }
     Box reach{{changed.west * probe_, changed.south * probe_, changed.lowest},
               {changed.east * probe_, changed.north * probe_, changed.highest}};
-    // Whoever looks that far sees other sky, and the triangles around him are shaded anew.
+    // Vertices within this distance see a changed sky, and the triangles around them are shaded again.
     const double margin = kLightReach * cellSize_;
     const Box lit{reach.low - margin, reach.high + margin};
     reach = lit;
@@ -185,7 +188,7 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
 }
 
 bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
-    thread_local std::vector<Pair> around;  // thousands of vertices a frame ask for one each
+    thread_local std::vector<Pair> around;  // reused, because thousands of vertices per frame need one
     const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number, around));
     const auto east = static_cast<std::int16_t>(normal.x), north = static_cast<std::int16_t>(normal.y);
     TinVertex& drawn = vertex(number);
@@ -209,14 +212,15 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
     } else {
         look([&](int east, int north) { return relief_.at(place, east, north); });
     }
-    // As finely as a screen shows: told apart more finely, it would be another wherever sand moves ten cells away.
+    // 255 steps are as fine as a screen shows. With finer steps the value would change at all vertices within ten cells
+    // of moving sand.
     const auto open = static_cast<std::uint16_t>(std::lround(share * 255) * 257);
     const bool other = open != drawn.open;
     drawn.open = open;
     return other;
 }
 
-/// Adds the vertices that may see these cells of the relief to lit_.
+/// Adds to lit_ the vertices whose sky these cells of the relief may change.
 void TinSurface::addVerticesAround(const std::vector<sand::CellRect>& cells) {
     for (const sand::CellRect& rect : cells) {
         const sand::CellRect reach = rect.grownBy(kLightReach);

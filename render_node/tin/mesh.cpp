@@ -14,9 +14,9 @@ using sand::tin::Vertex;
 
 using Indices = std::array<std::uint32_t, 3>;
 
-constexpr std::int32_t kGap = 8;  // so few unchanged entries are sent along rather than calling GL once more
+constexpr std::int32_t kGap = 8;  // sending up to this many unchanged entries is cheaper than another GL call
 
-/// Calls send(first, end) for runs of ascending numbers.
+/// Calls send(first, end) for each run of ascending numbers.
 template <class Send>
 void forEachRun(std::span<const std::int32_t> numbers, const Send& send) {
     for (std::size_t i = 0; i < numbers.size();) {
@@ -29,10 +29,11 @@ void forEachRun(std::span<const std::int32_t> numbers, const Send& send) {
     }
 }
 
-/// Calls draw(first, end) for the triangles of these parts that are wanted, of neighbours at once.
+/// Calls draw(first, end) for the triangles of all parts for which wanted(part) is true. Consecutive parts share one
+/// call.
 template <class Wanted, class Draw>
 void forEachRunOf(const std::vector<TinChunk::Part>& parts, const Wanted& wanted, const Draw& draw) {
-    std::size_t first = 0, end = 0;  // of what is wanted and not drawn yet
+    std::size_t first = 0, end = 0;  // run of wanted triangles that is not drawn yet
     const auto drawSome = [&] {
         if (first < end) {
             draw(first, end);
@@ -61,7 +62,7 @@ void describeTinVertex() {
     attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(TinVertex, open));
 }
 
-/// Its corners from this one on.
+/// Returns the corners of a triangle, starting with corner `first`.
 Indices indicesOf(const TinTriangle& triangle, std::size_t first) {
     const auto corner = [&](std::size_t i) { return static_cast<std::uint32_t>(triangle.corner[(first + i) % 3]); };
     return {corner(0), corner(1), corner(2)};
@@ -94,7 +95,7 @@ bool TinMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& c
         return takeOver(surface_.replaceWhole(tin));
     }
     const auto& parts = std::get<TinChange>(change.parts);
-    bool rimToo = false;  // which is drawn with what stands around the sand, seen from everywhere
+    bool rimToo = false;  // a change of the rim also changes the box around the sand, which is visible from everywhere
     if (!parts.triangles.empty() || !parts.vertices.empty()) {
         const std::optional<Box> reach = surface_.reachOf(tin, parts);
         rimToo = !reach;
@@ -132,7 +133,8 @@ bool TinMesh::takeOver(const TinSurface::Change& change) {
 void TinMesh::sendAllVertices() {
     const std::vector<TinVertex>& all = surface_.vertices();
     bytes_ -= room_ * sizeof(TinVertex);
-    room_ = std::max(room_, all.size() + all.size() / 4);  // a surface that grows is not to be sent whole each time
+    room_ = std::max(
+        room_, all.size() + all.size() / 4);  // leaves room, so that a growing surface is not sent whole each time
     bytes_ += room_ * sizeof(TinVertex);
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
     glBufferData(GL_ARRAY_BUFFER, bytesOf<TinVertex>(room_), nullptr, GL_DYNAMIC_DRAW);
@@ -186,7 +188,7 @@ DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, c
     return drawn;
 }
 
-/// Those of a chunk, where GL does not have them; leaves its element buffer bound.
+/// Binds the element buffer of a chunk, and sends the chunk's triangles if GL does not have them.
 void TinMesh::sendTriangles(std::size_t i) {
     TinChunk& chunk = surface_.chunks()[i];
     Buffers& buffers = buffers_[i];
@@ -213,7 +215,7 @@ void TinMesh::drawMarks(const glm::dmat4& sceneToClip, bool culling,
         markProgram_.emplace(ProgramFiles{"sand.vert.glsl", "mark.frag.glsl", "sunlit.glsl", "mark.geom.glsl"});
     }
     prepare(*markProgram_);
-    glPolygonOffset(-2, -4);  // over the wires, and triangles that begin at another corner
+    glPolygonOffset(-2, -4);  // in front of the wires, also for triangles that begin at another corner
     glBindVertexArray(array_.id());
     visitSeen(sceneToClip, culling, [&](std::size_t i) {
         sendMarks(i);
@@ -224,7 +226,7 @@ void TinMesh::drawMarks(const glm::dmat4& sceneToClip, bool culling,
     });
 }
 
-/// For each marked edge the triangle beside it, from the corner across on.
+/// Sends the marked edges of a chunk: for each one the triangle beside it, starting with the corner opposite the edge.
 void TinMesh::sendMarks(std::size_t i) {
     Buffers& buffers = buffers_[i];
     if (!buffers.marksStale) {

@@ -13,21 +13,21 @@
 
 namespace render_node {
 
-/// The triangles of a TIN in GL: vertices by their number, triangles by chunks.
+/// Triangles of a TIN in GL. Vertices are stored by number, triangles by chunk.
 ///
-/// Only vertices that have changed are sent, and the triangles of chunks where one has changed, when a camera sees
-/// them. Every camera gets every triangle: how fine the TIN is, is the sand's affair.
+/// Only changed vertices are sent to GL. A chunk's triangles are sent if one of them has changed and a camera sees the
+/// chunk. All cameras get all triangles, because the sand itself decides how fine the TIN is.
 class TinMesh final : public DrawnSurface {
 public:
     TinMesh(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */);
 
-    /// Puts off changes that no camera sees.
+    /// Postpones changes that no camera sees.
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                const std::function<void(const Box&)>& before) override;
-    /// The constraints.
+    /// Draws the constraints.
     void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                    const std::function<void(const GlProgram&)>& prepare) override;
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4&, const LevelRule&) override { return {}; }
@@ -40,11 +40,11 @@ public:
     [[nodiscard]] std::int64_t placesRead() const override { return placesRead_; }
 
 private:
-    /// Of a chunk, since a camera has seen it.
+    /// Buffers of a chunk, made when a camera first sees it.
     struct Buffers {
         std::optional<GlBuffer> triangles, marks;
-        std::size_t sent = 0;    // triangles
-        std::size_t marked = 0;  // edges in `marks`
+        std::size_t sent = 0;    // number of triangles in `triangles`
+        std::size_t marked = 0;  // number of edges in `marks`
         bool marksStale = true;
     };
     template <class Visit>  // void(std::size_t chunk)
@@ -61,9 +61,9 @@ private:
     glm::vec2 field_;  // [probe unit]
     GlVertexArray array_;
     GlBuffer vertices_;
-    std::size_t room_ = 0;                  // in vertices_ [vertex]
+    std::size_t room_ = 0;                  // room in vertices_ [vertex]
     std::vector<Buffers> buffers_;          // by chunk
-    std::optional<GlProgram> markProgram_;  // since marks were first drawn
+    std::optional<GlProgram> markProgram_;  // made when marks are first drawn
     std::size_t bytes_ = 0;
     std::int64_t placesRead_ = 0;
     std::uint64_t revision_ = 0;

@@ -31,13 +31,13 @@ struct Columns {
     std::int64_t first, end;
 };
 
-/// Leaves of these columns of a row those whose middles are left of an edge; on it, where the edge leads south or west:
-/// of two triangles beside it, one has them.
+/// Keeps the columns of a row whose middles are left of the edge. Keeps a middle on the edge only if the edge leads
+/// south or west. So exactly one of the two triangles beside the edge has it.
 void clip(Columns& columns, std::int64_t row, const Place& from, const Place& to) {
     const std::int64_t south = std::int64_t{from.y} - to.y;
     const bool within = south > 0 || (south == 0 && to.x < from.x);
-    // The doubled area with the middle of a column is atFirst + south · kCellSide · column: of it, at least this is
-    // asked.
+    // A middle is kept if its doubled area is at least 0, or at least 1 if a middle on the edge is not kept. The test
+    // is atFirst + slope · column ≥ 0.
     const std::int64_t atFirst = doubledArea(from, to, middleOf(0, row)) - (within ? 0 : 1);
     const std::int64_t slope = south * kCellSide;
     if (slope > 0) {

@@ -11,37 +11,38 @@
 
 namespace render_node {
 
-/// A corner of a triangle, in the order that all replicas agree on.
+/// Corner of a triangle. All replicas give the corners in the same order.
 struct ReliefCorner {
     sand::tin::Place place;
     double height = 0;  // [unit]
 };
 
-/// The heights of a TIN over the middles of the field's cells: whoever asks how much sky a place sees looks around in
-/// it, which a walk through triangles would make slow.
+/// Heights of a TIN over the middles of the field's cells. The visible share of the sky is computed from it, because a
+/// walk through triangles would be slow.
 ///
-/// A cell's height is a function of the triangle that lies there, whatever came before. Not thread-safe.
+/// The height of a cell depends only on the triangle that covers the cell's middle now. Not thread-safe.
 class TinRelief {
 public:
     TinRelief(std::int32_t width, std::int32_t depth /* [probe unit] */);
 
-    /// Takes over the cells over whose middles a triangle lies, counter-clockwise from above; of two that share a
-    /// middle, it is the same one's.
+    /// Sets the heights of all cells whose middles the triangle covers. Its corners are counter-clockwise from above.
+    /// If two triangles share a middle, always the same one sets it.
     void put(const std::array<ReliefCorner, 3>& corners);
-    /// A place between four middles of cells.
+    /// Place between the middles of four cells.
     struct Between {
-        int column, row;       // of the south-western one, which may lie beyond the field
+        int column, row;       // of the south-western cell, which may lie beyond the field
         float alongX, alongY;  // 0 … 1
     };
     [[nodiscard]] static Between between(std::int32_t x, std::int32_t y);
-    /// The height so many cells away from there, linear between four middles [unit]; beyond the field that of the last.
+    /// Returns the height at a distance of `east` and `north` cells from `place`, linear between four middles [unit].
+    /// Beyond the field it returns the height of the last cell.
     [[nodiscard]] float at(const Between& place, int east, int north) const;
-    /// Whether all within so many cells of a place lies between middles of the field's cells.
+    /// Returns whether everything within `reach` cells of a place lies between middles of the field's cells.
     [[nodiscard]] bool isWithin(const Between& place, int reach) const {
         return place.column >= reach && place.row >= reach && place.column + reach + 1 < columns_ &&
                place.row + reach + 1 < rows_;
     }
-    /// at() where that is so: the same number, sooner.
+    /// Returns the same number as at(), but faster. Allowed only if isWithin() holds.
     [[nodiscard]] float within(const Between& place, int east, int north) const {
         const float* south =
             &heights_[static_cast<std::size_t>(place.row + north) * static_cast<std::size_t>(columns_) +
@@ -50,12 +51,13 @@ public:
         return linear(place, south[0], south[1], northern[0], northern[1]);
     }
 
-    /// Rectangles of cells that have other heights than when this was called last, each within a tile of kTile cells.
+    /// Returns rectangles of cells whose heights have changed since the last call, each within a tile of kTile × kTile
+    /// cells.
     [[nodiscard]] std::vector<sand::CellRect> takeChanged();
 
 private:
     static constexpr int kTile = 32;  // [cell]
-    /// Of two cells side by side, and of those north of them.
+    /// Interpolates between two neighbouring cells, `west` and `east`, and the two cells north of them.
     [[nodiscard]] static float linear(const Between& place, float west, float east, float northWest, float northEast) {
         const float below = west + place.alongX * (east - west);
         const float above = northWest + place.alongX * (northEast - northWest);
@@ -69,7 +71,7 @@ private:
 
     int columns_, rows_, tilesAcross_;
     std::vector<float> heights_;           // [unit], row by row
-    std::vector<sand::CellRect> changed_;  // of each tile
+    std::vector<sand::CellRect> changed_;  // changed cells of each tile
     std::vector<int> changedTiles_;
 };
 

@@ -11,7 +11,7 @@
 
 namespace render_node {
 
-/// The vertices of a TIN by the squares that they stand in, for whoever asks who is near. Not thread-safe.
+/// Index of a TIN's vertices by squares of the field, to find the vertices near a place. Not thread-safe.
 class VertexSquares {
 public:
     using Place = sand::tin::Place;
@@ -24,13 +24,14 @@ public:
           standing_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
     void add(Vertex vertex, const Place& place) { around(place).push_back(vertex); }
-    /// One that was added there.
+    /// Removes a vertex that was added at `place`.
     void remove(Vertex vertex, const Place& place) {
         std::vector<Vertex>& there = around(place);
         *std::find(there.begin(), there.end(), vertex) = there.back();
         there.pop_back();
     }
-    /// Calls visit(vertex) for all in the squares that a rectangle touches: those within it, and some around.
+    /// Calls visit(vertex) for all vertices in the squares that a rectangle touches: those within it, and some around
+    /// it.
     template <class Visit>
     void visitNear(const Place& southWest, const Place& northEast, const Visit& visit) const {
         const int east = std::min(numberOf(northEast.x), columns_ - 1),

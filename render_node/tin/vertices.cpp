@@ -17,7 +17,7 @@ using sand::tin::Triangles;
 using sand::tin::Vertex;
 
 constexpr double kTrianglesPerChunk = 512;
-constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // where sand is dug, coarse TINs get fine
+constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // a coarse TIN becomes fine where sand is dug
 
 }  // namespace
 
@@ -62,7 +62,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
     }
     ever_.lowest = ever_.highest = static_cast<float>(tin.heights[static_cast<std::size_t>(all.front())] * unit_);
     (void)move(tin, all);
-    elsewhere_ = std::vector<Vertex>();  // or it keeps room for a number for every vertex
+    elsewhere_ = std::vector<Vertex>();  // frees the room for all vertices
     for (std::size_t slot = 0; slot < mesh.triangles.size(); ++slot) {
         replace(static_cast<std::int32_t>(slot), drawnOf(mesh.triangles[slot]));
         addToRelief(tin, triangles_[slot]);
@@ -152,12 +152,12 @@ TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
     return now;
 }
 
-/// Those of these vertices that came, went or stand elsewhere than drawn.
+/// Returns the vertices among `asked` that are new, removed, or at another place than drawn.
 std::vector<Vertex> TinSurface::moved(const SurfaceView& tin, std::span<const Vertex> asked) const {
     std::vector<Vertex> others;
     for (const Vertex number : asked) {
         if (static_cast<std::size_t>(number) >= vertices_.size()) {
-            continue;  // it came and went unseen
+            continue;  // the vertex was added and removed between two updates
         }
         const TinVertex& drawn = vertices_[static_cast<std::size_t>(number)];
         const TinVertex now = placed(tin, number);
@@ -168,7 +168,7 @@ std::vector<Vertex> TinSurface::moved(const SurfaceView& tin, std::span<const Ve
     return others;
 }
 
-/// Takes over their places and heights; says whether the rim is another.
+/// Copies places and heights of `vertices`. Returns whether the rim has changed.
 bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) {
     bool rim = false;
     for (const Vertex number : vertices) {
@@ -201,7 +201,7 @@ void TinSurface::standElsewhere(Vertex number, const TinVertex& before) {
     }
 }
 
-/// Takes a vertex in or out where the rim has it; says whether it does.
+/// Adds a vertex to the rim, or removes it, if it lies on the rim. Returns whether it does.
 bool TinSurface::keepRim(Vertex number, bool present) {
     const TinVertex& drawn = vertex(number);
     if (drawn.x < 0) {

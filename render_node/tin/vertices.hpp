@@ -22,87 +22,89 @@
 
 namespace render_node {
 
-/// A vertex of a TIN as the shader takes it.
+/// Vertex of a TIN, as the shader reads it.
 struct TinVertex {
     float height = 0;                              // [scene unit]
-    std::int32_t x = -1, y = -1;                   // [probe unit]; −1 where no vertex lives
-    std::int16_t normalEast = 0, normalNorth = 0;  // 1/32767, of the mean of the triangles around, by their areas
-    std::uint16_t open = 0;                        // share of the sky that the vertex sees, 1/65535, in 255 steps
+    std::int32_t x = -1, y = -1;                   // [probe unit]; −1 if no vertex has this number
+    std::int16_t normalEast = 0, normalNorth = 0;  // 1/32767, mean normal of the triangles around it, weighted by area
+    std::uint16_t open = 0;                        // visible share of the sky, 1/65535, in 255 steps
     std::uint16_t mottling = 0;                    // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(TinVertex) == 20);
 
-/// A triangle of a TIN as it is drawn: its corners counter-clockwise from the smallest number on, so that all replicas
-/// compute it alike, whichever slots and corners their meshes have.
+/// Triangle of a TIN, as it is drawn. Its corners are counter-clockwise and begin with the smallest number. So all
+/// replicas compute it alike, although their meshes may have other slots and begin with other corners.
 struct TinTriangle {
     std::array<sand::tin::Vertex, 3> corner{sand::tin::kNobody, sand::tin::kNobody, sand::tin::kNobody};
-    std::array<bool, 3> marked{};  // whether the edge across is a constraint, and none of the field's rim
+    std::array<bool, 3> marked{};  // whether the edge opposite the corner is a constraint inside the field
     [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNobody; }
     friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
 };
 
-/// Triangles that lie close together, for leaving out what a camera does not see: they are sent to GL together.
+/// Triangles that are close together. They are culled together and sent to GL together.
 struct TinChunk {
-    /// And of those closer together, for a picture that is drawn anew in a small part: a run of `slots`.
+    /// Triangles of a chunk that are closer together, for drawing a small part of a picture: a run of `slots`.
     struct Part {
         std::size_t first, end;
         Box box;
     };
-    std::vector<std::int32_t> slots;  // of its triangles
-    bool changed = false;             // others are in `slots`, or they are not in order: TinSurface::settle()
-    bool reshaped = false;            // since the box was measured
-    bool partsReshaped = true;        // since the parts were
+    std::vector<std::int32_t> slots;  // slots of its triangles
+    bool changed = false;             // `slots` has other triangles or is not sorted; see TinSurface::settle()
+    bool reshaped = false;            // a triangle has changed its shape since the box was measured
+    bool partsReshaped = true;        // a triangle has changed its shape since the parts were measured
     Box box;
-    std::vector<Part> parts;  // once somebody asks: TinSurface::partsOf()
+    std::vector<Part> parts;  // made by TinSurface::partsOf()
 };
 
-/// Puts numbers in order, each once.
+/// Sorts numbers and removes duplicates.
 template <class Number>
 void sortOnce(std::vector<Number>& numbers) {
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// The drawn surface of a TIN, on the CPU: vertices with their light, triangles by slot, and what of them changes.
+/// Drawn surface of a TIN, on the CPU: vertices with their light, triangles by slot, and lists of changes.
 ///
-/// All of it is a function of the TIN that it began with and the TIN now, whatever came between. Not thread-safe.
+/// It depends only on the TIN at the start and on the TIN now, not on the TINs between them. Not thread-safe.
 class TinSurface {
 public:
     TinSurface(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */)
         : TinSurface(tin, cellSize, chunkSideFor(tin.triangles)) {}
 
-    /// What an update changed.
+    /// Changes by one update.
     struct Change {
-        bool whole = false;                       // everything is another
-        bool rim = false;                         // so is where the sand is cut
-        std::vector<sand::tin::Vertex> vertices;  // that are others, ascending
-        std::vector<Box> boxes;                   // around what looks different, before and after
+        bool whole = false;                       // everything has changed
+        bool rim = false;                         // the edge of the sand has changed
+        std::vector<sand::tin::Vertex> vertices;  // changed vertices, in ascending order
+        std::vector<Box> boxes;                   // around everything that looks different, before and after
     };
     [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
-    /// As an update of everything.
+    /// Replaces the whole surface, as an update of everything would.
     [[nodiscard]] Change replaceWhole(const sand::tin::SurfaceView& tin);
-    /// The boxes of all damages since the last update together bound what an update with all of them may change, before
-    /// and after; nothing where it may be the rim. From what this surface is now and what the TIN is.
+    /// Returns a box around everything that an update with `damage` may change, before and after. Returns nullopt if
+    /// the rim may change. Uses the current state of this surface and of `tin`.
+    ///
+    /// The boxes of all damage since the last update together bound the changes of one update with all of that damage.
     [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
 
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
     [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot
     [[nodiscard]] std::vector<TinChunk>& chunks() { return chunks_; }
-    /// Puts the triangles of a chunk in order, by parts and by their corners; says whether they are others than when
-    /// this was called last. Where wires cross at a ridge, the order in which they are drawn shows.
+    /// Sorts the triangles of a chunk by part and by corners. Returns whether they differ from those at the last call.
+    /// The order matters because it is visible where wires cross at a ridge.
     [[nodiscard]] bool settle(TinChunk& chunk);
-    /// The parts of a chunk in order that have triangles.
+    /// Returns the parts of a sorted chunk that have triangles.
     [[nodiscard]] const std::vector<TinChunk::Part>& partsOf(TinChunk& chunk) const;
-    /// The box around a chunk that has triangles.
+    /// Returns the box around a chunk that has triangles.
     [[nodiscard]] const Box& boxOf(TinChunk& chunk) const;
-    /// The lowest and the highest that any vertex has been.
+    /// Returns the lowest and the highest height that any vertex has ever had.
     [[nodiscard]] HeightRange heightsEver() const { return ever_; }
     [[nodiscard]] SandRim rim() const;
 
 private:
     using Vertex = sand::tin::Vertex;
     static constexpr int kCell = sand::tin::kLatticePerCell;
-    static constexpr int kPartsAcross = 4;  // a chunk
+    static constexpr int kPartsAcross = 4;  // parts along a side of a chunk
     struct InChunk {
         int chunk = -1, part = 0, at = 0;
     };
@@ -117,12 +119,12 @@ private:
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);
-    /// The chunk, and the part of it, in which a triangle's middle lies.
+    /// Returns the chunk and the part in which a triangle's middle lies.
     [[nodiscard]] InChunk homeOf(const TinTriangle& triangle) const;
     void keepHome(std::int32_t slot);
     [[nodiscard]] glm::dvec3 at(Vertex vertex) const;
     [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
-    /// That of a grid of the same cells, linear between their middles.
+    /// Returns the mottling of a grid of the same cells, linear between the cells' middles.
     [[nodiscard]] static std::uint16_t mottlingOf(std::int32_t x, std::int32_t y);
     void addToRelief(const sand::tin::SurfaceView& tin, const TinTriangle& triangle);
     bool lightFrom(const sand::tin::SurfaceView& tin, Vertex vertex);
@@ -146,7 +148,7 @@ private:
     BoxBins damaged_;
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
-    std::vector<Vertex> elsewhere_;                      // scratch: who stands at another place than before
+    std::vector<Vertex> elsewhere_;                      // scratch: vertices that have moved to another place
     base::IndexList reshaped_, lit_, shaded_;            // scratch: triangles, vertices, triangles
 };
 
