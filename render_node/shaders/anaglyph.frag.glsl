@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mixes the eyes in linear light, in whole numbers as pictures/stereo_packing.cpp does: equal to the bit.
-// Tables are uniforms and no textures: a software renderer takes much longer for a texel.
+// Mixes both eyes in linear light, in whole numbers. The result equals pictures/stereo_packing.cpp bit for bit. The
+// tables are uniforms, because reading a texel takes a software renderer much longer.
 uniform sampler2D uLeft;
 uniform sampler2D uRight;
-uniform uint uLights[128];  // linear light of each level, two to a number, the even level's in the lower half
-uniform uint uFirst[128];   // the least light that is shown as each level, likewise
-uniform mat4 uFromLeft;     // weights, 2^-14: column to, row from
+uniform uint uLights[128];  // linear light of each level; two levels per number, the even one in the lower half
+uniform uint uFirst[128];   // least light that is shown as each level; two levels per number, as in uLights
+uniform mat4 uFromLeft;     // weights [2^-14]; the column is the output channel, the row the input channel
 uniform mat4 uFromRight;
 out vec4 oColour;
 
 int lightOf(int level) { return int((uLights[level >> 1] >> ((level & 1) << 4)) & 65535u); }
 int firstOf(int level) { return int((uFirst[level >> 1] >> ((level & 1) << 4)) & 65535u); }
 
-// A power is near enough to be a level off at most, on any graphics card; the table says which it is.
+// On any graphics card, pow() gives a result that is at most one level off. The table then gives the exact level.
 int levelOf(int light) {
     float share = float(light) / 65535.0;
     float coded = share <= 0.0031308 ? 12.92 * share : 1.055 * pow(share, 1.0 / 2.4) - 0.055;

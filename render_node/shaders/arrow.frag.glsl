@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The force's arrow: a sign and no thing of the scene, so that it glows a little and throws no shadow.
-uniform vec3 uColour;  // linear
+// Draws the arrow of the force. The arrow is a sign, not part of the scene, so it glows a little and casts no shadow.
+uniform vec3 uColour;  // linear light
 in vec3 vScene;
 in vec3 vNormal;
 out vec4 oColour;

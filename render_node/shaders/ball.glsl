@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that a ball takes. stamp.glsl has the same function for tools of other shapes.
+// Computes the light that a ball takes away. stamp.glsl has the same function for tools of other shapes.
 
-// How much of the sun, and of the light from all around; `normal` has about length 1.
+// Returns the shares of the sun's light and of the surrounding light that the tool takes. `normal` has about length 1.
 vec2 toolTakes(vec3 place, vec3 normal) {
     vec3 away = (uTool.xyz - place) * uTool.w;
     float square = dot(away, away);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes OUTPUT, a C++ file that holds every file of FILES as text.
+# Writes OUTPUT, a C++ file that contains every file of FILES as text.
 file(WRITE ${OUTPUT}.new "// Generated from render_node/shaders.\n#include \"render_node/gl/gl_program.hpp\"\n\n"
     "namespace render_node {\nconst std::vector<ShaderSource>& shaderSources() {\n"
     "    static const std::vector<ShaderSource> sources{\n")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights each triangle as one facet: from its own normal, and the mean of what its corners see of the sky.
+// Lights each triangle as one facet, with its own normal and the mean of its corners' visible sky and mottling.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 

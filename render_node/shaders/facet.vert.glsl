@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sand's surface for facet.geom.glsl, in place of sand.vert.glsl: on the same places.
+// Places the sand's vertices for facet.geom.glsl, at the same places as sand.vert.glsl does.
 layout(location = 0) in float aHeight;  // scene unit
 layout(location = 1) in vec2 aGrid;
 layout(location = 3) in vec2 aShade;    // open sky, mottling

@@ -2,7 +2,7 @@
 layout(location = 0) in vec2 aAt;  // pixels from the top left
 layout(location = 1) in vec3 aColour;
 
-uniform vec2 uSize;  // of the target [pixel]
+uniform vec2 uSize;  // size of the target [pixel]
 
 flat out vec3 vColour;
 

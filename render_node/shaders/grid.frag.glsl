@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines and circles measured in metres on the wall, so that each tile shows its part of one drawing.
+// Draws lines and circles whose places are metres on the wall, so that each tile shows its part of one drawing.
 uniform vec2 uCorner;    // lower left corner of the tile, from the middle of the wall [m]
-uniform vec2 uPixel;     // [m]
-uniform float uSpacing;  // of the grid [m]
+uniform vec2 uPixel;     // size of a pixel [m]
+uniform float uSpacing;  // spacing of the grid [m]
 out vec4 oColour;
 
-const float kHalfWidth = 1.0;  // of a line [pixel]
+const float kHalfWidth = 1.0;  // half of a line's width [pixel]
 
-// How much of this pixel a line covers that is so far away [m].
+// Returns the share of this pixel that a line covers. The line is `away` [m] from the pixel.
 float covered(float away, float pixel) { return clamp(kHalfWidth + 0.5 - abs(away) / pixel, 0.0, 1.0); }
 
 float toNearest(float at, float spacing) { return at - spacing * round(at / spacing); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A constraint of the TIN over its wires: a line of another colour, half of it in either triangle.
+// Draws a constraint of the TIN over its wires: a line of another colour, half of it in each triangle.
 in float vFromEdge;
 out vec4 oColour;
 

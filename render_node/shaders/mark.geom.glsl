@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells each pixel how far it is from the edge across the triangle's first corner.
+// Gives each pixel its distance from the edge opposite the triangle's first corner.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 
-out float vFromEdge;  // 0 on it, 1 in that corner
+out float vFromEdge;  // 0 on the edge, 1 in the corner
 
 void main() {
     for (int i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand near the tool, whose shadow is finer than the mesh. Equal to sand.frag.glsl where the tool takes no light.
+// Draws sand near the tool, whose shadow is finer than the mesh. Equals sand.frag.glsl where the tool takes no light.
 in vec4 vColour;
 in vec2 vGrainAt;
 in float vGrainLevel;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each pixel, or channel, from one eye's picture as it is.
+// Copies each pixel, or each channel, unchanged from one eye's picture.
 uniform sampler2D uLeft;
 uniform sampler2D uRight;
 uniform int uHeight;        // [pixel]
-uniform int uOddColumns;    // 1: every other column changes eyes as well as every other row
-uniform int uChannels;      // 1: the left eye's red with the right eye's green and blue, whatever the row
+uniform int uOddColumns;    // 1: eyes change with every column and every row; 0: with every row only
+uniform int uChannels;      // 1: red from the left eye, green and blue from the right, in every row
 out vec4 oColour;
 
 void main() {

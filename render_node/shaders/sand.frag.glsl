@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sand that the tool does not reach.
+// Draws sand that the tool does not reach.
 in vec4 vColour;
 in vec2 vGrainAt;
 in float vGrainLevel;

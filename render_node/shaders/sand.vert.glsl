@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sand's surface, lit per vertex: the mesh is fine, and a software renderer shades the pixels of small triangles
-// several times over. Only the tool's shadow may be finer. The position in the room is the same sum in every tile, so
-// that tiles join.
+// Places the sand's vertices and lights them. Light is computed per vertex, because the mesh is fine and a software
+// renderer shades the pixels of small triangles several times. Only the tool's shadow may be finer. The position in the
+// room is the same sum in every tile, so that tiles join.
 layout(location = 0) in float aHeight;  // scene unit
-layout(location = 1) in vec2 aGrid;     // where it stands [cell]
+layout(location = 1) in vec2 aGrid;     // place of the vertex [cell]
 layout(location = 2) in vec2 aNormal;   // east and north
 layout(location = 3) in vec2 aShade;    // open sky, mottling
 
@@ -11,9 +11,9 @@ uniform mat4 uSceneToRoom;
 uniform mat4 uRoomToClip;
 uniform float uCell;   // scene unit
 uniform vec2 uCells;   // columns and rows of the field
-uniform float uFirst;  // of aGrid, where the field begins: vertices before it stand on its edge
+uniform float uFirst;  // value of aGrid at the field's edge; vertices with smaller values are on the edge
 
-// The same in every program, so that what is drawn by one joins what is drawn by another.
+// invariant makes positions equal in every program, so that surfaces of different programs join.
 invariant gl_Position;
 out vec4 vColour;
 out vec2 vGrainAt;

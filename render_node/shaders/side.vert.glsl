@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cut sides of the sand.
+// Places and lights the cut sides of the sand.
 layout(location = 0) in vec3 aPosition;
 layout(location = 1) in vec3 aNormal;
 
@@ -20,7 +20,7 @@ void main() {
     vColour = shade.colour;
     vInShadow = shade.inShadow;
     vGrainLevel = grainLevel(aPosition, vec3(0.0, 0.0, 1.0));
-    vGrainAt = (aPosition.xy + aPosition.z * vec2(0.71, 0.53)) * uGrainScale;  // upright: see grainAt()
+    vGrainAt = (aPosition.xy + aPosition.z * vec2(0.71, 0.53)) * uGrainScale;  // for upright sides; compare grainAt()
     vec4 room = uSceneToRoom * vec4(aPosition, 1.0);
     gl_Position = uRoomToClip * room;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that a tool of any other shape than a ball's takes, in place of ball.glsl: about that of an ellipsoid, which
-// is a ball again where space is stretched. uTool is its centre.
-uniform mat3 uToolSpace;  // from the scene to where it has radius 1
-uniform vec3 uToolSun;    // towards the sun there, of length 1
-uniform float uToolStep;  // longest half axes in the scene for a radius along that, at most 1
+// Computes the light that a tool takes away if it is not a ball. Replaces ball.glsl. The tool is approximated by an
+// ellipsoid, which becomes a ball when space is stretched. uTool is its centre.
+uniform mat3 uToolSpace;  // from the scene to the stretched space, where the radius is 1
+uniform vec3 uToolSun;    // towards the sun in the stretched space, of length 1
+uniform float uToolStep;  // length in the scene of one radius along uToolSun, at most 1 [longest half axis]
 
 vec2 toolTakes(vec3 place, vec3 normal) {
     vec3 direct = uTool.xyz - place;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tool: a steel ball while it hovers, red while it touches. Below it glows the light of the sand.
+// Draws the tool: steel while it hovers, red while it touches. The sand's light is reflected from below.
 uniform float uEngaged;
 in vec3 vScene;
 in vec3 vNormal;
@@ -9,7 +9,7 @@ void main() {
     vec3 normal = normalize(vNormal);
     vec3 view = normalize(uEye - vScene);
     vec3 mirrored = reflect(-view, normal);
-    // Sand, darker where the ball shades it, up to a horizon of haze, and a deeper sky above.
+    // The reflection is sand, darker in the tool's shade, up to a horizon of haze, and a deeper sky above.
     vec3 sand = uSand * mix(0.62, 0.16, smoothstep(0.0, 0.9, -mirrored.z));
     vec3 sky = mix(vec3(0.72, 0.74, 0.74), vec3(0.34, 0.43, 0.56), smoothstep(0.0, 0.8, mirrored.z));
     vec3 surroundings = mix(sand, sky, smoothstep(-0.04, 0.08, mirrored.z));

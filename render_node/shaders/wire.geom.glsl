@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tells each pixel how far it is from every edge of its triangle, whatever mesh the triangle is of.
+// Gives each pixel its distance from every edge of its triangle, for any mesh.
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 3) out;
 
-out vec3 vFromEdges;  // 0 on an edge, 1 in the corner across
+out vec3 vFromEdges;  // 0 on an edge, 1 in the opposite corner
 
 void main() {
     for (int i = 0; i < 3; ++i) {

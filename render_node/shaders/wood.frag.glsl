@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The boards around the sand: fibres are the sand's grain, drawn out along the board.
+// Draws the boards around the sand. The fibres are the sand's grain, stretched along the board.
 in vec3 vScene;
 in vec3 vNormal;
 in vec2 vAlong;
