@@ -3,10 +3,12 @@
 
 namespace render_node {
 
-/// `sandwall-render-node --probe RANK`: makes what that rank of the wall on standard input would draw with, windows and
-/// all, prints its renderer and then each shortcoming in a line of its own, and ends: is this host fit for its tiles?
-/// With `--json` it prints one object instead, with `backend`, `renderer` and the list `shortcomings`. Rank 0 needs no
-/// wall and has no windows. No MPI. Returns the exit status; complaints go to stderr, one line.
+/// Runs `sandwall-render-node --probe RANK`, which checks whether a host is fit for its tiles.
+///
+/// Makes the context and the windows that rank RANK of the wall on standard input would use. Prints the renderer, and
+/// then one line for each shortcoming. With `--json` it prints one object with `backend`, `renderer` and the list
+/// `shortcomings` instead. Rank 0 needs no wall and has no windows. Does not use MPI. Returns the exit status. Prints
+/// errors on standard error, one line each.
 int probeMain(int argc, char** argv);
 
 }  // namespace render_node

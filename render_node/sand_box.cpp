@@ -8,7 +8,7 @@
 namespace render_node {
 namespace {
 
-constexpr float kThickness = 0.015F;  // of boards and floor [longer side of the field]
+constexpr float kThickness = 0.015F;  // of boards and floor [share of the field's longer side]
 constexpr std::size_t kQuadsOfRun = 64;
 
 /// Appends a quad a-b-c-d, counter-clockwise from outside; the grain of wood runs along its longest axis.
@@ -50,7 +50,7 @@ SandBox::SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim ri
     }
     const float length = std::max(cut.width(), cut.depth());
     floor_ = lowest - 0.06F * length;
-    // Boards as high as the sand at the rim and a little more; but mountains must not vanish behind them.
+    // The boards are a little higher than the sand at the rim, but low enough not to hide mountains.
     top_ = std::min(highestRim + 0.006F * length, lowestRim + 0.045F * length);
     width_ = double{cut.width()};
     depth_ = double{cut.depth()};
@@ -61,7 +61,7 @@ SandBox::SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim ri
 }
 
 bool SandBox::insideRim(const Box& box) const {
-    // The quads of the rim are lit at their corners, half a cell and a cell apart.
+    // The outermost quads are lit at their corners, which are half a cell and one cell apart.
     const double edge = 2 * cellSize_;
     return box.low.x > edge && box.low.y > edge && box.high.x < width_ - edge && box.high.y < depth_ - edge;
 }
@@ -87,7 +87,7 @@ void SandBox::drawSides(const glm::dmat4& sceneToClip, bool culling) const {
 void SandBox::makeSides(const SandRim& cut) {
     std::vector<SolidVertex> triangles;
     runs_.clear();
-    const double margin = 0.01 * cellSize_;  // for what GL's floats may round
+    const double margin = 0.01 * cellSize_;  // for rounding of GL's floats
     constexpr double kFar = std::numeric_limits<double>::infinity();
     for (const auto& side : cut.sides) {
         for (std::size_t i = 0; i + 1 < side.size(); ++i) {

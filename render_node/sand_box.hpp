@@ -10,27 +10,28 @@
 
 namespace render_node {
 
-/// What the sand lies in: its cut sides down to a floor, and, where the rim is closed, four wooden boards.
+/// Box around the sand: its cut sides down to a floor and, with a closed rim, four wooden boards.
 ///
-/// All in scene units. One thread, its context current.
+/// All lengths are in scene units. Used by one thread, with its context current.
 class SandBox {
 public:
-    /// Around sand whose lowest place is at `lowest`, of cells of that size [scene unit].
+    /// Makes a box around sand whose lowest place is at `lowest` [scene unit] and whose cells have the side `cellSize`
+    /// [scene unit].
     SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim rim);
 
-    /// The sides follow.
+    /// Makes the sides again from `cut`, the current edge of the sand.
     void update(const SandRim& cut) { makeSides(cut); }
-    /// Whether a box lies over the sand, nowhere near the rim.
+    /// Returns whether a box lies over the sand, at least two cells from the rim.
     [[nodiscard]] bool insideRim(const Box& box) const;
-    /// A box in the scene, grown by all whose look depends on what is in it: a side is lit at its upper and lower ends,
-    /// so that it changes from top to bottom, and the floor lies open around a field without boards.
+    /// Returns `box`, extended by all places whose look depends on its contents. A side is lit at its upper and lower
+    /// ends, so that it changes from top to bottom. The floor around a field without boards is visible.
     [[nodiscard]] Box withSides(const Box& box) const;
-    /// How deep a shadow that ends beyond the rim may be seen.
+    /// Returns the lowest height at which a shadow beyond the rim can be seen.
     [[nodiscard]] double lowest() const { return bounds_.low.z; }
-    /// The highest that boards or the sand beside them have been.
+    /// Returns the largest height that the boards, or the sand at the rim, have ever had.
     [[nodiscard]] double highest() const { return bounds_.high.z; }
 
-    /// Draws the sides that reach into the frustum; all of them when `culling` is off. The program must be in use.
+    /// Draws the sides that reach into the frustum, or all sides if `culling` is false. The program must be in use.
     void drawSides(const glm::dmat4& sceneToClip, bool culling) const;
     void drawBoards() const { boards_.draw(); }
 
@@ -38,16 +39,16 @@ private:
     void makeSides(const SandRim& cut);
     void makeBoards(const SandRim& cut, sand::Rim rim);
 
-    /// A piece of a side.
+    /// Part of a side that is drawn with one call.
     struct Run {
         GLint firstVertex;
         GLsizei vertices;
         Box box;
     };
-    Box bounds_;                                   // of everything, sand at the rim included, ever
+    Box bounds_;                                   // of the whole box, and of all sand that has ever been at the rim
     double cellSize_ = 0, width_ = 0, depth_ = 0;  // of the field [scene unit]
     float floor_ = 0;                              // [scene unit]
-    float top_ = 0;                                // of the boards [scene unit]
+    float top_ = 0;                                // upper edge of the boards [scene unit]
     SolidMesh sides_, boards_;
     std::vector<Run> runs_;
 };

@@ -13,8 +13,8 @@ const glm::vec4 kNoTool(0, 0, 1e9, 1);  // too far away to take any light
 
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
 
-/// sRGB from linear light, as the shaders' encode() does it but exact. A whole level: part of a picture may be cleared
-/// by another way through the driver than all of it, and these need not round alike.
+/// Converts linear light to sRGB exactly; the shaders' encode() is an approximation. The result is a whole level,
+/// because a driver may clear a part of a picture by another path than the whole. The two paths may round differently.
 float encoded(float linear) {
     const float level = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
     return std::round(255 * level) / 255;
@@ -141,7 +141,7 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
     halfPicture_ = glm::vec2(size) / 2.0F;
     counts_.pixels += pixels.area();
     target.bind();
-    // The viewport stays the whole picture's: with another one, edges would fall on other pixels.
+    // The viewport stays that of the whole picture. With another viewport, edges would fall on other pixels.
     if (pixels.area() < std::int64_t{size.x} * size.y) {
         glEnable(GL_SCISSOR_TEST);
         glScissor(pixels.x0, pixels.y0, pixels.x1 - pixels.x0, pixels.y1 - pixels.y0);
@@ -153,7 +153,7 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     grain_.bind(0);
 
-    // Front to back as far as that is known: what is hidden is not shaded.
+    // Draws roughly from front to back, because hidden pixels are not shaded.
     drawTool(camera, sceneToPart);
     if (force_) {
         drawForce(camera);
@@ -216,7 +216,8 @@ void ScenePainter::drawSand(const Camera& camera, const glm::dmat4& sceneToPart,
     const SandPrograms& programs = sandPrograms();
     prepareSurface(programs.near, camera);
     prepareSurface(programs.far, camera);
-    // A shadow finer than the mesh takes a software renderer time for every pixel that asks: only where there is one.
+    // The program `near` draws a shadow that is finer than the mesh. It costs a software renderer time at every pixel,
+    // so that it is used only within the tool's reach.
     std::function<void(const Box&)> choose;
     bool near = false;
     if (tool_ && toolRadius_ > 0) {
@@ -244,9 +245,10 @@ void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart
     prepareSurface(*wireProgram_, camera);
     glDepthFunc(GL_LEQUAL);
     glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(-1, -1);  // a driver may compute depths a little differently behind a geometry shader
+    glPolygonOffset(-1, -1);  // with a geometry shader, a driver may compute slightly different depths
     glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // a window may show through its alpha
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO,
+                        GL_ONE);  // keeps alpha, because the window system may use the window's alpha
     surface_->draw(sceneToPart, culling_, rule, {});
     surface_->drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
     glDisable(GL_BLEND);
@@ -255,7 +257,7 @@ void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart
 }
 
 LevelRule ScenePainter::ruleFor(const Camera& camera, glm::ivec2 size) const {
-    // A facet shows how fine the mesh is.
+    // With flat shading the size of the triangles is visible, so that all chunks have level 0.
     return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
 }
 

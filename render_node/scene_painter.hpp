@@ -26,22 +26,22 @@
 
 namespace render_node {
 
-/// One eye of one tile.
+/// Camera of one eye of one tile.
 struct Camera {
-    glm::dmat4 roomToClip;  // OpenGL clip coordinates from metres in the room
+    glm::dmat4 roomToClip;  // matrix from metres in the room to OpenGL clip coordinates
     glm::dvec3 eye;         // [m], room
 };
 
-/// What the last draw() or drawIfChanged() did; a chunk in two rectangles counts twice.
+/// Counts of the last draw() or drawIfChanged(). A chunk in two rectangles counts twice.
 struct DrawCounts {
-    int chunks = 0;           // of sand, drawn
-    int coarseChunks = 0;     // of these, above level 0
-    int chunksOfField = 0;    // that the field has
-    int triangles = 0;        // of sand, drawn
-    std::int64_t pixels = 0;  // in the rectangles that were drawn
+    int chunks = 0;           // drawn chunks of sand
+    int coarseChunks = 0;     // drawn chunks above level 0
+    int chunksOfField = 0;    // all chunks of the field
+    int triangles = 0;        // drawn triangles of sand
+    std::int64_t pixels = 0;  // in the drawn rectangles
 };
 
-/// What was drawn last into one target by one view: the caller keeps one per eye.
+/// Record of the picture that one view has last drawn into one target. The caller keeps one for each eye.
 struct EyeMemory {
     struct Tool {
         glm::vec3 centre;  // [scene unit]
@@ -51,83 +51,86 @@ struct EyeMemory {
         sand::Heading heading;
         friend bool operator==(const Tool&, const Tool&) = default;
     };
-    bool drawn = false;  // reset to draw anew whatever has changed
+    bool drawn = false;  // false: the next drawIfChanged() draws the whole picture
     glm::dmat4 roomToClip{1}, sceneToRoom{1};
     glm::dvec3 eye{0};
     std::uint64_t sand = 0;  // revision
     DrawnLevels levels;
     std::optional<Tool> tool;
     std::optional<ForceArrow> force;
-    lockstep::Overlays layers;  // of those that change every pixel of sand
-    PixelRect covered{};        // that something else was drawn over since, and is to go
+    lockstep::Overlays layers;  // only the layers that change every pixel of the sand
+    PixelRect covered{};        // pixels that something else was drawn over, and that must be drawn again
 };
 
-/// The files that place the surface's vertices, and light them or whole triangles.
+/// Shader files that place the surface's vertices, or that light whole triangles.
 struct SurfaceShaders {
     std::string_view vertex;
     std::string_view geometry{};
 };
 
-/// What draws the sand in one light.
+/// Programs that draw the sand in one light.
 struct SandPrograms {
-    /// `light` and `tool` are files of shaders/.
+    /// `light` and `tool` are names of files in shaders/.
     SandPrograms(const SurfaceShaders& surface, std::string_view light, std::string_view tool)
         : far({surface.vertex, "sand.frag.glsl", light, surface.geometry}),
           near({surface.vertex, "near.frag.glsl", light, surface.geometry, tool}),
           sides({"side.vert.glsl", "near.frag.glsl", light, {}, tool}) {}
-    GlProgram far, near;  // the surface, beyond the tool's reach and within
+    GlProgram far, near;  // the surface, outside and inside the tool's reach
     GlProgram sides;
 };
 
-/// The scene as a person sees it: sand, the box it lies in, and the tool.
+/// Painter of a scene: sand, the box around it, and the tool.
 ///
-/// Scene axes are x east, y north, z up, with the origin at the south-west corner of the field and height 0, in scene
-/// units; `sceneToRoom` (a similarity: turned, moved and scaled alike in all axes) takes them to metres in the room.
-/// Every position and colour is a function of the scene alone, so that the tiles of a wall join. Only the chunks a
-/// camera sees are ever built, sent to GL and drawn. Needs its context current; one thread.
+/// Scene axes are x east, y north, z up, in scene units. The origin is at the south-west corner of the field, at height
+/// 0. `sceneToRoom` transforms scene coordinates to metres in the room. It turns and moves the scene, and scales all
+/// axes alike. Every position and colour depends only on the scene, so that the tiles of a wall join. Only chunks that
+/// a camera sees are built, sent to GL and drawn. The GL context must be current. Used by one thread.
 class ScenePainter {
 public:
-    /// Takes tool radius and look from the scene, and the sand from `start`: that of a replica that has made no step.
-    /// Throws std::runtime_error when a shader does not compile.
+    /// Takes the tool's radius and the look from `scene`. `start` is the sand of a replica before its first step.
+    /// Throws std::runtime_error if a shader does not compile.
     ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
-    /// Takes the sand from the scene, which must be a height field.
+    /// Takes the sand from `scene`, which must have a height field.
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
 
-    /// Where the scene stands from now on.
+    /// Sets the transformation from the scene to the room for all further drawing.
     void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
-    /// Takes over what changed of the sand, which is copied. It must be of the kind and size of that at the start. With
-    /// cameras, the only ones that will draw before the next update: what none of them can see may be put off until
-    /// one can.
+    /// Copies the changes of the sand. The sand must have the kind and size of `start`.
+    ///
+    /// @param cameras  The only cameras that draw before the next update. Changes that no camera sees may be postponed
+    ///          until one does. An empty list means that all changes are seen.
     void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
-    /// Where the tool's centre is. No tool is drawn before the first call.
+    /// Sets the tool's centre. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
-    /// The same for another tool than the scene's or that of before, or one that was turned.
+    /// Sets the tool's centre, shape and heading.
     void setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape, const sand::Heading& heading);
 
-    /// Hill-shade and wireframe; other layers are not drawn here. What a layer needs of GL is made when it is first
-    /// drawn, which throws std::runtime_error when a shader does not compile.
+    /// Shows or hides hill-shade and wireframe; ignores all other layers. The next draw() makes the programs of a layer
+    /// that is shown for the first time. It then throws std::runtime_error if a shader does not compile.
     void setLayers(lockstep::Overlays layers);
-    /// Draws this arrow from now on, or none, as at first. Likewise.
+    /// Shows this arrow from now on, or no arrow, as at first. The first draw() with an arrow throws std::runtime_error
+    /// if a shader does not compile.
     void setForce(const std::optional<ForceArrow>& force) { force_ = force; }
 
-    /// Clears the target and draws everything into it. Does not wait: EyeTarget::finish() does.
+    /// Clears the target and draws everything into it. Does not wait for GL; EyeTarget::finish() waits.
     void draw(const Camera& camera, const EyeTarget& target);
-    /// Draws few rectangles outside of which no pixel can differ from what `memory` says is in the target, and returns
-    /// the one around them: empty where nothing was drawn (most tiles are far from the hand), the whole picture where
-    /// the view is another one or most of it changed. The target then holds what draw() would have left there, bit for
-    /// bit.
+    /// Draws a few rectangles that contain all pixels that may differ from the picture in the target, which `memory`
+    /// describes. The target then equals the result of draw() bit for bit.
+    ///
+    /// Returns the rectangle around the drawn ones. It is empty if nothing was drawn, as on most tiles, which are far
+    /// from the hand. It is the whole picture if the view changed or if most of the picture changed.
     PixelRect drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory);
 
-    /// Of what was drawn last.
+    /// Returns the counts of the last drawing.
     [[nodiscard]] const DrawCounts& counts() const { return counts_; }
-    /// Bytes this view has asked of GL for geometry so far.
+    /// Returns the memory for geometry that this object uses in GL [byte].
     [[nodiscard]] std::size_t geometryBytes() const { return surface_->bytes(); }
-    /// Heights that updates have read so far, or vertices and triangles of a TIN: for measurements.
+    /// Returns the number of heights that updates have read, or of vertices and triangles of a TIN. For measurements.
     [[nodiscard]] std::int64_t placesRead() const { return surface_->placesRead(); }
-    /// Draws every chunk, seen or not: for measurements of what culling gains.
+    /// Turns culling on or off. Without culling every chunk is drawn. For measurements of the gain from culling.
     void setCulling(bool culling) { culling_ = culling; }
-    /// How far the level of detail may shift the picture of any sand, in place of the scene's look.detail [pixel]. Who
-    /// keeps an EyeMemory must have it drawn anew.
+    /// Sets the largest distance by which the level of detail may shift the picture of any sand [pixel]. It replaces
+    /// the scene's look.detail. The caller must reset EyeMemory::drawn of its memories.
     void setDetail(double bound) { look_.detail = bound; }
 
 private:
@@ -153,11 +156,11 @@ private:
 
     glm::dmat4 sceneToRoom_;
     scene::Look look_;
-    glm::vec2 halfPicture_{};  // [pixel], of what is drawn now
-    glm::vec3 sun_;            // towards it, of length 1
+    glm::vec2 halfPicture_{};  // [pixel], half of the size of the current picture
+    glm::vec3 sun_;            // towards the sun, of length 1
     float cellSize_;           // [scene unit]
     double probeUnit_;         // [scene unit]
-    float toolRadius_;         // [scene unit], of the tool now
+    float toolRadius_;         // [scene unit], of the current tool
     sand::ToolShape toolShape_;
     sand::Heading toolHeading_;
     std::optional<EyeMemory::Tool> tool_;
@@ -168,8 +171,8 @@ private:
 
     std::unique_ptr<DrawnSurface> surface_;
     SandPrograms sunlit_;
-    std::optional<SandPrograms> hillShaded_;                     // since the layer was first drawn, as those below
-    std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // since a tool was, that is no ball
+    std::optional<SandPrograms> hillShaded_;  // made when the layer is first drawn, like the members below
+    std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // made for the first tool that is not a ball
     std::optional<GlProgram> stampWood_;
     std::optional<GlProgram> wireProgram_;
     std::optional<ForceArrowView> forceView_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which parts of an eye's picture are to be drawn anew.
+// Computes the parts of an eye's picture that must be drawn again.
 #include <algorithm>
 
 #include "render_node/scene_painter.hpp"
@@ -7,10 +7,10 @@
 namespace render_node {
 namespace {
 
-constexpr double kMostOfAll = 0.8;  // of a picture: rectangles larger than that cost as much as the whole
-// What a rectangle costs beside its pixels: buffers, programs, chunks. Of llvmpipe, by redraw_bench [pixel].
+constexpr double kMostOfAll = 0.8;  // share of a picture; larger rectangles cost as much as the whole picture
+// Fixed cost of drawing a rectangle (buffers, programs, chunks), measured for llvmpipe by redraw_bench [pixel].
 constexpr std::int64_t kPass = 4096;
-constexpr std::size_t kMostPasses = 4;  // each of which asks every chunk whether it lies there
+constexpr std::size_t kMostPasses = 4;  // each pass tests every chunk
 
 }  // namespace
 
@@ -19,13 +19,13 @@ ToolReach ScenePainter::reachOf(const EyeMemory::Tool& tool) const {
     return {light.centre, light.radius, sun_};
 }
 
-/// What a tool changes, as convex hulls: the sand that it dims, its shadow, and itself.
+/// Returns convex hulls around everything that a tool changes: the sand that it dims, its shadow, and the tool.
 std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const EyeMemory::Tool& tool) const {
     const ToolReach reach = reachOf(tool);
     const HeightRange sand = surface_->heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
-    // Down to the lowest sand there has been, unless it comes out again beyond the rim: nothing stops it in the
-    // shaders.
+    // A shadow inside the rim ends at the lowest sand that there has been. A shadow that leaves the rim ends at the
+    // lowest point of the box, because nothing in the shaders stops it.
     std::array<Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
     if (box_.insideRim(shadow.back())) {
         shadow = reach.shadowBetween(double{sand.lowest}, highest);

@@ -29,7 +29,7 @@ void bindTexture(GLenum unit, GLuint texture) {
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-/// Which of the eyes that are drawn an output shows; both, for a packed picture, begin with the first.
+/// Returns the index of the eye that an output shows. Returns 0 for a packed picture, which shows both eyes.
 std::size_t eyeIndex(Stereo stereo, const walls::Output& output) {
     const auto eyes = walls::eyesOf(stereo);
     const auto found = std::find(eyes.begin(), eyes.end(), output.eyes.at(0));
@@ -65,7 +65,7 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
     if (mixesLight(stereo)) {
         light_.emplace(stereo);
     }
-    const ShaderSource nothing;  // no light of the scene
+    const ShaderSource nothing;  // needs no light of the scene
     program_.emplace(shaderSource("whole.vert.glsl"), nothing,
                      shaderSource(light_ ? "anaglyph.frag.glsl" : "pack.frag.glsl"));
     array_.emplace();
@@ -95,7 +95,7 @@ void StereoComposer::copyBeside(std::span<const EyeTarget> eyes, const PixelRect
         glBindFramebuffer(GL_READ_FRAMEBUFFER, eye.framebuffer());
         glBlitFramebuffer(x0, y0, x1, y1, x + x0, y + y0, x + x1, y + y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
     };
-    copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from below
+    copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from the bottom
     copy(eyes[1], beside ? eyes[0].width() : 0, 0);
 }
 
@@ -117,7 +117,7 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect&
         program_->set("uOddColumns", stereo_ == Stereo::checkerboard ? 1 : 0);
         program_->set("uChannels", stereo_ == Stereo::anaglyphColour ? 1 : 0);
     }
-    bindTexture(0, eyes[0].colour());  // last: unit 0 stays the active one
+    bindTexture(0, eyes[0].colour());  // last, because unit 0 must stay active
     glBindVertexArray(array_->id());
     glEnable(GL_SCISSOR_TEST);
     glScissor(changed.x0, changed.y0, changed.x1 - changed.x0, changed.y1 - changed.y0);

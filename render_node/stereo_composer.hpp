@@ -14,47 +14,49 @@
 
 namespace render_node {
 
-/// Makes the pictures of a tile's outputs from what its eyes see.
+/// Composer of a tile's outputs from the pictures of its eyes.
 ///
-/// Mono, left, right, passive and active show the eyes' own targets and take no memory. The other modes have one more
-/// target, of walls::outputPixels and without depth, which equals pictures::packStereo to the bit. Needs its context
-/// current; one thread.
+/// Mono, left, right, passive and active show the eyes' own targets and take no more memory. Each other mode has one
+/// more target, of the size walls::outputPixels() and without depth. Its pixels equal pictures::packStereo() bit for
+/// bit. The GL context must be current. Used by one thread.
 class StereoComposer {
 public:
-    /// Throws std::runtime_error when a shader does not compile or the driver refuses the size of the output.
+    /// Throws std::runtime_error if a shader does not compile or if the driver refuses the size of the output.
     StereoComposer(walls::Stereo stereo, const walls::Tile& tile);
 
-    /// Puts the eyes together; needed once whenever a pixel of one has changed. `eyes` are in the order of
-    /// walls::eyesOf, each of tile.pixels. Does not wait, and does nothing where the eyes' targets are shown
-    /// themselves.
+    /// Composes the output. Must be called after a pixel of an eye has changed. Does not wait for GL. If the mode shows
+    /// the eyes' own targets, it does nothing.
+    ///
+    /// @param eyes  Pictures in the order of walls::eyesOf(), each of tile.pixels.
     void compose(std::span<const EyeTarget> eyes);
-    /// The same where the eyes have changed within these pixels alone.
+    /// Composes the pixels in `changed`. The eyes must not have changed elsewhere.
     void compose(std::span<const EyeTarget> eyes, const PixelRect& changed);
 
-    /// What each output shows, in the order of tile.outputs, for GlContext::present. Points to the eyes' targets and to
-    /// this composer's own.
+    /// Returns the pictures of the outputs, in the order of tile.outputs, for GlContext::present(). They point to the
+    /// eyes' targets and to this composer's target.
     [[nodiscard]] std::vector<OutputPicture> shown(std::span<const EyeTarget> eyes) const;
 
-    /// What the composer holds in GL's memory.
+    /// Returns the composer's memory in GL [byte].
     [[nodiscard]] std::int64_t bytes() const;
 
 private:
-    /// Tables of the anaglyphs that mix light.
+    /// Tables for the anaglyph modes that mix light.
     struct Light {
         explicit Light(walls::Stereo stereo);
-        // By level, two to a number, the even level's in the lower half.
-        std::array<GLuint, 128> lights{};  // what it emits
-        std::array<GLuint, 128> first{};   // the least light that is shown as it
+        // Entries for two levels per number. The even level is in the lower half.
+        std::array<GLuint, 128> lights{};  // linear light of the level
+        std::array<GLuint, 128> first{};   // least light that is shown as the level
         glm::mat4 fromLeft{0}, fromRight{0};
     };
     void copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
     void drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
 
     walls::Stereo stereo_;
-    std::vector<std::size_t> eyeOfOutput_;  // index into the eyes, by output
+    std::vector<std::size_t> eyeOfOutput_;  // index of the eye, for each output
     std::optional<EyeTarget> packed_;
     std::optional<GlProgram> program_;
-    std::optional<GlVertexArray> array_;  // core profile: none is drawn without, even an empty one
+    std::optional<GlVertexArray>
+        array_;  // needed because a core profile draws only with a vertex array, even an empty one
     std::optional<Light> light_;
 };
 

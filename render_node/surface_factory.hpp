@@ -7,7 +7,8 @@
 
 namespace render_node {
 
-/// The surface of this sand in GL. `sun` points towards it and has length 1. Needs its context current.
+/// Returns the surface of this sand in GL. `sun` points towards the sun and has length 1. The GL context must be
+/// current.
 [[nodiscard]] std::unique_ptr<DrawnSurface> makeDrawnSurface(const sand::SurfaceData& data,
                                                              double cellSize /* [scene unit] */, const glm::vec3& sun);
 

@@ -66,7 +66,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     const std::vector<Camera> cameras = camerasOf(view);
     scenePainter_.update(terrain.surface().data(), terrain.takeChange(), cameras);
-    if (terrain.probe() != sand::ProbePoint{}) {  // a hand has been somewhere
+    if (terrain.probe() != sand::ProbePoint{}) {  // a hand has moved the tool
         scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
     }
     if (!view.layers.shows(lockstep::Overlay::force)) {
@@ -97,7 +97,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     }
 }
 
-/// Has the sand come back where the overlay was.
+/// Makes the next drawing restore the sand under the overlay.
 void TilePainter::uncover(EyeRange range) {
     for (std::size_t i = range.from; i < range.end; ++i) {
         memories_[i].covered = around(memories_[i].covered, covered_[i]);
@@ -142,7 +142,7 @@ PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t fra
     for (std::size_t i = range.from; i < range.end; ++i) {
         if (shown_[i] != pattern || lockstep::changesEveryFrame(pattern)) {
             patterns_->draw(pattern, walls::eyesOf(wall_->stereo)[i], frame, targets_[i]);
-            memories_[i].drawn = false;  // the sand must come back whole
+            memories_[i].drawn = false;  // the sand must be drawn whole after the pattern
             covered_[i] = {};
             changed = {0, 0, targets_[i].width(), targets_[i].height()};
         }

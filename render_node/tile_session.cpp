@@ -30,7 +30,7 @@ namespace {
 
 using host::monotonicNs;
 
-/// One tile: its replica, its context and what it draws into.
+/// Session of one tile: its replica, its context and its painter.
 class TileSession {
 public:
     TileSession(const lockstep::Cluster& cluster, const lockstep::SessionMessage& message, Backend backend,
@@ -51,21 +51,21 @@ public:
         terrain_.emplace(scene, sweeps);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), terrain_->surface().data());
-        if (!message.state.empty()) {  // behind the painter: the box that it draws follows from the scene's start
+        if (!message.state.empty()) {  // after the painter, because the painter's box follows from the scene's start
             terrain_->decodeState(message.state);
         }
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }
-    /// As the master speaks of it.
+    /// Returns the rank's name as the master prints it.
     [[nodiscard]] std::string name() const { return fmt::format("rank {} (tile {})", tile_.rank, tile_.name); }
 
-    /// Frames until the last one, or until the ranks cannot agree.
+    /// Runs frames until the session ends or the ranks disagree.
     void run() {
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
         lockstep::FrameBarrier barrier(cluster_, {}, message_.frameTimeout);
         std::int64_t lastSwap = 0;
-        TileFigures figures;  // of the frame before
+        TileFigures figures;  // of the previous frame
         for (bool more = true; more;) {
             std::size_t bytes = 0;
             lockstep::FrameMessage frame = barrier.begin({}, bytes);
@@ -90,7 +90,7 @@ public:
                 (void)lockstep::gatherReports(barrier, report());
                 return;
             }
-            // Nobody comes here before all have agreed. Off screen, to swap is to let the pictures count.
+            // All ranks have agreed here. Off screen, swap() only ends the frame.
             context_->swap();
             lastSwap = monotonicNs() - clockAhead;
             figures.waitMs = static_cast<double>(monotonicNs() - arrived) * 1e-6;
@@ -113,16 +113,16 @@ private:
         }
     }
 
-    /// What the wall shows of a frame, as the sand now is.
+    /// Draws a frame from the current sand and presents it.
     void draw(const lockstep::FrameMessage& frame, const TileFigures& figures) {
-        // Known of the frame before, whose mode may have been another.
+        // showsEyesInTurn() describes the previous frame, which may have had another stereo mode.
         const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
         painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
         context_->present(painter_->outputs(), frame.frame);
     }
 
-    /// Meets the others with what was drawn; where sand differs, has it healed and meets them again. False: the master
-    /// says why the session ends, and ends with the status for it.
+    /// Meets the other ranks at the barrier. If replicas differ, heals the sand, draws again and meets the ranks again.
+    /// Returns false if the session ends; the master then prints the reason and ends with a status for it.
     bool agree(lockstep::FrameBarrier& barrier, lockstep::Arrival mine, const lockstep::FrameMessage& frame,
                const TileFigures& figures) {
         lockstep::Verdict verdict = barrier.meet(mine);
@@ -142,7 +142,7 @@ private:
         return verdict == lockstep::Verdict::equal;
     }
 
-    /// As the operator has it; the master has looked whether the outputs can show that.
+    /// Changes the stereo mode to the operator's choice. The master has checked that the outputs can show it.
     void changeStereo(const lockstep::ViewState& view) {
         const auto stereo = static_cast<walls::Stereo>(view.stereo);
         if (stereo != shown_.stereo) {
@@ -194,11 +194,11 @@ private:
     const lockstep::Cluster& cluster_;
     const lockstep::SessionMessage& message_;
     lockstep::FaultsOfRank faults_;
-    walls::Wall wall_;   // as the session began
-    walls::Wall shown_;  // in the mode of the last frame; the painter looks at it
+    walls::Wall wall_;   // at the start of the session
+    walls::Wall shown_;  // in the mode of the last frame; the painter refers to it
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
-    std::unique_ptr<GlContext> context_;  // before everything that holds GL objects
+    std::unique_ptr<GlContext> context_;  // declared before all owners of GL objects
     std::optional<sand::Replica> terrain_;
     std::optional<TilePainter> painter_;
     lockstep::Statistics drawMs_, waitMs_;
@@ -209,7 +209,7 @@ private:
 int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid::Erosion::Options& sweeps) {
     const std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
     if (!message) {
-        return 0;  // the master has said why
+        return 0;  // the master has printed the reason
     }
     lockstep::Readiness readiness{lockstep::hostName(), host::buildId(), "", "", {}, 0};
     std::unique_ptr<TileSession> session;
@@ -228,7 +228,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
     try {
         session->run();
     } catch (const std::exception& error) {
-        // The others are in the middle of a frame and cannot be asked to leave.
+        // The other ranks are in the middle of a frame and cannot be asked to end.
         host::printLine("{} on {}: {}", session->name(), readiness.host, error.what());
         cluster.abort(1);
     }

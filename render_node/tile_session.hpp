@@ -9,9 +9,11 @@
 
 namespace render_node {
 
-/// The life of a render rank: takes scene and wall from the master, then replica, drawing, barrier, swap per frame,
-/// until the master says stop. `sweeps` says how its replica is swept. Returns the exit status. Collective with the
-/// master's Session.
+/// Runs a render rank. Receives scene and wall from the master. Then, in each frame, applies the steps, draws, waits at
+/// the barrier and swaps. Ends when the master stops the session.
+///
+/// @param sweeps  Options by which the rank's replica is swept.
+/// @return Exit status. Collective with the master's Session.
 [[nodiscard]] int showTile(const lockstep::Cluster& cluster, Backend backend,
                            const sand::grid::Erosion::Options& sweeps = {});
 

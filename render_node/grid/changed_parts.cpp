@@ -4,7 +4,7 @@
 namespace render_node {
 namespace {
 
-constexpr int kSmallestSide = 32;  // [cell], of a square
+constexpr int kSmallestSide = 32;  // [cell], side of a square
 
 }  // namespace
 
@@ -13,7 +13,7 @@ std::vector<sand::CellRect> changedParts(std::span<const SandSurface::Overwritte
     for (const auto& [cells, before] : overwritten) {
         all = all.joinedWith(cells);
     }
-    // The lattice begins at a corner of a block, so that no block reaches over two squares.
+    // The squares begin at a corner of a block, so that each block lies in one square.
     all.x0 -= all.x0 % SandSurface::kBlock;
     all.y0 -= all.y0 % SandSurface::kBlock;
     int side = kSmallestSide;

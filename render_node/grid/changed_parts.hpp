@@ -9,12 +9,14 @@
 
 namespace render_node {
 
-/// Parts of one update at most.
+/// Largest number of parts for one update.
 inline constexpr int kMostChangedParts = 36;
 
-/// Joins the rectangles that were overwritten to at most kMostChangedParts disjoint ones: one for each square of a
-/// lattice that holds some. Small parts follow the sand closely, and few parts are soon looked through: the squares are
-/// as small as this number allows, and have at least 32 cells a side.
+/// Joins the overwritten rectangles to at most kMostChangedParts disjoint rectangles. The area is divided into equal
+/// squares. Each result covers the overwritten cells in one square.
+///
+/// The squares are as small as kMostChangedParts allows, and at least 32 cells wide. Small parts follow the sand
+/// closely, and a list of few parts is quick to read.
 [[nodiscard]] std::vector<sand::CellRect> changedParts(std::span<const SandSurface::Overwritten> overwritten);
 
 }  // namespace render_node

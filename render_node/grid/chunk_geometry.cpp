@@ -10,7 +10,7 @@
 namespace render_node {
 namespace {
 
-/// Writes how the shader finds a SandVertex's parts into the bound vertex array.
+/// Describes the layout of SandVertex in the bound vertex array.
 void describeVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);

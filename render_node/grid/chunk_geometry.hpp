@@ -9,21 +9,21 @@
 
 namespace render_node {
 
-/// The vertices of a chunk at one level, in GL. Needs its context current.
+/// Vertices of a chunk at one level, in GL. The GL context must be current.
 class ChunkGeometry {
 public:
-    /// Nothing is computed before the first refresh().
+    /// Stores the rectangle and the level. The first refresh() computes the vertices.
     ChunkGeometry(const sand::CellRect& vertices, int level);
 
-    /// The sand has changed the look of these vertices.
+    /// Marks vertices whose look the sand has changed.
     void markStale(const sand::CellRect& vertices);
-    /// Computes what is stale, and sends that.
+    /// Computes the marked vertices and sends them to GL.
     void refresh(const SandSurface& surface);
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] GLuint array() const { return array_.id(); }
-    [[nodiscard]] std::size_t bytes() const { return bytes_; }  // since the first refresh()
+    [[nodiscard]] std::size_t bytes() const { return bytes_; }  // memory in GL; 0 before the first refresh()
 
-    std::uint64_t used = 0;  // by which draw() last: its owner's
+    std::uint64_t used = 0;  // number of the draw() that used it last; the owner sets it
 
 private:
     void sendAll(const SandSurface& surface);

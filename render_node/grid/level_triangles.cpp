@@ -6,7 +6,8 @@
 namespace render_node {
 namespace {
 
-/// A vertex of a chunk by the way around it: `along` an edge counter-clockwise, `inward` from it [quad].
+/// Returns the place of a vertex of a chunk [quad]: `along` quads along an edge, counter-clockwise, and `inward` quads
+/// from it.
 glm::ivec2 placeOf(glm::ivec2 quads, std::size_t edge, int along, int inward) {
     switch (edge) {
         case 0:
@@ -27,8 +28,8 @@ public:
     Triangulation(int quadsAcross, int quadsDown, const ChunkLevels& levels)
         : quads_(quadsAcross, quadsDown), levels_(levels), stride_(1 << levels.level), across_(quadsAcross / stride_) {}
 
-    /// The quads of a part of the grid of this level. Their diagonals alternate, so that ridges look alike in both
-    /// diagonal directions.
+    /// Adds the quads in a part of this level's grid. Their diagonals alternate, so that ridges in both diagonal
+    /// directions look alike.
     void addQuads(int west, int south, int east, int north) {
         for (int y = south; y < north; ++y) {
             for (int x = west; x < east; ++x) {
@@ -47,8 +48,8 @@ public:
         }
     }
 
-    /// The strip between an edge and the grid's first row of vertices within. Its ends lie on the diagonals of the
-    /// quads in the corners, so that each edge's triangles depend on its own level alone.
+    /// Adds the strip between an edge and the first row of vertices inside. The ends of the strip lie on the diagonals
+    /// of the corner quads. So each edge's triangles depend only on the level of that edge.
     void addStrip(std::size_t edge) {
         if (levels_.edges[edge] == levels_.level) {
             addQuadsAlong(edge);
@@ -70,7 +71,8 @@ public:
     [[nodiscard]] std::vector<std::uint16_t> take() { return std::move(indices_); }
 
 private:
-    /// As addQuads() would, but for the halves of the corners that belong to the edges beside.
+    /// Adds the quads along an edge as addQuads() does. Leaves out the halves of the corner quads that belong to the
+    /// neighbouring edges.
     void addQuadsAlong(std::size_t edge) {
         const int last = lengthOf(quads_, edge) - stride_;
         for (int along = 0; along <= last; along += stride_) {
@@ -154,12 +156,12 @@ std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const Chu
     const int stride = 1 << levels.level;
     const int across = quadsAcross / stride;
     const int down = quadsDown / stride;
-    if (levels.level == 0) {  // then so are its edges
+    if (levels.level == 0) {  // the edges then have level 0 too
         for (const TriangleBlock& block : blocksOf(quadsAcross, quadsDown)) {
             triangles.addQuads(block.quads.x0, block.quads.y0, block.quads.x1, block.quads.y1);
         }
     } else {
-        // A neighbour's level changes this chunk along their edge alone: no more is drawn anew for it.
+        // A neighbour's level changes this chunk only along the common edge, so that only the edge is drawn again.
         triangles.addQuads(1, 1, across - 1, down - 1);
         for (std::size_t edge = 0; edge < 4; ++edge) {
             triangles.addStrip(edge);

@@ -10,11 +10,11 @@ namespace {
 
 constexpr int kKeptCells = 128;
 
-// How far mottling changes the sand's shade, as in shaders/sunlit.glsl.
+// Range of the change of shade by mottling, as in shaders/sunlit.glsl.
 constexpr float kDarkest = 0.86F;
 constexpr float kMottling = 0.28F;
 
-/// What interpolation over the triangles of a level is compared on.
+/// Samples with which the interpolation over a level's triangles is compared.
 struct Samples {
     std::vector<float> values;  // row by row
     int across;
@@ -24,7 +24,8 @@ struct Samples {
     }
 };
 
-/// Where a vertex lies between two others, 0 … 1: the outermost ones of a field stand closer.
+/// Returns for each vertex its place between two vertices of the level, 0 … 1. The outermost vertices of a field are
+/// closer together.
 std::vector<float> sharesOf(const std::vector<float>& places, int stride) {
     std::vector<float> shares;
     for (int i = 0; i + 1 < static_cast<int>(places.size()); ++i) {
@@ -35,8 +36,9 @@ std::vector<float> sharesOf(const std::vector<float>& places, int stride) {
     return shares;
 }
 
-/// The largest distance of the samples of one quad of a level from its two triangles. Its north and east sides are
-/// those of other quads, or of another chunk. The stride is a constant for the compiler's sake.
+/// Returns the largest distance of the samples of one quad from the quad's two triangles. Leaves out the north and east
+/// sides, which other quads or other chunks measure. The stride is a template parameter because the compiler then makes
+/// faster code.
 template <int kStride>
 float distanceInQuad(const Samples& samples, glm::ivec2 at, const float* shareEast, const float* shareNorth) {
     const float southWest = samples.at(at.x, at.y);

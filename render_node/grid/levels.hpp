@@ -12,38 +12,41 @@
 
 namespace render_node {
 
-/// The coarsest level that a field may have: at least 128 cells are left of its longer side. A change of the sand is
-/// drawn anew as far as the largest triangle reaches: a level more would cost a hand that digs in a field of 512 cells
-/// more than it saves.
+/// Returns the coarsest level for a field: the longer side still has at least 128 cells at that level.
+///
+/// A change of the sand makes the largest triangle around it change. With one more level, a hand that digs in a field
+/// of 512 cells would cost more than the level saves.
 [[nodiscard]] int coarsestLevel(int columns, int rows);
 
-/// The errors of a square part of the vertex grid, which may reach beyond the field; levels above `coarsest` are left
-/// 0. `sun` points towards it and has length 1.
+/// Returns the errors of the levels up to `coarsest` in a square part of the vertex grid. The errors of coarser levels
+/// are 0. The part may extend beyond the field. `sun` points towards the sun and has length 1.
 [[nodiscard]] LevelErrors errorsOf(const SandSurface& surface, const sand::CellRect& vertices, const glm::vec3& sun,
                                    int coarsest);
 
-/// The level that a chunk is drawn at, and those of its edges, none of which is coarser: south, east, north, west.
+/// Level of a chunk and of its four edges: south, east, north, west. No edge is coarser than the chunk.
 struct ChunkLevels {
     int level = 0;
     std::array<int, 4> edges{};
-    // clang-tidy 14 complains of the 0 it finds in here itself. NOLINTNEXTLINE(modernize-use-nullptr)
+    // clang-tidy 14 reports the 0 in the operator that it generates itself. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const ChunkLevels&, const ChunkLevels&) = default;
 };
 
-/// Vertices of a chunk of side × side quads at one level: the grid row by row from the south-west, then, above level 0,
-/// all vertices of the four edges counter-clockwise, for where a finer chunk or the rim lies beyond.
+/// Returns the vertices of a chunk of side × side quads at one level. The vertices of the level's grid come first, row
+/// by row from the south-west. Above level 0 all vertices of the four edges follow, counter-clockwise. They are needed
+/// beside a finer chunk or the rim.
 [[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::CellRect& vertices, int level);
 
-/// Triangles side by side that stand together in trianglesOf(), so that a part of a chunk may be drawn.
+/// Neighbouring triangles with consecutive indices in trianglesOf(), so that a part of a chunk can be drawn.
 struct TriangleBlock {
     sand::CellRect quads;
     int first, count;  // [index]
 };
-/// Those of level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.
+/// Returns the blocks of level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.
 [[nodiscard]] std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown);
 
-/// Triangles of such a chunk, counter-clockwise from above. Neighbours that agree on their common edge meet there in
-/// the same vertices: no crack, whatever their levels. Above level 0, 2^(level+1) must divide the sides.
+/// Returns the triangles of a chunk as indices into verticesOf(), counter-clockwise from above. Neighbours that agree
+/// on the level of their common edge use the same vertices there, so that there is no crack. Above level 0, 2^(level+1)
+/// must divide both sides.
 [[nodiscard]] std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels);
 
 }  // namespace render_node

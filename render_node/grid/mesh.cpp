@@ -10,12 +10,13 @@
 namespace render_node {
 namespace {
 
-constexpr int kChunk = 16;                      // [quad], the shortest side but for small fields
-constexpr int kGroup = 8;                       // [chunk], the side of a group
-constexpr std::size_t kManyBytes = 16UL << 20;  // of vertices: then those not drawn lately are dropped
-constexpr std::uint64_t kLately = 120;          // [draw]: a second or two
+constexpr int kChunk = 16;  // [quad], shortest side of a chunk, except in small fields
+constexpr int kGroup = 8;   // [chunk], side of a group
+constexpr std::size_t kManyBytes =
+    16UL << 20;                         // of vertices; above it, vertices that were not drawn lately are removed
+constexpr std::uint64_t kLately = 120;  // [draw]; one or two seconds
 
-// Levels need sides that twice their strides divide; a field without any gets chunks of one size.
+// Levels need sides that are multiples of twice the largest stride. A field without levels gets chunks of equal size.
 int shortestSide(int coarsest) { return std::max(kChunk, 2 << coarsest); }
 int chunksFor(int quads, int coarsest) {
     const int side = shortestSide(coarsest);
@@ -67,12 +68,12 @@ void SandMesh::makeGroups() {
     }
 }
 
-/// The vertices that look different when these cells have changed.
+/// Returns the vertices that look different after these cells have changed.
 sand::CellRect SandMesh::verticesOver(const sand::CellRect& cells) const {
-    // Cell c lies under vertex c + 1; normals and shade of the vertices around depend on it.
+    // Cell c lies under vertex c + 1. The normals and the shade of the vertices around it depend on the cell.
     const sand::CellRect reached =
         sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
-    // The outermost ring repeats the next one, and what chunks have beyond the grid repeats that.
+    // The outermost ring repeats the ring next to it. Vertices of chunks beyond the grid repeat the outermost ring.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
     return {first(reached.x0), first(reached.y0), end(reached.x1, surface_.columns(), across_ * quadsAcross_ + 1),
@@ -118,7 +119,7 @@ bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
 }
 
 sand::CellRect SandMesh::chunksAround(const sand::CellRect& vertices) const {
-    // A vertex on an edge is part of both chunks.
+    // A vertex on an edge belongs to both chunks.
     return sand::CellRect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
                           (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
         .clippedTo({0, 0, across_, down_});
@@ -132,7 +133,7 @@ void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
                 geometry.markStale(vertices);
             }
             if (changed.revision == revision_) {
-                continue;  // by another part of this update
+                continue;  // another part of this update has marked it
             }
             changed.revision = revision_;
             changed.measured = false;
@@ -146,7 +147,7 @@ void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
 }
 
 Box SandMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
-    // A hundredth of a cell more, for what GL's floats may round.
+    // A hundredth of a cell more, for rounding of GL's floats.
     const double margin = 0.01 * double{surface_.cellSize()};
     const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
     const glm::dvec3 high(surface_.east(vertices.x1 - 1), surface_.north(vertices.y1 - 1), heights.highest);
@@ -182,8 +183,8 @@ int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
     return asked.level;
 }
 
-/// The finer of two chunks decides how their edge is drawn. At the rim the sand meets its cut sides, which have all of
-/// the vertices.
+/// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the
+/// rim have level 0, because the cut sides of the sand have all vertices.
 ChunkLevels SandMesh::levelsOf(int x, int y, const LevelRule& rule) {
     if (coarsest_ == 0) {
         return {};
@@ -214,7 +215,7 @@ DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
     return levels;
 }
 
-/// Whether the level of a chunk may show: in it, or along the edges of those around.
+/// Returns whether the level of a chunk may be visible: in the chunk, or along the edges of the chunks around it.
 bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
     const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
     for (int v = beside.y0; v < beside.y1; ++v) {
@@ -228,7 +229,7 @@ bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
     return false;
 }
 
-/// The longest side along an axis of the triangles drawn at any of these vertices [cell].
+/// Returns the longest side along an axis of the triangles that are drawn at these vertices [cell].
 int SandMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const {
     int level = 0;
     const sand::CellRect chunks = levels.empty() ? sand::CellRect{} : chunksAround(vertices);
@@ -240,7 +241,7 @@ int SandMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& le
     return 1 << level;
 }
 
-/// So many more vertices around.
+/// Returns the box around these vertices and around `margin` more vertices on each side.
 Box SandMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
     const sand::CellRect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
@@ -270,7 +271,7 @@ void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
                 }
                 if (drawn != levelOf(x, y, rule)) {
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
-                    // The outermost triangles of its neighbours follow its edges.
+                    // The outermost triangles of the neighbours depend on this chunk's edges.
                     const sand::CellRect& vertices = chunk(x, y).vertices;
                     const HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
                     changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
@@ -302,7 +303,7 @@ const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
     if (levels.level == 0) {
         made.blocks = blocksOf(quadsAcross_, quadsDown_);
     }
-    // Core profiles bind no element buffer without a vertex array; which one does not matter here.
+    // A core profile binds an element buffer only to a vertex array. Any vertex array will do here.
     const GlVertexArray array;
     glBindVertexArray(array.id());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made.buffer.id());
@@ -341,7 +342,7 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     return drawn;
 }
 
-/// Draws the blocks that reach into the frustum, or all where none is given; says how many triangles that were.
+/// Draws the blocks that reach into `frustum`, or all blocks if it is null. Returns the number of triangles.
 int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
     const auto draw = [](int first, int count) {
         glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_SHORT,
@@ -351,7 +352,7 @@ int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
         draw(0, indices.count);
         return indices.count / 3;
     }
-    int first = 0, count = 0, triangles = 0;  // first and count: of blocks that stand together, not drawn yet
+    int first = 0, count = 0, triangles = 0;  // first and count: adjacent blocks that are not drawn yet
     for (const TriangleBlock& block : indices.blocks) {
         const sand::CellRect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
                                       chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};

@@ -18,8 +18,8 @@
 
 namespace render_node {
 
-/// Vertices of the grid that may look different, and the heights before and after of all triangles that reach there, of
-/// any level.
+/// Vertices of the grid that may look different, and the heights of all triangles of any level at these vertices,
+/// before and after the change.
 struct ChangedVertices {
     sand::CellRect vertices;
     HeightRange heights;
@@ -28,14 +28,15 @@ struct ChangedVertices {
     }
 };
 
-/// The triangles of a height field, in chunks of about 16 × 16 quads, or 32 × 32 where a large field has five levels.
+/// Triangles of a height field, in chunks of about 16 × 16 quads, or of 32 × 32 quads if a large field has five levels.
 ///
-/// A software renderer is bound by vertices: only chunks that a camera sees are drawn, each at the coarsest level that
-/// the camera's rule allows, and only those are ever computed and sent to GL; a chunk is computed again when sand in
-/// its reach has changed and somebody looks at it. What nobody has looked at lately is dropped when it gets much.
+/// The time of a software renderer depends on the number of vertices. So only chunks that a camera sees are drawn, each
+/// at the coarsest level that the camera's rule allows. Only these chunks are computed and sent to GL. A chunk is
+/// computed again when the sand in its reach has changed and a camera sees it. If vertices take much memory, the
+/// vertices of chunks that were not drawn lately are removed.
 class SandMesh final : public DrawnSurface {
 public:
-    /// `sun` points towards it and has length 1.
+    /// `sun` points towards the sun and has length 1.
     SandMesh(const sand::HeightField& field, const glm::vec3& sun);
 
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
@@ -57,14 +58,14 @@ private:
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
         HeightRange heights;
-        std::uint64_t revision = 0;  // that changed it last
-        bool measured = false;       // its errors are those of the surface
+        std::uint64_t revision = 0;  // last revision that changed it
+        bool measured = false;       // `errors` belong to the current surface
         LevelErrors errors;
-        std::uint64_t chosenFor = 0;  // choice_ that `level` is of
+        std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
         int level = 0;
         std::vector<ChunkGeometry> geometries;
     };
-    /// Some chunks side by side, so that few are looked at one by one.
+    /// Neighbouring chunks that are culled together, so that few chunks are tested one by one.
     struct Group {
         sand::CellRect chunks;  // columns and rows of chunks
         sand::CellRect vertices;
@@ -90,10 +91,10 @@ private:
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
     [[nodiscard]] Box boxOf(const sand::CellRect& vertices, const HeightRange& heights) const;
     [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
-    template <class Visit>  // void(int x, int y), of chunks
+    template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
-    /// The longest side of a triangle of any level along an axis [cell].
+    /// Returns the longest side of a triangle of any level along an axis [cell].
     [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
     [[nodiscard]] Box boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const;
@@ -112,10 +113,10 @@ private:
     int quadsAcross_, quadsDown_;  // of every chunk
     std::vector<Chunk> chunks_;    // row by row from the south-west
     std::vector<Group> groups_;
-    std::map<ChunkLevels, Indices> indices_;  // 16 bit
+    std::map<ChunkLevels, Indices> indices_;  // each index has 16 bits
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;
-    std::uint64_t choice_ = 0;  // counts what levels are chosen for
+    std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
     DamageHistory<ChangedVertices> damage_;
     TrianglePace pace_;
     HeightRange ever_;

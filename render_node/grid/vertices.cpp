@@ -18,7 +18,7 @@ constexpr float kFarBelow = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
-/// The lowest and the highest of many heights, by lanes, which become vectors.
+/// Lowest and highest of many heights, kept separately for each lane of a vector.
 class SandSurface::RangeByLanes {
 public:
     RangeByLanes() {
@@ -38,10 +38,10 @@ private:
     std::array<float, kLanes> lowest_{}, highest_{};
 };
 
-/// Compares, converts and copies the heights of a block, row by row.
+/// Comparison, conversion and copying of a block's heights, row by row.
 class SandSurface::BlockWalk {
 public:
-    /// `cells` heights from the west, at most kLanes.
+    /// Copies a row of `cells` heights, at most kLanes, starting in the west.
     template <class Count>
     void takeRow(const std::int32_t* from, float* drawn, Count cells, double unit, int row) {
         std::uint32_t differs = 0;
@@ -65,7 +65,7 @@ public:
     }
     [[nodiscard]] bool differs() const { return rows_.first >= 0; }
     [[nodiscard]] HeightRange now() const { return now_.range(); }
-    /// Returns the cells that differed in a block that begins in this column.
+    /// Returns the cells that differed, in a block whose first column is `column`.
     [[nodiscard]] Overwritten overwritten(int column) const {
         const auto other = [](std::uint32_t lane) { return lane != 0; };
         const auto first = std::ranges::find_if(columns_, other) - columns_.begin();
@@ -76,7 +76,7 @@ public:
 
 private:
     std::array<std::uint32_t, kLanes> columns_{};  // whether a height of this column differed
-    std::pair<int, int> rows_{-1, -1};             // first and end of those with one
+    std::pair<int, int> rows_{-1, -1};             // first row with a difference, and the row after the last one
     RangeByLanes before_, now_;
 };
 
@@ -114,7 +114,7 @@ void SandSurface::takeOverBlock(const sand::HeightField& field, int blockX, int 
     for (int row = cells.y0; row < cells.y1; ++row) {
         float* drawn = &heights_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
                                  static_cast<std::size_t>(cells.x0)];
-        if (cells.x1 - cells.x0 == kLanes) {  // a number that the compiler knows: vectors
+        if (cells.x1 - cells.x0 == kLanes) {  // a constant number of cells lets the compiler use vectors
             walk.takeRow(field.row(row) + cells.x0, drawn, std::integral_constant<std::size_t, kLanes>(), unit, row);
         } else {
             walk.takeRow(field.row(row) + cells.x0, drawn, static_cast<std::size_t>(cells.x1 - cells.x0), unit, row);
@@ -141,7 +141,7 @@ HeightRange SandSurface::heights(const sand::CellRect& cells) const {
         add(cells, around);
         return around.range();
     }
-    // Blocks that lie within by their ranges, and what is left on the four sides cell by cell.
+    // Uses the ranges of blocks that lie within `cells`, and reads the rest on the four sides cell by cell.
     const sand::CellRect within =
         sand::CellRect{blocks.x0 * kBlock, blocks.y0 * kBlock, blocks.x1 * kBlock, blocks.y1 * kBlock}.clippedTo(cells);
     add({cells.x0, cells.y0, cells.x1, within.y0}, around);
@@ -206,7 +206,7 @@ float SandSurface::along(int vertex, int cells) const {
 glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
     const int x = std::clamp(vertexColumn - 1, 0, columns_ - 1);
     const int y = std::clamp(vertexRow - 1, 0, rows_ - 1);
-    // One-sided at the rim; a field of one column is level across.
+    // The slope at the rim is one-sided. A field of one column has slope 0 across it.
     const auto rise = [this](float low, float high, int cells) {
         return cells == 0 ? 0.0F : (high - low) / (static_cast<float>(cells) * cellSize_);
     };

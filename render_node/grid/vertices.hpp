@@ -13,67 +13,72 @@
 
 namespace render_node {
 
-/// A vertex of the sand as the shader takes it.
+/// Vertex of the sand, as the shader reads it.
 struct SandVertex {
     float height;                          // [scene unit]
-    std::uint16_t column, row;             // of the vertex grid
+    std::uint16_t column, row;             // place in the vertex grid
     std::int16_t normalEast, normalNorth;  // 1/32767
-    std::uint16_t open;                    // share of the sky that the vertex sees, 1/65535
+    std::uint16_t open;                    // share of the sky that is visible from the vertex, 1/65535
     std::uint16_t mottling;                // slow change of shade from place to place, 1/65535
 };
 static_assert(sizeof(SandVertex) == 16);
 
-/// The drawn surface of a height field, on the CPU: heights, normals and how much sky each place sees.
+/// Drawn surface of a height field, on the CPU: heights, normals and the visible share of the sky.
 ///
-/// Vertices stand over the cells' centres, and one more ring on the outer edges of the field: a field of c × r cells
-/// has (c+2) × (r+2) vertices, and even one cell is a surface. Not thread-safe.
+/// There is a vertex over the centre of each cell, and one more ring on the outer edges of the field. So a field of c ×
+/// r cells has (c+2) × (r+2) vertices, and even one cell makes a surface. Not thread-safe.
 class SandSurface {
 public:
-    /// A vertex depends on cells up to this far from its own [cell].
+    /// Distance up to which a vertex depends on cells around its own [cell].
     static constexpr int kReach = kSkyDistances.back();
-    static constexpr int kBlock = 8;  // [cell], as those of the changes that sand lists, and a vector of AVX2
+    static constexpr int kBlock =
+        8;  // [cell], as in the sand's lists of changes, and as many as an AVX2 vector has floats
 
     explicit SandSurface(const sand::HeightField& field);
 
-    /// Cells of one block that differed from what was drawn: the smallest rectangle around them, and the heights they
-    /// had.
+    /// Cells of one block that differed from the drawn ones: the smallest rectangle around them, and their earlier
+    /// heights.
     struct Overwritten {
         sand::CellRect cells;
         HeightRange before;
     };
-    /// Takes over the heights of these cells, which must lie within the field, and of the rest of their blocks. Reads
-    /// each once. Appends what differed to `overwritten`.
+    /// Copies the heights of `cells`, which must lie within the field, and of the rest of their blocks. Reads each
+    /// height once. Appends the cells that differed to `overwritten`.
     void takeOver(const sand::HeightField& field, const sand::CellRect& cells, std::vector<Overwritten>& overwritten);
 
     [[nodiscard]] int columns() const { return columns_; }      // [cell]
     [[nodiscard]] int rows() const { return rows_; }            // [cell]
     [[nodiscard]] float cellSize() const { return cellSize_; }  // [scene unit]
-    /// Height over the nearest cell of the field [scene unit].
+    /// Returns the height of the nearest cell of the field [scene unit].
     [[nodiscard]] float height(int column, int row) const;
-    /// The cells under a rectangle of the vertex grid that may reach beyond it; beyond the field, those at its edge.
+    /// Returns the cells under a rectangle of the vertex grid. If the rectangle extends beyond the field, it returns
+    /// the cells at the field's edge there.
     [[nodiscard]] sand::CellRect cellsUnder(const sand::CellRect& vertices) const;
-    /// The lowest and the highest of these cells, which must lie within the field and be some [scene unit].
+    /// Returns the lowest and the highest height of these cells [scene unit]. `cells` must lie within the field and
+    /// must not be empty.
     [[nodiscard]] HeightRange heights(const sand::CellRect& cells) const;
-    /// Heights that takeOver() and heights() have read, a block's range as one.
+    /// Returns the number of heights that takeOver() and heights() have read. The range of a block counts as one.
     [[nodiscard]] std::int64_t placesRead() const { return placesRead_; }
-    /// East (from a vertex column) or north (from a vertex row) of the field's corner [scene unit].
+    /// Returns the distance east of the field's corner, of a vertex column, or north of it, of a vertex row [scene
+    /// unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
 
-    /// Where the field ends.
+    /// Returns the edge of the field.
     [[nodiscard]] SandRim rim() const;
-    /// Whether a change of these cells changes it.
+    /// Returns whether a change of these cells changes rim().
     [[nodiscard]] bool touchesRim(const sand::CellRect& cells) const {
         return !cells.empty() && (cells.x0 <= 0 || cells.y0 <= 0 || cells.x1 >= columns_ || cells.y1 >= rows_);
     }
 
-    /// A vertex of the grid. A column or row beyond the grid repeats its last one.
+    /// Returns a vertex of the grid. A column or row beyond the grid repeats its last one.
     [[nodiscard]] SandVertex vertex(int column, int row) const;
-    /// The same for neighbours in a row, from this column on; several times as fast.
+    /// Writes neighbouring vertices of a row to `out`, starting with column `firstColumn`. Several times as fast as
+    /// vertex().
     void vertices(int firstColumn, int row, std::span<SandVertex> out) const;
-    /// How steeply the sand rises there towards east and north.
+    /// Returns the slope of the sand at a vertex, towards east and towards north.
     [[nodiscard]] glm::vec2 slope(int vertexColumn, int vertexRow) const;
-    /// Slow change of shade from place to place, 0 … 1.
+    /// Returns the slow change of shade from place to place, 0 … 1.
     [[nodiscard]] float mottling(int vertexColumn, int vertexRow) const;
 
 private:
@@ -90,7 +95,7 @@ private:
     float cellSize_;
     int blocksAcross_;
     std::vector<float> heights_;       // [scene unit], row by row
-    std::vector<HeightRange> ranges_;  // of each block, row by row: few heights tell how high a large part is
+    std::vector<HeightRange> ranges_;  // of each block, row by row; they bound the heights of a large part quickly
     mutable std::int64_t placesRead_ = 0;
 };
 

@@ -11,22 +11,23 @@
 
 namespace render_node {
 
-/// Rectangles and words of one colour each, later ones over earlier ones: what test patterns are painted with.
+/// Painter of rectangles and texts, each in one colour. Later ones cover earlier ones. Test patterns are painted with
+/// it.
 ///
-/// Places are whole pixels from the top left of the target, colours sRGB from 0 to 1. What does not fit is cut off.
-/// Needs its context current; one thread.
+/// Places are whole pixels from the top left of the target. Colours are sRGB from 0 to 1. Parts outside the target are
+/// cut off. The GL context must be current. Used by one thread.
 class FlatPainter {
 public:
-    /// Throws std::runtime_error when the shader does not compile.
+    /// Throws std::runtime_error if the shader does not compile.
     FlatPainter();
 
     void addBox(glm::ivec2 topLeft, glm::ivec2 size, glm::vec3 colour);
-    /// A hollow box whose sides are `thick` pixels.
+    /// Adds a hollow box whose sides are `thick` pixels thick.
     void addFrame(glm::ivec2 topLeft, glm::ivec2 size, int thick, glm::vec3 colour);
-    /// Dots of `dot` pixels; see dot_font.hpp.
+    /// Adds a text in the font of dot_font.hpp. Each dot has `dot` × `dot` pixels.
     void addText(std::string_view text, glm::ivec2 topLeft, int dot, glm::vec3 colour);
 
-    /// Paints over what the target shows and forgets what was added.
+    /// Paints the added shapes over the picture of `target`, and removes them from the painter.
     void paint(const EyeTarget& target);
 
 private:
@@ -40,9 +41,9 @@ private:
     std::vector<Vertex> vertices_;
 };
 
-/// Size of a text with dots of one pixel [pixel].
+/// Returns the size of a text whose dots are one pixel wide [pixel].
 [[nodiscard]] glm::ivec2 textSize(std::string_view text);
-/// The largest dots with which a text fits into a box, at least 1 [pixel].
+/// Returns the size of the largest dots with which a text fits into a box, at least 1 [pixel].
 [[nodiscard]] int dotToFit(std::string_view text, glm::ivec2 box);
 
 }  // namespace render_node

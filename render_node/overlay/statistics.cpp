@@ -12,9 +12,9 @@
 namespace render_node {
 namespace {
 
-// A panel with graphs, in dots.
+// Sizes of a panel with graphs [dot].
 constexpr int kPadding = 5, kLinePitch = 10, kLines = 5;
-constexpr int kGraphLeft = kPadding + 7 * kGlyphPitch + 3;  // beside a value such as "31.2 MS"
+constexpr int kGraphLeft = kPadding + 7 * kGlyphPitch + 3;  // right of a value such as "31.2 MS"
 constexpr int kGraphWidth = static_cast<int>(History::kLength), kGraphHeight = 24, kGraphPitch = 31;
 constexpr int kGraphs = 4;
 constexpr int kWidth = kGraphLeft + kGraphWidth + 3 + 4 * kGlyphPitch + kPadding;  // an axis ends at "0.05" or "2000"
@@ -33,7 +33,7 @@ glm::vec3 colourOf(TileStatistics::Line::Kind kind) {
     return kind == Kind::good ? kGood : kind == Kind::slow ? kSlow : kind == Kind::bad ? kBad : kText;
 }
 
-/// Words alone, as many as take no more than most of the tile.
+/// Returns a layout with words only, which take at most three fifths of the tile's height.
 OverlayLayout wordsAlone(glm::ivec2 tile) {
     constexpr int kMargin = 1, kInside = 2, kPitch = kGlyphHeight + 2;
     OverlayLayout layout;
@@ -52,9 +52,9 @@ OverlayLayout wordsAlone(glm::ivec2 tile) {
 struct StatisticsOverlay::Graph {
     const char* name;
     const History& history;
-    double end;  // of its axis [ms]
+    double end;  // end of the axis [ms]
     glm::vec3 colour;
-    double mark;  // a line across [ms]; 0: none
+    double mark;  // height of a horizontal line [ms]; 0: no line
 };
 
 PixelRect OverlayLayout::pixels(glm::ivec2 tile) const {
@@ -99,7 +99,7 @@ void StatisticsOverlay::addGraph(const Graph& graph, glm::ivec2 topLeft) {
     const glm::ivec2 at = topLeft + glm::ivec2(kGraphLeft * dot, 0);
     painter_.addBox(at, size, kGraphBack);
     painter_.addBox(at + glm::ivec2(0, size.y / 2), {size.x, 1}, kGrid);
-    // The newest at the right.
+    // The newest value is at the right.
     int left = at.x + size.x - static_cast<int>(graph.history.values().size()) * dot;
     for (const double value : graph.history.values()) {
         const int height = heightOf(value);
@@ -127,7 +127,7 @@ void StatisticsOverlay::addPanel() {
                          colourOf(line.kind));
     }
     if (layout_.graphs) {
-        // One axis for what adds up to a frame, so that lengths can be compared.
+        // Frame, draw and wait share one axis, so that their lengths can be compared.
         const double end = axisEnd(std::max(
             {1.0, statistics_.frameMs().largest(), statistics_.drawMs().largest(), statistics_.waitMs().largest()}));
         const double skewEnd = axisEnd(std::max(0.1, statistics_.skewMs().largest()));
@@ -141,7 +141,7 @@ void StatisticsOverlay::addPanel() {
             at.y += kGraphPitch * dot;
         }
     }
-    if (statistics_.drags()) {  // seen from afar
+    if (statistics_.drags()) {  // the frame can be seen from a distance
         painter_.addFrame(layout_.at, layout_.size, dot, kSlow);
     }
 }

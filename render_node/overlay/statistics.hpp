@@ -12,33 +12,35 @@
 
 namespace render_node {
 
-/// Where the statistics lie on a tile, and what of them has room there.
+/// Place of the statistics on a tile, and the parts of them that fit there.
 struct OverlayLayout {
-    glm::ivec2 at{0}, size{0};  // of the panel, from the top left [pixel]; no size: nothing has room
-    int dot = 1;                // of letters [pixel]
+    glm::ivec2 at{0}, size{0};  // of the panel, from the top left [pixel]; size 0: the tile is too small for a panel
+    int dot = 1;                // size of a letter's dot [pixel]
     bool graphs = false;
     int letters = 0, lines = 0;
 
     [[nodiscard]] PixelRect pixels(glm::ivec2 tile) const;
 };
-/// In the upper left corner: words and graphs on a tile of 340 by 290 pixels or more, on smaller ones fewer words.
+/// Returns the layout for a tile. The panel is in the upper left corner. Tiles of 337 × 300 pixels or more have words
+/// and graphs; smaller tiles have fewer words and no graphs.
 [[nodiscard]] OverlayLayout overlayLayout(glm::ivec2 tile /* [pixel] */);
 
-/// A panel over a tile's picture that shows how the wall keeps up (docs/operator.md): words, and graphs of the last
-/// frames.
+/// Panel over a tile's picture that shows how well the wall keeps its pace (docs/operator.md). It has words, and graphs
+/// of the last frames.
 ///
-/// It hides all that is beneath it and touches no other pixel, nor depth; it lies in the plane of the screen, equal
-/// for both eyes. Made when it is first shown, let go when it is hidden. Needs its context current; one thread.
+/// The panel hides the picture below it. It changes no other pixel and no depth. It lies in the plane of the screen, so
+/// that both eyes see the same. The object is made when the panel is first shown, and destroyed when the panel is
+/// hidden. The GL context must be current. Used by one thread.
 class StatisticsOverlay {
 public:
-    /// Throws std::runtime_error when the shader does not compile.
+    /// Throws std::runtime_error if the shader does not compile.
     StatisticsOverlay(const walls::Wall& wall, const walls::Tile& tile, std::string host);
 
-    /// Of the frame before `frame`.
+    /// Adds the figures of the frame before `frame`.
     void add(const TileFigures& figures, std::uint64_t frame) { statistics_.add(figures, frame); }
-    /// Draws into each of the targets, which are of the tile's size.
+    /// Draws the panel into each target. The targets have the size of the tile.
     void draw(std::span<const EyeTarget> targets);
-    /// What it covers of a target.
+    /// Returns the pixels of a target that the panel covers.
     [[nodiscard]] const PixelRect& pixels() const { return pixels_; }
 
 private:
@@ -48,12 +50,12 @@ private:
 
     OverlayLayout layout_;
     PixelRect pixels_;
-    double periodMs_;  // of the wall's refresh
+    double periodMs_;  // period of the wall's refresh rate
     TileStatistics statistics_;
     FlatPainter painter_;
 };
 
-/// The least of 1, 2 and 5 times a power of ten that is not below `value`: the end of a graph's axis.
+/// Returns the end of a graph's axis: the smallest of 1, 2 and 5 times a power of ten that is at least `value`.
 [[nodiscard]] double axisEnd(double value);
 
 }  // namespace render_node

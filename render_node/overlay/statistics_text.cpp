@@ -34,7 +34,7 @@ TileStatistics::TileStatistics(const walls::Wall& wall, const walls::Tile& tile,
 void TileStatistics::add(const TileFigures& figures, std::uint64_t frame) {
     frame_ = frame;
     wall_ = figures.wall;
-    if (wall_.frameMs > 0) {  // none yet: nothing was swapped
+    if (wall_.frameMs > 0) {  // 0: no frame has been swapped yet
         frameMs_.add(wall_.frameMs);
         drawMs_.add(figures.drawMs);
         waitMs_.add(figures.waitMs);

@@ -12,13 +12,14 @@
 
 namespace render_node {
 
-/// What a tile has to show of a frame that is over.
+/// Figures of the last complete frame that a tile shows.
 struct TileFigures {
-    double drawMs = 0, waitMs = 0;  // this rank's: drawing all eyes; from its arrival at the barrier to its swap
-    lockstep::WallFigures wall;     // what the master knows
+    double drawMs = 0,
+           waitMs = 0;  // of this rank: time to draw all eyes; time from its arrival at the barrier to its swap
+    lockstep::WallFigures wall;  // figures from the master
 };
 
-/// The last values of one figure, the oldest first; older ones are forgotten.
+/// Last kLength values of one figure, oldest first.
 class History {
 public:
     static constexpr std::size_t kLength = 120;
@@ -33,12 +34,12 @@ private:
     std::vector<double> values_;
 };
 
-/// How the wall keeps up, as one of its tiles tells it: in words, and as histories of the last frames.
+/// Figures of the wall as one of its tiles shows them: as text, and as histories of the last frames.
 class TileStatistics {
 public:
     TileStatistics(const walls::Wall& wall, const walls::Tile& tile, std::string host);
 
-    /// Of the frame before `frame`.
+    /// Adds the figures of the frame before `frame`.
     void add(const TileFigures& figures, std::uint64_t frame);
 
     struct Line {
@@ -46,15 +47,18 @@ public:
         std::string text;
         Kind kind = Kind::plain;
     };
-    /// The most important first. Where there is room for fewer than kLetters, shorter ones, cut to fit.
+    /// Returns the lines, the most important one first. If `letters` is less than kLetters, returns shorter lines and
+    /// cuts them to `letters` letters.
     [[nodiscard]] std::vector<Line> lines(std::size_t letters) const;
     static constexpr std::size_t kLetters = 32;
 
-    [[nodiscard]] const History& frameMs() const { return frameMs_; }  // from swap to swap
+    [[nodiscard]] const History& frameMs() const { return frameMs_; }  // time from swap to swap
     [[nodiscard]] const History& drawMs() const { return drawMs_; }
     [[nodiscard]] const History& waitMs() const { return waitMs_; }
-    [[nodiscard]] const History& skewMs() const { return skewMs_; }  // after the first swap of the wall
-    /// Whether it is this tile that the wall waits for.
+    [[nodiscard]] const History& skewMs() const {
+        return skewMs_;
+    }  // delay of this rank's swap after the first swap of the wall
+    /// Returns whether the wall waits for this tile.
     [[nodiscard]] bool drags() const;
 
 private:
@@ -62,7 +66,7 @@ private:
     [[nodiscard]] std::vector<Line> longLines() const;
     [[nodiscard]] std::vector<Line> shortLines() const;
 
-    std::vector<std::string> tileNames_;  // by rank, from 1
+    std::vector<std::string> tileNames_;  // by rank, starting with rank 1
     int rank_;
     std::string host_;
     std::uint64_t frame_ = 0;
@@ -70,7 +74,7 @@ private:
     History frameMs_, drawMs_, waitMs_, skewMs_;
 };
 
-/// As a person reads it at a glance: "0.4", "31.2", "131".
+/// Returns a time in short form, such as "0.4", "31.2" or "131".
 [[nodiscard]] std::string milliseconds(double ms);
 
 }  // namespace render_node

@@ -16,7 +16,7 @@ using walls::Eye;
 
 constexpr glm::vec3 kBlack{0}, kWhite{1}, kRed{1, 0, 0}, kCyan{0, 1, 1};
 
-/// Size of what the grid is laid out on: the whole grid of tiles, or the one screen.
+/// Returns the size of the area for the grid pattern: the whole grid of tiles, or a single explicit screen.
 glm::dvec2 extentOf(const walls::Wall& wall, const walls::Tile& tile) {
     if (tile.row == 0 || !wall.grid) {
         return {tile.screen.width(), tile.screen.height()};
@@ -37,10 +37,11 @@ glm::dvec2 cornerOf(const walls::Wall& wall, const walls::Tile& tile) {
 
 std::string eyeText(Eye eye) { return eye == Eye::left ? "LEFT EYE" : eye == Eye::right ? "RIGHT EYE" : "MONO"; }
 
-/// Red-cyan glasses let each eye see its own colour alone.
+/// Returns the eye's colour. Through red-cyan glasses each eye sees only its own colour.
 glm::vec3 colourOf(Eye eye) { return eye == Eye::left ? kRed : eye == Eye::right ? kCyan : kWhite; }
 
-/// The part of a tile that is this eye's alone, so that words of both can be read in one picture.
+/// Returns the left border of the half of a tile that is reserved for this eye. Then texts of both eyes can be read in
+/// one picture.
 int leftOfOwn(Eye eye, int width) { return eye == Eye::right ? width / 2 : eye == Eye::left ? 0 : width / 4; }
 
 }  // namespace
@@ -131,7 +132,7 @@ void TestPatternView::addTile(Eye eye, glm::ivec2 size) {
         painter_.addText(line, {(size.x - textSize(line).x * dot) / 2, top}, dot, kWhite);
         top += lineHeight;
     }
-    // Each eye in its own half: where both come into one picture, both can be read.
+    // Each eye has its own half, so that both texts can be read if both eyes are mixed into one picture.
     addCentred(eyeText(eye), {leftOfOwn(eye, size.x) + margin / 2, top + lineHeight / 2},
                {size.x / 2 - margin, lineHeight}, colourOf(eye));
 }
@@ -142,7 +143,7 @@ void TestPatternView::addEyes(Eye eye, glm::ivec2 size) {
     const int quarter = size.x / 4;
     const int half = leftOfOwn(eye, size.x);
     painter_.addBox({0, 0}, size, kBlack);
-    // Bars at the outer side of the eye's own half, its letter at the inner one.
+    // The bars are at the outer side of the eye's half, its letter at the inner side.
     constexpr int kBars = 9;
     for (int bar = 0; bar < kBars && eye != Eye::middle; bar += 2) {
         const int top = size.y * bar / kBars;
@@ -170,7 +171,8 @@ void TestPatternView::addRamp(glm::ivec2 size) {
     constexpr int kSteps = 17;  // 0, 16, 32 … 240, 255
     const auto grey = [](int level) { return glm::vec3(static_cast<float>(level) / 255.0F); };
     const int stepsHigh = size.y * 2 / 3;
-    // A number needs three letters; where steps are narrower, every second or fourth has one.
+    // A number needs the width of three letters. If the steps are narrower, only every second or fourth step has a
+    // number.
     const int needed = textSize("255").x + 2;
     const int stride = size.x / kSteps >= needed ? 1 : size.x / kSteps * 2 >= needed ? 2 : 4;
     for (int step = 0; step < kSteps; ++step) {

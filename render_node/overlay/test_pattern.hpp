@@ -11,16 +11,17 @@
 
 namespace render_node {
 
-/// Draws what a person adjusts a wall by (docs/test_patterns.md) in place of the sand.
+/// Painter of the test patterns for adjusting a wall (docs/test_patterns.md). A pattern replaces the picture of the
+/// sand.
 ///
-/// Made when a pattern is first asked for: a wall that shows sand holds none of it. Patterns lie in the plane of the
-/// screen and do not depend on where the eyes are. Needs its context current; one thread.
+/// The object is made when a pattern is first shown. Patterns lie in the plane of the screen and do not depend on the
+/// eyes' positions. The GL context must be current. Used by one thread.
 class TestPatternView {
 public:
-    /// `host` is shown as it is. Throws std::runtime_error when a shader does not compile.
+    /// Patterns show `host` unchanged. Throws std::runtime_error if a shader does not compile.
     TestPatternView(const walls::Wall& wall, const walls::Tile& tile, std::string host);
 
-    /// Fills the target, whose depth is left alone. Throws std::invalid_argument for Pattern::none.
+    /// Fills the colours of `target` and leaves its depth unchanged. Throws std::invalid_argument for Pattern::none.
     void draw(lockstep::Pattern pattern, walls::Eye eye, std::uint64_t frame, const EyeTarget& target);
 
 private:
@@ -33,15 +34,15 @@ private:
 
     walls::Tile tile_;
     std::string host_;
-    glm::dvec2 corner_;  // of the tile, from the middle of the wall or of the screen [m]
-    double spacing_;     // [m]
+    glm::dvec2 corner_;  // lower left corner of the tile, from the middle of the wall or of the screen [m]
+    double spacing_;     // of the grid [m]
     FlatPainter painter_;
     GlProgram gridProgram_;
     GlVertexArray noVertices_;
 };
 
-/// Spacing of the cross grid on a wall or screen: 1, 2 or 5 times a power of ten, about an eighth of the shorter side
-/// or less [m].
+/// Returns the spacing of the cross grid on a wall or screen of this size [m]. It is 1, 2 or 5 times a power of ten:
+/// the largest one that is at most an eighth of the shorter side.
 [[nodiscard]] double gridSpacing(glm::dvec2 size /* [m] */);
 
 }  // namespace render_node

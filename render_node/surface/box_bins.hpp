@@ -8,18 +8,19 @@
 
 namespace render_node {
 
-/// Many small boxes, spread over a field, as few that bound them: those that lie near each other become one.
+/// Collection of many small boxes in a field. It joins boxes that are close together, so that few boxes bound all of
+/// them.
 class BoxBins {
 public:
     BoxBins(double width, double depth /* of the field [scene unit] */);
     void add(const Box& box);
-    /// Around all that were added since this was called last.
+    /// Returns boxes around all boxes that were added since the last call.
     [[nodiscard]] std::vector<Box> take();
 
 private:
     static constexpr int kSide = 32;               // [bin]
-    static constexpr std::size_t kMostBoxes = 36;  // that take() gives
-    double acrossWidth_, acrossDepth_;             // bins in a scene unit
+    static constexpr std::size_t kMostBoxes = 36;  // largest number of boxes that take() returns
+    double acrossWidth_, acrossDepth_;             // bins per scene unit
     std::vector<std::optional<Box>> bins_;
     std::vector<int> used_;
 };

@@ -8,20 +8,21 @@
 
 namespace render_node {
 
-/// Where the sand has changed lately, by revision. `Where` is anything that has around(a, b), which bounds both.
+/// List of the places where the sand has changed recently, by revision. `Where` is any type with a function around(a,
+/// b) that returns a bound of both.
 ///
-/// Of bounded length: old entries grow together, so that whoever asks for what happened since a revision long ago is
-/// told of too large a part and never of too little.
+/// The list has a bounded length, because old entries are joined. A query for an old revision may return too large a
+/// part, but never too small a part.
 template <class Where>
 class DamageHistory {
 public:
     struct Part {
-        std::uint64_t revision;  // that changed it; the latest, where parts have grown together
+        std::uint64_t revision;  // of the change; the latest one if parts were joined
         Where where;
     };
     static constexpr std::size_t kMostParts = 128;
 
-    /// Revisions must not fall.
+    /// Adds a change. `revision` must not be less than that of an earlier change.
     void add(std::uint64_t revision, const Where& where) {
         parts_.push_back({revision, where});
         if (parts_.size() > kMostParts) {
@@ -29,7 +30,7 @@ public:
             parts_.erase(parts_.begin());
         }
     }
-    /// All that changed after that revision, the oldest first. Good until the next add().
+    /// Returns all changes after `revision`, oldest first. Valid until the next add().
     [[nodiscard]] std::span<const Part> since(std::uint64_t revision) const {
         const auto first =
             std::upper_bound(parts_.begin(), parts_.end(), revision,
@@ -38,7 +39,7 @@ public:
     }
 
 private:
-    std::vector<Part> parts_;  // by revision
+    std::vector<Part> parts_;  // in the order of revisions
 };
 
 }  // namespace render_node

@@ -17,12 +17,12 @@
 
 namespace render_node {
 
-/// The level at which each chunk was drawn; −1 where it was out of sight. Empty for a field that has no levels.
+/// Level at which each chunk was drawn; −1 if it was out of sight. Empty for a field without levels.
 using DrawnLevels = std::vector<std::int8_t>;
 
-/// The surface of the sand in GL, whatever the terrain is made of: what ScenePainter lights, bounds and draws anew.
+/// Surface of the sand in GL, for height fields and TINs. ScenePainter lights it, bounds its changes and draws them.
 ///
-/// Every camera gets the same vertices. One thread, its context current.
+/// All cameras get the same vertices. Used by one thread, with its context current.
 class DrawnSurface {
 public:
     struct Drawn {
@@ -36,43 +36,46 @@ public:
     DrawnSurface& operator=(const DrawnSurface&) = delete;
     virtual ~DrawnSurface() = default;
 
-    /// Takes over what changed of the sand, which must be of the kind and size that this surface was made of; copies
-    /// it. `cameras` (each from the scene to clip coordinates) are the only ones that draw before the next update: what
-    /// none of them sees may be put off until one does. Without any, all of it counts as seen.
-    /// @return Whether rim() is another.
+    /// Copies the changes of the sand. The sand must have the kind and size for which this surface was made.
+    ///
+    /// @param cameras  Matrices from the scene to clip coordinates. Only these cameras draw before the next update.
+    ///          Changes that no camera sees may be postponed until one does. An empty list means that all changes are
+    ///          seen.
+    /// @return Whether rim() has changed.
     [[nodiscard]] virtual bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                                       std::span<const glm::dmat4> cameras) = 0;
 
-    /// Sets the uniforms that are the surface's own. The program must be in use.
+    /// Sets the uniforms of this kind of surface. The program must be in use.
     virtual void prepare(const GlProgram& program) const = 0;
 
-    /// Draws the chunks that reach into the frustum of `sceneToClip`, which may show a part of what `rule` is for; all
-    /// of them when `culling` is off. The program must be in use, or `before` choose one by the box of each chunk.
+    /// Draws the chunks that reach into the frustum of `sceneToClip`, or all chunks if `culling` is false. The frustum
+    /// may be a part of the picture for which `rule` was made. Either the program is in use, or `before` chooses one
+    /// for the box of each chunk.
     virtual Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                        const std::function<void(const Box&)>& before) = 0;
-    /// Draws, over wires, what this kind of surface marks on them. `prepare` says which program is to be used.
+    /// Draws the marks of this kind of surface over the wires. `prepare` is called with the program and must set it up.
     virtual void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                            const std::function<void(const GlProgram&)>& prepare) {
         (void)sceneToClip, (void)culling, (void)prepare;
     }
 
-    /// The levels at which draw() draws all that reaches into this frustum, its neighbours' with them.
+    /// Returns the levels at which draw() draws the chunks in this frustum, and the levels of their neighbours.
     [[nodiscard]] virtual DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) = 0;
-    /// Where the picture differs from one that was drawn at that revision, of the same rule, at these levels. Brings
-    /// them up to date.
+    /// Returns boxes around all differences from a picture that was drawn at `revision` by the same rule at these
+    /// levels. Updates `levels`.
     [[nodiscard]] virtual std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
                                                         const LevelRule& rule) = 0;
-    /// Counts the updates that changed something.
+    /// Returns the number of updates that changed something.
     [[nodiscard]] virtual std::uint64_t revision() const = 0;
-    /// The lowest and the highest that any sand has been.
+    /// Returns the lowest and the highest height that any sand has ever had.
     [[nodiscard]] virtual HeightRange heightsEver() const = 0;
-    /// Where the sand is cut, as it now is.
+    /// Returns the current edge of the sand.
     [[nodiscard]] virtual SandRim rim() const = 0;
 
     [[nodiscard]] virtual int chunks() const = 0;
-    /// Bytes of vertices and indices in GL.
+    /// Returns the memory of vertices and indices in GL [byte].
     [[nodiscard]] virtual std::size_t bytes() const = 0;
-    /// Heights that updates have read so far, or vertices and triangles of a TIN: for measurements.
+    /// Returns the number of heights that updates have read, or of vertices and triangles of a TIN. For measurements.
     [[nodiscard]] virtual std::int64_t placesRead() const = 0;
 };
 

@@ -7,12 +7,12 @@
 
 namespace render_node {
 
-/// A box along the scene's axes.
+/// Box along the scene's axes.
 struct Box {
     glm::dvec3 low, high;  // [scene unit]
 };
 
-/// The smallest box around both.
+/// Returns the smallest box around both.
 [[nodiscard]] inline Box around(const Box& a, const Box& b) {
     return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
@@ -26,7 +26,8 @@ struct Box {
     return corners;
 }
 
-/// Whether a box may reach into what a camera sees. Never false for one that does; seldom true for one that does not.
+/// Returns whether a box may reach into a camera's frustum. Never returns false for a box that does. Seldom returns
+/// true for a box that does not.
 [[nodiscard]] inline bool inFrustum(const Box& box, const glm::dmat4& sceneToClip) {
     std::array<int, 6> outside{};
     for (const glm::dvec3& corner : cornersOf(box)) {

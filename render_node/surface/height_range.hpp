@@ -9,7 +9,7 @@ struct HeightRange {
     float lowest, highest;  // [scene unit]
 };
 
-/// The smallest range around both.
+/// Returns the smallest range around both.
 [[nodiscard]] inline HeightRange around(const HeightRange& a, const HeightRange& b) {
     return {std::min(a.lowest, b.lowest), std::max(a.highest, b.highest)};
 }

@@ -9,9 +9,10 @@ namespace render_node {
 LevelRule::LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size, double bound)
     : sceneToClip_(sceneToClip), half_(glm::dvec2(size) / 2.0), bound_(bound) {}
 
-/// How many pixels the picture of a point moves at most when the point moves up by a unit. The tiles of a plane give
-/// the same: their clip coordinates differ in scale, which the number of pixels makes up for, and in a share of w,
-/// which falls out of the difference below.
+/// Returns the largest distance that a point's picture moves when the point moves up by one scene unit [pixel].
+///
+/// All tiles of a plane get the same value. Their clip coordinates differ by a scale and by a multiple of w. The number
+/// of pixels compensates the scale, and the difference below removes the multiple of w.
 double LevelRule::pixelsPerUnit(const Box& box) const {
     double nearest = std::numeric_limits<double>::infinity();
     glm::dvec2 most(0);

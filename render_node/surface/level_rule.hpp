@@ -8,39 +8,39 @@
 
 namespace render_node {
 
-/// Level l of a chunk stands on every 2^l-th vertex of the sand, and these are the same vertices in every level: only
-/// what lies between them is smoothed over.
+/// Number of levels. Level l of a chunk uses every 2^l-th vertex of the sand, so that a coarser level only smooths the
+/// surface between its vertices.
 inline constexpr int kLevels = 5;
 
-/// How far each level of a chunk is from all of its vertices, at its worst place.
+/// Largest error of each level over all vertices of a chunk.
 struct LevelErrors {
     std::array<float, kLevels> height{};  // [scene unit], along the vertical
-    std::array<float, kLevels> light{};   // of the sun's full light, mottling in it
+    std::array<float, kLevels> light{};   // share of the sun's full light, mottling included
 };
 
-/// Which level a camera asks for: a function of the scene, the eye, and the plane and density of the pixels, so that
-/// the tiles of one plane agree.
+/// Rule for the level at which a chunk is drawn.
 ///
-/// The coarsest level that shifts no point of the picture by more than the bound, and changes the sun's light on none
-/// by more than that allows.
+/// The rule depends only on the scene, the eye, and the plane and density of the pixels, so that the tiles of one plane
+/// agree. It chooses the coarsest level that satisfies two limits. It shifts no point of the picture by more than
+/// `bound`. It changes the sun's light on no point by more than `bound` × kLightPerPixel.
 class LevelRule {
 public:
-    static constexpr double kLightPerPixel = 0.08;  // [1/pixel], of the sun's full light: about 8 levels of 255
+    static constexpr double kLightPerPixel = 0.08;  // [1/pixel], share of the sun's full light: about 8 levels of 255
 
-    /// `bound` 0 asks for level 0 everywhere.
+    /// With `bound` 0 the rule chooses level 0 everywhere.
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
-    /// Whether it asks for level 0, whatever the errors.
+    /// Returns whether the rule chooses level 0 whatever the errors are.
     [[nodiscard]] bool wantsEveryCell() const { return bound_ <= 0; }
-    /// Whether a box may reach into its picture.
+    /// Returns whether a box may reach into the picture.
     [[nodiscard]] bool sees(const Box& box) const { return inFrustum(box, sceneToClip_); }
-    /// For the sand within a box.
+    /// Returns the level for the sand within `box`, at most `coarsest`.
     [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
 
 private:
     [[nodiscard]] double pixelsPerUnit(const Box& box) const;
 
     glm::dmat4 sceneToClip_;
-    glm::dvec2 half_;  // [pixel], the picture
+    glm::dvec2 half_;  // [pixel], half of the picture's size
     double bound_;     // [pixel]
 };
 

@@ -20,12 +20,15 @@ inline constexpr std::array<SkyDirection, 8> kSkyDirections{{{1, 0, 1},
                                                              {-1, 1, kSkyDiagonal},
                                                              {1, -1, kSkyDiagonal},
                                                              {-1, -1, kSkyDiagonal}}};
-/// How far a place looks around [cell].
+/// Distances at which the horizon of a place is sampled [cell].
 inline constexpr std::array<int, 3> kSkyDistances{2, 5, 10};
 
-/// One minus the mean squared sine of the horizon over eight directions: the sky's light on level ground, for places
-/// side by side. `rise(place, east, north)` is how much higher sand so many cells away is [scene unit]. All places take
-/// one direction before the next, so that the compiler computes several at a time.
+/// Computes the sky's light on level ground for neighbouring places: one minus the mean squared sine of the horizon in
+/// eight directions.
+///
+/// `rise(place, east, north)` returns how much higher the sand is, so many cells to the east and north [scene unit].
+/// The loop handles all places for one direction before the next direction, so that the compiler computes several
+/// places at a time.
 template <class Rise>
 void openSky(std::span<float> open, float cellSize, const Rise& rise) {
     std::fill(open.begin(), open.end(), 0.0F);

@@ -9,17 +9,17 @@
 namespace render_node {
 namespace {
 
-/// [-1, 1] of clip space to pixels, outward and a pixel more, within [0, size].
+/// Converts a range of clip coordinates to pixels, rounded outward, with one more pixel, within [0, size].
 std::pair<int, int> pixelsBetween(double low, double high, int size) {
     const auto pixel = [size](double along) { return (0.5 * along + 0.5) * size; };
-    // A pixel more: GL's own floats, and a driver that rounds to parts of a pixel, may carry an edge across a centre.
+    // GL's floats, and drivers that round to fractions of a pixel, may move an edge across a pixel's centre.
     const double from = std::clamp(std::floor(pixel(low)) - 1, 0.0, double(size));
     const double end = std::clamp(std::ceil(pixel(high)) + 1, 0.0, double(size));
     return {static_cast<int>(from), static_cast<int>(end)};
 }
 
-/// The hull's points before the near plane, and where lines between them and those behind cross it. All pairs are
-/// taken for edges of the hull: what a line between any two adds lies within.
+/// Returns the hull's points in front of the near plane, and the points where lines to the points behind it cross the
+/// plane. Uses all pairs, not only the edges of the hull, because the other lines add only points within the hull.
 std::vector<glm::dvec4> clippedToNear(std::span<const glm::dvec3> hull, const glm::dmat4& sceneToClip) {
     std::vector<glm::dvec4> before, behind;
     for (const glm::dvec3& point : hull) {
@@ -36,9 +36,10 @@ std::vector<glm::dvec4> clippedToNear(std::span<const glm::dvec3> hull, const gl
     return all;
 }
 
-constexpr std::size_t kManyRects = 32;  // all pairs of so many are soon looked at
+constexpr std::size_t kManyRects = 32;  // all pairs of so few are checked quickly
 
-/// One around all whose middles lie in each of 5 by 5 parts of what they cover.
+/// Divides the area of all rectangles into 5 × 5 parts. Returns for each part one rectangle around all rectangles whose
+/// middle lies in it.
 std::vector<PixelRect> binned(const std::vector<PixelRect>& rects) {
     PixelRect all;
     for (const PixelRect& rect : rects) {
@@ -47,7 +48,7 @@ std::vector<PixelRect> binned(const std::vector<PixelRect>& rects) {
     constexpr int kAcross = 5;
     std::vector<PixelRect> bins(kAcross * kAcross);
     for (const PixelRect& rect : rects) {
-        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): none of them is empty, nor is what is around them
+        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): no rectangle is empty, so the area around them is not empty
         const int column = kAcross * ((rect.x0 + rect.x1) / 2 - all.x0) / (all.x1 - all.x0);
         const int row = kAcross * ((rect.y0 + rect.y1) / 2 - all.y0) / (all.y1 - all.y0);
         PixelRect& bin = bins[static_cast<std::size_t>(row * kAcross + column)];
@@ -98,7 +99,7 @@ PixelRect pixelsOf(std::span<const glm::dvec3> hull, const glm::dmat4& sceneToCl
     glm::dvec2 low(kFar), high(-kFar);
     for (const glm::dvec4& clip : clippedToNear(hull, sceneToClip)) {
         if (clip.w <= 0) {
-            return {0, 0, size.x, size.y};  // no perspective that a wall has: nothing is known
+            return {0, 0, size.x, size.y};  // a wall has no such perspective; any pixel may be covered
         }
         low = glm::min(low, glm::dvec2(clip) / clip.w);
         high = glm::max(high, glm::dvec2(clip) / clip.w);

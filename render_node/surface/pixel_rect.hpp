@@ -8,7 +8,7 @@
 
 namespace render_node {
 
-/// Pixels of a picture: columns [x0, x1), rows [y0, y1); row 0 is the lowest, as GL counts.
+/// Rectangle of pixels: columns [x0, x1), rows [y0, y1). Row 0 is the lowest, as in GL.
 struct PixelRect {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
@@ -16,19 +16,22 @@ struct PixelRect {
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
-/// The smallest rectangle around both; an empty one counts for nothing.
+/// Returns the smallest rectangle around both. Ignores an empty rectangle.
 [[nodiscard]] PixelRect around(const PixelRect& a, const PixelRect& b);
 
-/// At most `most` rectangles that cover all that these do. Two become one where they are too many, or unless the pixels
-/// between them are more than `pass`: what one rectangle more costs who draws them, whatever lies in it [pixel].
+/// Returns at most `most` rectangles that cover all of `rects`. Joins two rectangles if there are more than `most`, or
+/// if at most `pass` pixels lie between them. `pass` is the fixed cost of drawing one more rectangle, as a number of
+/// pixels.
 [[nodiscard]] std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::size_t most, std::int64_t pass);
 
-/// The pixels of a picture of `size` that something within the convex hull of these points may cover or touch: never
-/// one too few, and a pixel more on every side. Empty when the hull lies outside the picture or behind its near plane.
+/// Returns the pixels that any object within the convex hull of these points may cover or touch, in a picture of
+/// `size`. The result is never too small; it includes one more pixel on every side. It is empty if the hull lies
+/// outside the picture or behind the near plane.
 [[nodiscard]] PixelRect pixelsOf(std::span<const glm::dvec3> hull, const glm::dmat4& sceneToClip, glm::ivec2 size);
 
-/// Turns clip coordinates of the whole picture into those in which `pixels` alone reach from -1 to 1: for leaving out
-/// what these pixels do not show, not for drawing, as the rasteriser would round differently.
+/// Returns a matrix from clip coordinates of the whole picture to coordinates in which `pixels` extends from -1 to 1.
+/// It serves to cull objects outside `pixels`. It must not be used for drawing, because the rasteriser would round
+/// differently.
 [[nodiscard]] glm::dmat4 clipOf(const PixelRect& pixels, glm::ivec2 size);
 
 }  // namespace render_node

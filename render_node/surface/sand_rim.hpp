@@ -7,10 +7,10 @@
 
 namespace render_node {
 
-/// The edge of a field, where its sand is cut.
+/// Edge of a field, where its sand is cut.
 struct SandRim {
-    /// The vertices of the southern, eastern, northern and western side [scene unit], counter-clockwise from the corner
-    /// in the south-west; a corner is in both of its sides.
+    /// Vertices of the southern, eastern, northern and western side [scene unit], counter-clockwise from the south-west
+    /// corner. Each corner is in both of its sides.
     std::array<std::vector<glm::vec3>, 4> sides;
 
     [[nodiscard]] float width() const { return sides[0].back().x; }

@@ -15,7 +15,7 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
     const Vec3 centre{unit * probe.x, unit * probe.y, unit * probe.z};
     if (!last_ || terrain.stepNumber() < lastStep_) {
         velocity_ = {};
-    } else if (terrain.stepNumber() > lastStep_) {  // frames between two steps keep the velocity
+    } else if (terrain.stepNumber() > lastStep_) {  // a frame without a step keeps the velocity
         const auto steps = static_cast<double>(terrain.stepNumber() - lastStep_);
         velocity_ = (terrain.rules().stepsPerSecond / (60.0 * steps)) * (centre - *last_);
     }

@@ -10,17 +10,20 @@
 namespace render_node {
 
 inline constexpr double kArrowPerNewton = 1.5;                     // [tool radius]
-inline constexpr double kMostNewtons = sand::force::kDeviceLimit;  // no arrow is longer than that of this force
-inline constexpr double kFewestNewtons = 0.02;                     // no arrow for less
+inline constexpr double kMostNewtons = sand::force::kDeviceLimit;  // a larger force has the arrow of this force
+inline constexpr double kFewestNewtons = 0.02;                     // a smaller force has no arrow
 
-/// The force on the tool by the scene's law, from a rank's own replica: the hand's, but for a velocity that is known
-/// once a frame only, and for what guards a device. It reads the sand and never changes it. All ranks that are asked in
-/// the same frames answer alike.
+/// Force on the tool by the scene's law, computed from a rank's own replica.
+///
+/// It equals the force that the hand feels, with two differences: the velocity is known only once per frame, and there
+/// are no guards. It reads the sand and never changes it. All ranks that call arrow() in the same frames get equal
+/// arrows.
 class ToolForce {
 public:
     explicit ToolForce(const sand::ForceConstants& constants) : constants_(constants) {}
 
-    /// Once a frame. Nothing while the tool hovers or feels no force.
+    /// Returns the arrow of this frame. Must be called once per frame. Returns nullopt if the tool hovers or feels no
+    /// force.
     [[nodiscard]] std::optional<ForceArrow> arrow(const sand::Replica& terrain);
 
 private:

@@ -8,22 +8,22 @@
 namespace render_node {
 namespace {
 
-// In radii of the tool.
+// Sizes in radii of the tool.
 constexpr float kShaft = 0.16F;
 constexpr float kHead = 0.42F;
 constexpr float kHeadLength = 1.0F;
 constexpr int kSides = 20;
 
-// Linear light; neither is a colour of sand or tool.
+// Colours in linear light, different from those of the sand and the tool.
 const glm::vec3 kBlue(0.04F, 0.22F, 0.85F);
 const glm::vec3 kMagenta(0.80F, 0.02F, 0.50F);
 
-/// A circle around the arrow's axis.
+/// Circle around the arrow's axis.
 struct Ring {
     float along, radius;  // [scene unit]
 };
 
-/// The faces from one circle to the next.
+/// Adds the faces between two circles.
 void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring& low, const Ring& high) {
     const glm::vec3 axis = glm::normalize(arrow.to - arrow.from);
     const glm::vec3 aside = std::abs(axis.z) < 0.9F ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
@@ -47,7 +47,7 @@ void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring&
 
 std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius) {
     const float length = glm::length(arrow.to - arrow.from);
-    // A short arrow is a small one, not a stump behind a head.
+    // A short arrow is a small arrow, so that it always has a shaft.
     const float size = toolRadius * std::min(1.0F, length / (1.5F * kHeadLength * toolRadius));
     const float neck = length - kHeadLength * size;
     std::vector<SolidVertex> triangles;
@@ -59,7 +59,7 @@ std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius) {
 }
 
 Box boxOf(const ForceArrow& arrow, float toolRadius) {
-    const double wide = 1.01 * double{kHead} * double{toolRadius};  // more, for what GL's floats may round
+    const double wide = 1.01 * double{kHead} * double{toolRadius};  // a little more, for rounding of GL's floats
     return {glm::dvec3(glm::min(arrow.from, arrow.to)) - wide, glm::dvec3(glm::max(arrow.from, arrow.to)) + wide};
 }
 

@@ -10,25 +10,26 @@
 
 namespace render_node {
 
-/// The tool's force as it is shown: from the tool's surface, along the force.
+/// Arrow of the tool's force: it begins on the tool's surface and points along the force.
 struct ForceArrow {
-    glm::vec3 from, to;  // [scene unit], apart
-    bool longest;        // the force is the greatest that there is an arrow for
+    glm::vec3 from, to;  // [scene unit], two different points
+    bool longest;        // the force is at least kMostNewtons
     friend bool operator==(const ForceArrow&, const ForceArrow&) = default;
 };
 
-/// Its triangles, a shaft and a head, as thick as suits a tool of this radius [scene unit].
+/// Returns the triangles of an arrow: a shaft and a head, with a thickness for a tool of radius `toolRadius` [scene
+/// unit].
 [[nodiscard]] std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius);
-/// A box around these triangles.
+/// Returns a box around the triangles of makeArrow().
 [[nodiscard]] Box boxOf(const ForceArrow& arrow, float toolRadius);
 
-/// An arrow in GL. One thread, its context current.
+/// Arrow in GL. Used by one thread, with its context current.
 class ForceArrowView {
 public:
-    /// Throws std::runtime_error when a shader does not compile.
+    /// Throws std::runtime_error if a shader does not compile.
     ForceArrowView() : program_("solid.vert.glsl", "arrow.frag.glsl") {}
     [[nodiscard]] const GlProgram& program() const { return program_; }
-    /// The program must be in use and have its view.
+    /// Draws the arrow. The program must be in use, with its camera set.
     void draw(const ForceArrow& arrow, float toolRadius);
 
 private:

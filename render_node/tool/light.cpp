@@ -16,11 +16,11 @@ ToolLight::ToolLight(const sand::ToolShape& shape, const sand::Heading& heading,
     const double width = sand::isRound(shape.kind) ? 1.0 : std::max(0.02, double(shape.halfWidth) / shape.radius);
     glm::dvec3 half(1, width, 1);
     if (shape.kind != ellipsoid) {
-        half.z = 0.3;  // a plate a quarter of the radius thick
+        half.z = 0.3;  // for a plate whose thickness is a quarter of the radius
         centre.z -= (1 - 0.125) * toolRadius;
     }
     if (shape.kind == rectangle) {
-        half *= glm::dvec3(1.12, 1.12, 1);  // between its sides and its corners
+        half *= glm::dvec3(1.12, 1.12, 1);  // an ellipse between the rectangle's sides and its corners
     }
     radius = toolRadius * std::max(half.x, half.z);
     const glm::dvec2 along = glm::normalize(glm::dvec2(heading.x, heading.y));

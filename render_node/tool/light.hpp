@@ -7,13 +7,13 @@
 
 namespace render_node {
 
-/// The ellipsoid that a tool is to the light: itself, or around its plate.
+/// Ellipsoid that replaces a tool when light is computed: the tool itself, or an ellipsoid around its plate.
 struct ToolLight {
     glm::dvec3 centre;       // [scene unit]
-    double radius = 0;       // [scene unit], its longest half axis
-    glm::dmat3 toBall{1.0};  // from the scene to where its radius is 1
+    double radius = 0;       // [scene unit], longest half axis
+    glm::dmat3 toBall{1.0};  // from the scene to a space in which the ellipsoid has radius 1
 
-    /// Of a tool with its centre there.
+    /// Makes the ellipsoid of a tool whose centre is at `place`.
     ToolLight(const sand::ToolShape& shape, const sand::Heading& heading, const glm::dvec3& place, double toolRadius);
 };
 

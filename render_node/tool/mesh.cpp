@@ -38,22 +38,22 @@ std::vector<Triangle> icosahedron() {
     return triangles;
 }
 
-constexpr float kPlate = 0.25F;       // [radius], how thick flat tools and soles are
-constexpr float kHandle = 0.07F;      // [radius], of the rod from there to the centre
-constexpr float kKnob = 0.16F;        // [radius], of the ball at its end
-constexpr int kAround = 48, kIn = 4;  // pieces of an ellipse, and rings of the bowl below it
+constexpr float kPlate = 0.25F;       // [radius], thickness of flat tools and soles
+constexpr float kHandle = 0.07F;      // [radius], radius of the rod from the plate to the centre
+constexpr float kKnob = 0.16F;        // [radius], radius of the ball at the end of the rod
+constexpr int kAround = 48, kIn = 4;  // parts of an ellipse, and rings of the bowl below it
 
 glm::vec2 onCircle(int i) {
     const double turn = 2 * std::numbers::pi * i / kAround;
     return {std::cos(turn), std::sin(turn)};
 }
 
-/// Collects triangles in the tool's own axes.
+/// Triangles in the tool's own axes.
 struct Solid {
     std::vector<SolidVertex> vertices{};
 
     void add(const glm::vec3& position, const glm::vec3& normal) { vertices.push_back({position, normal, {}}); }
-    /// Counter-clockwise from outside.
+    /// Adds a quad with its corners counter-clockwise, seen from outside.
     void quad(const std::array<glm::vec3, 4>& corners, const std::array<glm::vec3, 4>& normals) {
         for (const std::size_t i : {0U, 1U, 2U, 0U, 2U, 3U}) {
             add(corners[i], normals[i]);
@@ -73,7 +73,7 @@ struct Solid {
             flat({corner(a), corner(b), corner(c), corner(d)});
         }
     }
-    /// An upright elliptic plate with a bowl below it. `middle` and `half` in radii.
+    /// Adds an upright elliptic plate with a bowl below it. `middle` and `half` are in radii.
     void plate(const glm::vec2& middle, const glm::vec2& half, float lift, float bulge, float top) {
         const auto at = [&](int i, float share, float z) { return glm::vec3(middle + share * half * onCircle(i), z); };
         const auto below = [&](float share) { return lift - 1 + bulge * share * share; };
@@ -155,7 +155,7 @@ std::vector<SolidVertex> makeTool(const sand::ToolShape& shape, const sand::Head
 }
 
 Box boxOfTool(const sand::ToolShape& shape) {
-    // A hundredth more, for what GL's floats may round.
+    // A hundredth more, for rounding of GL's floats.
     if (shape.kind == sand::ToolKind::sphere || shape.kind == sand::ToolKind::ellipsoid) {
         return {glm::dvec3(-1.01), glm::dvec3(1.01)};
     }

@@ -9,19 +9,21 @@
 
 namespace render_node {
 
-/// Triangles of a sphere of radius 1 around the origin: an icosahedron, each face split into four, `splits` times.
+/// Returns the triangles of a sphere of radius 1 around the origin. They come from an icosahedron: each triangle is
+/// split into four, `splits` times.
 [[nodiscard]] std::vector<SolidVertex> makeSphere(int splits);
-/// Any tool, as it is turned now, around its centre; its radius is 1. Flat ones and soles are plates on a handle.
+/// Returns the triangles of a tool of radius 1 around its centre, turned to `heading`. Flat tools and soles are plates
+/// on a handle.
 [[nodiscard]] std::vector<SolidVertex> makeTool(const sand::ToolShape& shape, const sand::Heading& heading);
-/// The same within this.
+/// Returns a box around makeTool() for any heading.
 [[nodiscard]] Box boxOfTool(const sand::ToolShape& shape);
 
-/// The tool of radius 1: the shader moves and scales it.
+/// Tool of radius 1 in GL. The shader moves and scales it.
 class ToolMesh {
 public:
-    /// A tool of another radius alone costs nothing.
+    /// Makes the triangles for this tool if they differ from the last ones. A change of the radius alone costs no time.
     void show(const sand::ToolShape& shape, const sand::Heading& heading);
-    /// After show().
+    /// Draws the tool. Must be called after show().
     void draw() const { mesh_.draw(); }
 
 private:

@@ -7,12 +7,12 @@
 namespace render_node {
 namespace {
 
-// As in shaders/light.glsl, in radii; a hundredth more, for what GL's floats may round.
+// The values of shaders/light.glsl [radius], with a hundredth more for rounding of GL's floats.
 constexpr double kSkyReach = 1.8 * 1.01;
 constexpr double kShadowLength = 20.0 * 1.01;
 constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;
-constexpr double kBegins = 1.2;   // above the centre there is none
-constexpr double kLowSun = 0.25;  // of its height: then the shadow is too long to be bounded at two heights
+constexpr double kBegins = 1.2;   // higher above the centre there is no shadow
+constexpr double kLowSun = 0.25;  // least z of `sun_`; below it the shadow is too long to be bounded at two heights
 
 bool overlap(const Box& a, const Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
@@ -39,15 +39,16 @@ bool ToolReach::meets(const Box& box) const {
 
 Box ToolReach::closeBy(double lowest, double highest) const {
     const double reach = kSkyReach * radius_;
-    // High above everything, its ball of dimmed places meets little of it, or nothing.
+    // If the tool is high above everything, the sphere in which it takes skylight reaches only little of the scene, or
+    // misses it.
     const double above = std::max(0.0, centre_.z - highest);
     const double wide = std::sqrt(std::max(0.0, reach * reach - above * above));
     return {{centre_.x - wide, centre_.y - wide, std::max(centre_.z - reach, lowest)},
             {centre_.x + wide, centre_.y + wide, std::min(centre_.z + reach, highest)}};
 }
 
-// Where the cone of the shadow is at a height it is an ellipse, drawn out away from the sun. Of lines through such a
-// cone each goes through its ellipses at both ends.
+// The cone of the shadow meets a height in an ellipse, elongated away from the sun. Every line within the cone passes
+// through the ellipses at both ends.
 Box ToolReach::shadowAtHeight(double height) const {
     const double slant = std::hypot(sun_.x, sun_.y) / sun_.z;
     const double along = (centre_.z - height) / sun_.z;

@@ -8,26 +8,29 @@
 
 namespace render_node {
 
-/// Where a tool takes light from what is around it: close by from the sky, and along its shadow from the sun. Bounds
-/// of what shaders/light.glsl computes; beyond, that is exactly nothing.
+/// Bounds of the space in which a tool takes light away. Close to the tool it takes light from the sky. Along its
+/// shadow it takes light from the sun.
+///
+/// The class bounds the values that shaders/light.glsl computes. Outside the bounds those values are exactly 0.
 class ToolReach {
 public:
-    /// All in scene units; `sun` points towards it, of length 1. The radius is positive.
+    /// All lengths are in scene units. `sun` points towards the sun and has length 1. The radius is positive.
     ToolReach(const glm::dvec3& centre, double radius, const glm::dvec3& sun)
         : centre_(centre), radius_(radius), sun_(sun) {}
 
-    /// Whether it may change the look of anything within a box.
+    /// Returns whether the tool may change the look of anything within a box.
     [[nodiscard]] bool meets(const Box& box) const;
-    /// What it takes skylight from, where nothing lies outside these heights.
+    /// Returns the box in which the tool takes skylight away. All objects are between these heights.
     [[nodiscard]] Box closeBy(double lowest, double highest) const;
-    /// Its shadow between two heights: within the convex hull of the corners of two boxes, the last the lower one.
+    /// Returns two boxes. The convex hull of their corners contains the shadow between two heights. The second box is
+    /// the lower one.
     [[nodiscard]] std::array<Box, 2> shadowBetween(double lowest, double highest) const;
 
 private:
-    // Half of its width so far behind the tool [scene unit].
+    // Returns half of the shadow's width at the distance `along` behind the tool [scene unit].
     [[nodiscard]] double halfWidth(double along) const;
     [[nodiscard]] Box shadowAt(double along) const;
-    [[nodiscard]] Box shadowAtHeight(double height) const;  // around its ellipse there
+    [[nodiscard]] Box shadowAtHeight(double height) const;  // around the ellipse of the shadow at this height
 
     glm::dvec3 centre_;
     double radius_;
