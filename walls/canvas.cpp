@@ -10,7 +10,7 @@
 namespace walls {
 namespace {
 
-/// How far apart neighbours start, in pixels: across, down.
+/// Returns the distance between the starts of neighbouring tiles, across and down [pixel].
 glm::dvec2 pitchInPixels(const Grid& grid) {
     return (grid.tileSize + grid.bezel) / grid.tileSize * glm::dvec2(grid.tilePixels);
 }
@@ -22,7 +22,7 @@ int nearest(double pixels) { return static_cast<int>(std::lround(pixels)); }
 Canvas wallCanvas(const Wall& wall) {
     Canvas canvas;
     canvas.tiles.resize(wall.tiles.size());
-    int right = 0;  // of what is laid out so far
+    int right = 0;  // right end of the tiles so far
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
         const Tile& tile = wall.tiles[i];
         PixelRect& rect = canvas.tiles[i];

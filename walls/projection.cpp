@@ -33,7 +33,7 @@ View viewOf(const Screen& screen, glm::dvec3 eye, double near, double far) {
     result.far = far;
     result.eye = eye;
     result.projection = glm::frustumRH_NO(result.left, result.right, result.bottom, result.top, near, far);
-    // The screen's axes as rows: into a frame where the screen is upright and the eye looks along -z.
+    // The rows are the screen's axes. In the resulting frame the screen is upright, and the eye looks along -z.
     const glm::dmat3 axes = glm::transpose(glm::dmat3(right, up, normal));
     result.view = glm::translate(glm::dmat4(axes), -eye);
     result.viewProjection = result.projection * result.view;
@@ -48,7 +48,7 @@ glm::dmat4 stageToRoom(const Stage& stage, double fieldWidth, double fieldHeight
     if (!(fieldWidth > 0) || !(fieldHeight > 0)) {
         throw std::invalid_argument(fmt::format("a field of {} x {} cannot be staged", fieldWidth, fieldHeight));
     }
-    // Columns: where east, north and up of the scene point in the room.
+    // The columns are the directions of the scene's east, north and up in the room.
     const glm::dmat3 flat({1, 0, 0}, {0, 0, -1}, {0, 1, 0});
     glm::dmat4 result = glm::translate(glm::dmat4(1), stage.centre);
     result = glm::rotate(result, glm::radians(stage.turnDegrees), glm::dvec3(0, 1, 0));

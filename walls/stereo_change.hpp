@@ -5,11 +5,11 @@
 
 namespace walls {
 
-/// The wall in another mode, on outputs that are open already: their number and sizes cannot change while a session
-/// runs. Where a tile has an output for each eye, a mode that draws one eye shows it on both.
+/// Returns the wall in another stereo mode on its open outputs. The number and the sizes of outputs cannot change
+/// during a session. If a tile has an output for each eye, a mode that draws one eye shows it on both outputs.
 ///
-/// A function of the wall as the session began and of the mode, so that every rank finds the same. Throws
-/// base::InputError in one line for a mode that these outputs cannot show.
+/// The result depends only on the wall at the start of the session and on the mode, so that all ranks agree. Throws
+/// base::InputError, with one line, if these outputs cannot show the mode.
 [[nodiscard]] Wall shownOnItsOutputs(const Wall& wall, Stereo stereo);
 
 }  // namespace walls

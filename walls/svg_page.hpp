@@ -9,11 +9,12 @@
 
 namespace walls {
 
-/// A picture in lines, written as SVG. Points are in pixels of the page, from its top left.
+/// Line drawing that is written as SVG. Points are in pixels of the page, from its top left.
 class SvgPage {
 public:
     enum class Anchor { start, middle, end };
-    /// A line's or area's look: CSS colours, "none" for no filling; `dash` as SVG writes it, empty for a whole line.
+    /// Look of a line or an area, in CSS colours. `fill` "none" means no filling. `dash` is written as in SVG; empty
+    /// means a solid line.
     struct Style {
         std::string_view stroke = "#333333", fill = "none", dash{};
         double width = 1;  // [pixel]
@@ -22,12 +23,12 @@ public:
     void polygon(const std::vector<glm::dvec2>& points, const Style& style);
     void line(glm::dvec2 from, glm::dvec2 to, const Style& style);
     void circle(glm::dvec2 centre, double radius, const Style& style);
-    /// `size` is the height of the letters' line; characters that mean something in XML are written as entities.
+    /// Adds a text whose line is `size` pixels high. Characters with a meaning in XML are written as entities.
     void text(glm::dvec2 at, double size, Anchor anchor, std::string_view text, std::string_view colour = "#222222");
-    /// A length between two points: a line with a tick across each end and its text beside the middle.
+    /// Adds a length between two points: a line with a tick at each end, and its text beside the middle.
     void dimension(glm::dvec2 from, glm::dvec2 to, const std::string& text, double size);
 
-    /// The whole file.
+    /// Returns the whole file.
     [[nodiscard]] std::string finished(glm::dvec2 size) const;
 
 private:

@@ -49,8 +49,8 @@ inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
 [[nodiscard]] const std::vector<std::string>& stereoNames();
 /// Returns the mode with this name. Throws base::InputError, which lists all names, if there is no such mode.
 [[nodiscard]] Stereo stereoNamed(const std::string& name);
-/// Returns the eyes that a mode draws, in the order of drawing: the middle for `mono`, one eye for `left` and `right`,
-/// left and right for all other modes.
+/// Returns the eyes that a mode draws, in the order of drawing. They are the middle for `mono`, one eye for `left` and
+/// `right`, and left and right for all other modes.
 [[nodiscard]] std::span<const Eye> eyesOf(Stereo stereo);
 /// Returns whether each output shows one picture that is packed from both eyes' pictures.
 [[nodiscard]] bool packsEyes(Stereo stereo);

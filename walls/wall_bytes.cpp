@@ -141,7 +141,7 @@ void require(bool holds, const Tile& tile, const char* what) {
     }
 }
 
-/// The outputs must be those of the stereo, eye for eye: a rank draws what they say.
+/// Checks that the outputs and their eyes are those of the stereo mode, because a rank draws by them.
 void checkOutputs(const Tile& tile, Stereo stereo) {
     const std::vector<Output> expected = outputsOf(stereo, tile.name);
     require(tile.outputs.size() == expected.size(), tile, "has outputs of another stereo");

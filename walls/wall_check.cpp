@@ -16,7 +16,7 @@ std::array<glm::dvec3, 4> cornersOf(const Screen& s) {
     return {s.lowerLeft, s.lowerRight, s.upperRight(), s.upperLeft};
 }
 
-/// The screen without a rim of kTouch, never less than its middle half.
+/// Returns the screen without a rim of kTouch, but at least its middle half.
 Screen inner(const Screen& s) {
     const double rimX = std::min(kTouch, s.width() / 4), rimY = std::min(kTouch, s.height() / 4);
     Screen result;
@@ -26,7 +26,7 @@ Screen inner(const Screen& s) {
     return result;
 }
 
-/// Whether a direction separates the shadows of two rectangles on it.
+/// Returns whether the projections of two rectangles onto a direction are separate.
 bool apart(const std::array<glm::dvec3, 4>& a, const std::array<glm::dvec3, 4>& b, glm::dvec3 along) {
     const auto reach = [&](const std::array<glm::dvec3, 4>& corners) {
         std::array<double, 4> shadows{};
@@ -94,7 +94,7 @@ std::optional<std::string> eyeFault(const Wall& wall, const Tile& tile) {
 }
 
 std::optional<std::string> viewerFault(const Wall& wall) {
-    // A screen beside the viewer, as in a CAVE, is at right angles and in order.
+    // A screen at the viewer's side, as in a CAVE, is at right angles to the viewer's `right`. It is in order.
     const auto faces = [&](const Tile& tile) { return glm::dot(wall.viewer.right, tile.screen.right()) > -0.1; };
     if (eyesOf(wall.stereo).size() < 2 || std::any_of(wall.tiles.begin(), wall.tiles.end(), faces)) {
         return std::nullopt;
@@ -118,8 +118,8 @@ std::optional<std::string> viewFault(const Wall& wall) {
     return viewerFault(wall);
 }
 
-// Two flat convex figures are apart exactly when a normal of one, a cross product of two edges, or (in one plane) a
-// normal of an edge separates them.
+// Two flat convex figures are apart exactly if a direction separates them. It is enough to try the normals of both
+// figures and all cross products of two edges. In one plane it is enough to try the edges' normals.
 Contact contactOf(const Screen& first, const Screen& second) {
     const Screen innerA = inner(first), innerB = inner(second);
     const auto a = cornersOf(innerA), b = cornersOf(innerB);

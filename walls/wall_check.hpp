@@ -8,40 +8,43 @@
 
 #include "walls/wall.hpp"
 
-/// What must hold of every wall, wherever it comes from. Pure functions, safe from any thread.
+/// Checks that every wall must pass, from any source. All functions are pure. Any thread may call them.
 namespace walls {
 
-inline constexpr double kMaxEyeSeparation = 0.5;              // [m]
-inline constexpr double kMinEyeDistance = 0.01;               // [m], nearer than this a frustum has no sensible shape
+inline constexpr double kMaxEyeSeparation = 0.5;  // [m]
+inline constexpr double kMinEyeDistance = 0.01;   // [m]; at a smaller distance the frustum has no sensible shape
 inline constexpr double kMinRefresh = 1, kMaxRefresh = 1000;  // [Hz]
-inline constexpr double kShapeTolerance = 0.01;               // of a pixel's width against its height
-// Corners measured by tape cross by millimetres where screens only touch.
+inline constexpr double kShapeTolerance = 0.01;  // largest error of the ratio of a pixel's width to its height
+// Corners that were measured by tape may overlap by millimetres although the screens only touch.
 inline constexpr double kTouch = 0.005;  // [m]
 inline constexpr std::size_t kMaxTracking = 200;
 
-/// Names become parts of file names: 1 to 32 letters, digits, '_' or '-'.
+/// Returns whether a name fits a tile: 1 to 32 letters, digits, '_' or '-'. It becomes part of file names.
 [[nodiscard]] bool isTileName(std::string_view name);
-/// Short, and without control characters: fit to be printed in a line of its own.
+/// Returns whether a text can be printed on one line: at most `longest` bytes, without control characters.
 [[nodiscard]] bool isOneLine(std::string_view text, std::size_t longest);
 
-/// Width against height of one pixel of an eye's picture.
+/// Returns the ratio of width to height of one pixel of an eye's picture.
 [[nodiscard]] double pixelShape(const Tile& tile);
-/// What pixelShape should be: 1; where the display stretches halves of a frame (isStretched), 2 or 1/2.
+/// Returns the right value for pixelShape(): 1, or 2 or 1/2 if the display stretches halves of a frame (isStretched()).
 [[nodiscard]] double rightPixelShape(Stereo stereo, const Tile& tile);
 
-/// What is wrong with the shape of a tile's pixels; nothing when all is well.
+/// Returns the fault in the shape of a tile's pixels, or nullopt.
 [[nodiscard]] std::optional<std::string> pixelFault(Stereo stereo, const Tile& tile);
-/// The first drawn eye that is not kMinEyeDistance before the tile: behind it, or the corners are mirrored.
+/// Returns the fault of the first drawn eye that is not at least kMinEyeDistance in front of the tile, or nullopt. Such
+/// an eye is behind the tile, or the tile's corners are mirrored.
 [[nodiscard]] std::optional<std::string> eyeFault(const Wall& wall, const Tile& tile);
-/// Eyes that are swapped on every tile: the viewer's `right` points the wrong way.
+/// Returns the fault that the eyes are swapped on every tile, or nullopt. In that case the viewer's `right` points the
+/// wrong way.
 [[nodiscard]] std::optional<std::string> viewerFault(const Wall& wall);
-/// The first of the above that a wall has: what a wall shown in another mode must be asked again.
+/// Returns the first fault that the functions above find in a wall, or nullopt. Must be called again if the wall is
+/// shown in another mode.
 [[nodiscard]] std::optional<std::string> viewFault(const Wall& wall);
 
-/// How the lit rectangles of two tiles lie to each other.
+/// Contact between the lit rectangles of two tiles.
 enum class Contact : std::uint8_t { none, overlapping, crossing };
-/// Rectangles that meet by no more than kTouch do not: overlapping ones share area in one plane, crossing ones pass
-/// through each other.
+/// Returns the contact between two rectangles. Overlapping rectangles share area in one plane. Crossing rectangles pass
+/// through each other. Contact of at most kTouch does not count.
 [[nodiscard]] Contact contactOf(const Screen& a, const Screen& b);
 
 }  // namespace walls

@@ -15,7 +15,7 @@
 namespace walls {
 namespace {
 
-constexpr double kSameLength = 1e-9;  // [m], what rounding may add to a sum of lengths
+constexpr double kSameLength = 1e-9;  // [m], largest rounding error of a sum of lengths
 
 std::string line(const char* what, const std::string& found) { return fmt::format("  {:<9} {}\n", what, found); }
 

@@ -8,8 +8,8 @@
 
 namespace walls {
 
-/// What holds of this wall, a line for each thing that was checked, with the figures found on its tiles. Throws
-/// std::logic_error when tiles are not where the grid's numbers say: a mistake of ours and not of the file.
+/// Returns one line for each check of this wall, with the figures that were found on its tiles. Throws std::logic_error
+/// if tiles are not where the grid's numbers place them. That is an error of this program, not of the file.
 [[nodiscard]] std::string checklist(const Wall& wall);
 
 }  // namespace walls

@@ -6,7 +6,7 @@
 namespace walls::wall_file {
 namespace {
 
-/// The gap between lit areas; negative where they overlap.
+/// Returns the gap between lit areas [m]. It is negative if they overlap.
 glm::dvec2 readGap(const TomlTable& table, glm::dvec2 tileSize) {
     if (table.has("bezel") && table.has("overlap")) {
         table.fail("overlap", "a grid has bezels or an overlap, not both: leave one out");
@@ -23,12 +23,12 @@ glm::dvec2 readGap(const TomlTable& table, glm::dvec2 tileSize) {
         return {0, 0};
     }
     const glm::dvec2 overlap = lengths(table, "overlap", 0);
-    // A pixel's width is the least by which neighbours must differ: 1 mm, as for every length here.
+    // Neighbouring tiles must be offset by at least 1 mm, the least length in a wall file.
     if (glm::any(glm::greaterThan(overlap + 1e-3, tileSize))) {
         table.fail("overlap", fmt::format("overlap is in metres and must be less than the tile, got [{}, {}]",
                                           overlap.x, overlap.y));
     }
-    return glm::dvec2(0) - overlap;  // and not -overlap: no negative zero in what is printed
+    return glm::dvec2(0) - overlap;  // -overlap could print a negative zero
 }
 
 }  // namespace

@@ -14,14 +14,14 @@ namespace walls::wall_file {
 namespace {
 
 constexpr int kMaxDevice = 63;
-constexpr double kMaxDesktop = 32767;  // [pixel], an X coordinate has 16 bits
+constexpr double kMaxDesktop = 32767;  // [pixel]; an X coordinate has 16 bits
 
 struct Targets {
     std::vector<std::string> monitors;
     std::vector<glm::ivec2> windows;
 };
 
-/// What already shows something, so that nothing else may: by host, display and name or pixels.
+/// Monitors and window areas that are already in use, by host, display and name or pixels.
 struct Taken {
     std::set<std::string> tiles;
     std::map<std::tuple<std::string, std::string, std::string>, std::string> monitors;  // -> output
@@ -32,7 +32,7 @@ struct Taken {
     std::vector<Window> windows;
 };
 
-/// A word that may stand on a command line: no spaces, and no '-' in front.
+/// Returns whether a word can be part of a command line: no spaces, and no '-' at its start.
 bool isWord(const std::string& word, const std::string& alsoAllowed) {
     return !word.empty() && word.size() <= 253 && word[0] != '-' && std::all_of(word.begin(), word.end(), [&](char c) {
         return isTileName(std::string_view(&c, 1)) || alsoAllowed.find(c) != std::string::npos;
@@ -122,7 +122,8 @@ void checkCount(const TomlTable& table, const char* key, std::size_t count, cons
     }
 }
 
-/// `where` stands for the host: tiles of one table that names none may be on a machine each.
+/// Claims the output's monitor or window area. `where` is the host. If a table names no host, `where` is different for
+/// each of its tiles, because each may be on another machine.
 void claim(const TomlTable& table, const Tile& tile, const Output& output, glm::ivec2 size, const std::string& where,
            Taken& taken) {
     const std::string& display = tile.place.display;

@@ -41,12 +41,13 @@ Screen readCorners(const TomlTable& table) {
     return screen;
 }
 
-/// Two screens on one another are a slip of the tape unless the file says that they are meant to be.
+/// Checks for screens that lie on one another. They are a measuring error unless the file declares them with
+/// `overlaps`.
 void checkContacts(const TomlTable& table, const Tile& tile, const std::vector<Tile>& others) {
     const std::vector<std::string> meant = table.textsOr("overlaps", {});
     for (const std::string& name : meant) {
         if (!isAmong(others, name)) {
-            table.fail("overlaps", fmt::format("overlaps names '{}', which is no tile before this screen", name));
+            table.fail("overlaps", fmt::format("overlaps names '{}'; it must name a tile before this screen", name));
         }
     }
     for (const Tile& other : others) {

@@ -9,8 +9,8 @@
 namespace walls::wall_file {
 namespace {
 
-// A tape measure is good for 1 mm in 1 m; beyond two of them a corner is a mistake.
-constexpr double kSquareTolerance = 2e-3;  // cosine of the angle at a corner
+// A tape measure is accurate to 1 mm in 1 m. A corner that is off by more than twice that is a mistake.
+constexpr double kSquareTolerance = 2e-3;  // largest cosine of the angle at a corner
 
 std::string text(glm::dvec3 p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x, p.y, p.z); }
 

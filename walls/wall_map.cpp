@@ -13,11 +13,11 @@
 namespace walls {
 namespace {
 
-constexpr int kWidestMap = 12;  // [tile]: a hundred columns of text hold no more
+constexpr int kWidestMap = 12;  // [tile]; so many columns fit into a hundred letters
 
 using Cell = std::pair<int, int>;  // row from the top, column
 
-/// Boxes as the viewer sees them; the columns of a wide grid are left out beyond kWidestMap.
+/// Returns the boxes of the grid as the viewer sees them. Omits the columns of a wide grid beyond kWidestMap.
 std::string gridMap(const Grid& grid) {
     const int columns = std::min<int>(grid.columns, kWidestMap);
     std::string rule = "  ";
@@ -50,13 +50,14 @@ Cell beyond(Cell cell, Edge edge) {
     return {cell.first - 1, cell.second};
 }
 
-/// The screens that are left over, the one the viewer faces most in front.
+/// Returns the index of the explicit screen without a place that the viewer faces most, or the number of tiles if all
+/// have one.
 std::size_t frontOf(const Wall& wall, const std::map<std::size_t, Cell>& placed) {
     const glm::dvec3 forward = glm::cross(glm::dvec3(0, 1, 0), wall.viewer.right);
     std::size_t best = wall.tiles.size();
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
         const auto facing = [&](std::size_t tile) { return -glm::dot(wall.tiles[tile].screen.normal(), forward); };
-        // A hair more, so that of equals the first is taken.
+        // The small margin chooses the first of equal screens.
         if (wall.tiles[i].row == 0 && !placed.contains(i) &&
             (best == wall.tiles.size() || facing(i) > facing(best) + 1e-9)) {
             best = i;
@@ -65,7 +66,8 @@ std::size_t frontOf(const Wall& wall, const std::map<std::size_t, Cell>& placed)
     return best;
 }
 
-/// Each explicit screen's cell: screens that join lie beside each other; what joins nothing starts a row of its own.
+/// Returns the cell of each explicit screen. Joined screens are beside each other. A screen that joins no placed screen
+/// starts another row.
 std::map<std::size_t, Cell> unfolded(const Wall& wall) {
     const std::vector<Seam> seams = seamsOf(wall);
     std::map<std::size_t, Cell> placed;
@@ -75,7 +77,7 @@ std::map<std::size_t, Cell> unfolded(const Wall& wall) {
         taken[cell] = tile;
     };
     for (std::size_t front = frontOf(wall, placed); front < wall.tiles.size(); front = frontOf(wall, placed)) {
-        // A row below all the others, with one between in case that something joins above.
+        // Starts a row below all others. Leaves one row free for a screen that joins above.
         place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0});
         std::queue<std::size_t> next({front});
         for (; !next.empty(); next.pop()) {

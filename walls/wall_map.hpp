@@ -8,8 +8,9 @@
 
 namespace walls {
 
-/// The wall in letters: the grid as the viewer sees it, and below it the explicit screens, unfolded along the edges
-/// where they join, as one would lay a paper room out flat. A box holds the rank and, for screens, the name.
+/// Returns a map of the wall in text. It shows the grid as the viewer sees it, and below it the explicit screens. The
+/// screens are unfolded along the edges where they join, like a flattened paper room. A box has the rank and, for
+/// screens, the name.
 [[nodiscard]] std::string textMap(const Wall& wall);
 
 }  // namespace walls

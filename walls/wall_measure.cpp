@@ -25,7 +25,7 @@ std::pair<glm::dvec3, glm::dvec3> endsOf(const Screen& s, Edge edge) {
     return {s.upperLeft, s.upperRight()};
 }
 
-/// Adds the way from one edge to its neighbour's, of which `along` should be all.
+/// Measures the way from one edge to the neighbour's edge. It should be parallel to `along`.
 void measure(Gaps& gaps, const std::pair<glm::dvec3, glm::dvec3>& from, const std::pair<glm::dvec3, glm::dvec3>& to,
              glm::dvec3 along) {
     for (const glm::dvec3 way : {to.first - from.first, to.second - from.second}) {

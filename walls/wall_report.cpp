@@ -17,7 +17,7 @@ namespace {
 
 std::string point(glm::dvec3 p) { return fmt::format("({:.3f}, {:.3f}, {:.3f})", p.x, p.y, p.z); }
 
-/// The angle between two edges of the screen as the eye sees it [degree].
+/// Returns the angle between two edges of the screen as the eye sees it [degree].
 double angleOf(double low, double high, double near) {
     return glm::degrees(std::atan(high / near) - std::atan(low / near));
 }
@@ -58,7 +58,7 @@ std::string tileLine(const Wall& wall, const Tile& tile) {
                        point(tile.screen.lowerLeft), outputs + placeText(tile.place));
 }
 
-/// Whether the sand, taken as a square field, lies between the clipping planes of the screens that show it.
+/// Returns lines with the corners of the sand, taken as a square field, and the tiles that show each corner.
 std::string stageLines(const Wall& wall) {
     const glm::dmat4 toRoom = stageToRoom(wall.stage, 1, 1, 0);
     std::string lines =

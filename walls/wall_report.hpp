@@ -8,11 +8,11 @@
 
 namespace walls {
 
-/// A map of the wall in text, what was checked, and the facts of every tile, for a person who holds them against a
-/// tape measure. Throws std::logic_error when the tiles are not where the grid's numbers say: a mistake of ours.
+/// Returns a report for a person with a tape measure. It has a map in text, the checks, and the data of every tile.
+/// Throws std::logic_error if the tiles are not where the grid's numbers place them. That is an error of this program.
 [[nodiscard]] std::string describe(const Wall& wall);
 
-/// One line per rank, from 1: its host, or "-" where the wall names none. What a launcher reads.
+/// Returns one line per rank, from 1, with its host, or "-" if the wall names none. Launchers read these lines.
 [[nodiscard]] std::string hostLines(const Wall& wall);
 
 }  // namespace walls

@@ -16,7 +16,7 @@ namespace {
 
 using Anchor = SvgPage::Anchor;
 
-constexpr double kPanelWidth = 900, kPanelHeight = 640;  // [pixel], the room one view may take
+constexpr double kPanelWidth = 900, kPanelHeight = 640;  // [pixel], largest size of one view
 constexpr double kTitleWidth = 540;                      // [pixel]
 constexpr double kMargin = 90, kLetters = 13;            // [pixel]
 constexpr SvgPage::Style kTileStyle{"#333333", "#cdd6e080", "", 1.2};
@@ -35,7 +35,7 @@ std::vector<glm::dvec3> sandCorners(const Wall& wall) {
     return corners;
 }
 
-/// The tile that is drawn straight on: of the grid, or the screen the viewer faces.
+/// Returns the tile that the front view shows straight on: a tile of the grid, or the screen that the viewer faces.
 const Tile& mainTile(const Wall& wall) {
     const glm::dvec3 forward = glm::cross(glm::dvec3(0, 1, 0), wall.viewer.right);
     return *std::max_element(wall.tiles.begin(), wall.tiles.end(), [&](const Tile& a, const Tile& b) {
@@ -51,25 +51,26 @@ bool isFlat(const Wall& wall) {
     });
 }
 
-/// The lower left corner of what is drawn straight on.
+/// Returns the lower left corner of the grid or screen that is drawn straight on.
 glm::dvec3 mainCorner(const Wall& wall) {
     return mainTile(wall).row > 0 ? wall.grid->lowerLeft : mainTile(wall).screen.lowerLeft;
 }
 
-/// Whether the height of its lower edge above y = 0 is worth a figure.
+/// Returns whether the drawing should show the height of the lower edge above y = 0.
 bool standsOnFloor(const Wall& wall) {
     const double height = mainCorner(wall).y;
     const double top = mainTile(wall).screen.upperLeft.y;
     return mainTile(wall).screen.up().y > 0.999 && height > 0.01 && height < top / 2;
 }
 
-/// Where the eye sees a point on the plane of the screen; the point itself when it is not before the eye.
+/// Returns the place where the eye sees a point on the plane of the screen. Returns the point itself if it is not in
+/// front of the eye.
 glm::dvec3 seenOn(const Screen& screen, glm::dvec3 eye, glm::dvec3 point) {
     const double ahead = screen.distanceTo(eye) - screen.distanceTo(point);
     return ahead > 1e-3 ? eye + (point - eye) * (screen.distanceTo(eye) / ahead) : point;
 }
 
-/// One view of the room: two of its axes on the page.
+/// View of the room, along two of its axes.
 class Panel {
 public:
     Panel(glm::dvec3 across, glm::dvec3 down) : across_(across), down_(down) {}
@@ -104,7 +105,7 @@ private:
     double top_ = 0, scale_ = 1;        // [pixel], [pixel/m]
 };
 
-/// Rank, name and pixels at the upper left of a tile, as large as it has room for.
+/// Writes rank, name and pixels at the upper left of a tile, as large as fits.
 void label(SvgPage& page, const Panel& panel, const Tile& tile) {
     glm::dvec2 low(1e9), high(-1e9);
     for (const glm::dvec3 corner : outlineOf(tile.screen)) {
@@ -120,7 +121,8 @@ void label(SvgPage& page, const Panel& panel, const Tile& tile) {
     }
 }
 
-/// A tile: an area with its label, or a thick line with rank and name beside it where it is seen edge on.
+/// Draws a tile: an area with its label. If the view shows the tile edge on, draws a thick line with rank and name
+/// beside it.
 void drawTile(SvgPage& page, const Panel& panel, const Tile& tile, glm::dvec3 towards) {
     const glm::dvec3 normal = tile.screen.normal();
     if (std::abs(glm::dot(normal, towards)) > 0.2) {
@@ -132,13 +134,13 @@ void drawTile(SvgPage& page, const Panel& panel, const Tile& tile, glm::dvec3 to
     const glm::dvec2 middle = (panel.at(tile.screen.lowerLeft) + panel.at(tile.screen.upperRight())) / 2.0;
     const glm::dvec2 away = panel.at(tile.screen.lowerLeft) - panel.at(tile.screen.lowerLeft + normal);
     const glm::dvec2 beside = glm::length(away) > 0 ? away / glm::length(away) : glm::dvec2(0);
-    if (tile.row <= 1) {  // lower rows lie under the first
+    if (tile.row <= 1) {  // lower rows are hidden below the first
         page.text(middle + beside * glm::dvec2(36, 14) + glm::dvec2(0, 4), kLetters - 2, Anchor::middle,
                   fmt::format("{} {}", tile.rank, tile.name));
     }
 }
 
-/// The middle of the sand's near edge is where its name is in nobody's way.
+/// Draws the sand's outline. Its name is at the middle of the near edge, where it covers nothing else.
 void drawSand(SvgPage& page, const Panel& panel, const std::vector<glm::dvec3>& sand) {
     panel.outline(page, sand, kSandStyle);
     page.text(panel.at((sand[0] + sand[1]) / 2.0) - glm::dvec2(0, 6), kLetters - 2, Anchor::middle, "sand",

@@ -8,9 +8,10 @@
 
 namespace walls {
 
-/// The wall as a picture (SVG): its front and its plan at one scale, with every tile's rank, name and pixels, bezels
-/// and sizes in figures, the viewer, and the outline of the sand if its field is square. In front of a flat wall the
-/// sand is drawn where the middle eye sees it on the wall, else where it stands.
+/// Returns a drawing of the wall as SVG: front view and plan at one scale. It shows every tile's rank, name and pixels,
+/// and the bezels and sizes in figures. It also shows the viewer, and the outline of the sand as if its field were
+/// square. On a flat wall the front view shows the sand as the middle eye sees it on the wall. Otherwise the front view
+/// shows the sand at its place in the room.
 [[nodiscard]] std::string drawingOf(const Wall& wall);
 
 }  // namespace walls
