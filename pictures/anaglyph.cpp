@@ -33,7 +33,8 @@ std::vector<std::uint8_t> makeLevels() {
     std::vector<std::uint8_t> levels(kFullLight + 1);
     int level = 0;
     for (int light = 0; light <= kFullLight; ++light) {
-        // Nearest as levels count, not as light does: the change is half a level up.
+        // The nearest level is the one that is nearest in sRGB levels. The border between two levels is the light of
+        // half a level.
         while (level < 255 && light >= lightOf(level + 0.5)) {
             ++level;
         }
@@ -61,7 +62,7 @@ const AnaglyphWeights& anaglyphWeights(walls::Stereo stereo) {
         case walls::Stereo::anaglyphDubois:
             return kDubois;
         default:
-            throw std::invalid_argument(std::string(walls::stereoName(stereo)) + " is no anaglyph");
+            throw std::invalid_argument(std::string(walls::stereoName(stereo)) + " is not an anaglyph mode");
     }
 }
 

@@ -12,8 +12,8 @@
 namespace pictures {
 namespace {
 
-/// Combines each pixel with its eight neighbours (fewer at the rim), one channel at a time: rows first, then columns,
-/// which is six combinations per pixel in place of nine.
+/// Combines each pixel with its eight neighbours, or with fewer at the rim, one channel at a time. It combines rows
+/// first, then columns: six combinations per pixel instead of nine.
 template <class Combine>
 std::vector<std::uint8_t> over3x3(const std::vector<std::uint8_t>& values, int width, int height, int channels,
                                   Combine combine) {

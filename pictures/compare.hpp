@@ -9,33 +9,33 @@
 
 namespace pictures {
 
-/// One byte per pixel, row by row from the top: 1 where it holds, else 0.
+/// Mask of a picture: one byte per pixel, row by row from the top, 1 for pixels in the mask and 0 for others.
 using Mask = std::vector<std::uint8_t>;
 
-/// How two pictures of one size differ.
+/// Difference between two pictures of one size.
 struct Comparison {
     int largestDifference = 0;   // [level], over all channels of all pixels
-    std::int64_t badPixels = 0;  // those with a channel that differs by more than the limit
-    double badShare = 0;         // of all pixels, 0 to 1
+    std::int64_t badPixels = 0;  // pixels with a channel that differs by more than the limit
+    double badShare = 0;         // share of all pixels, 0 to 1
     Mask bad;
 };
 
-/// Throws base::InputError when the sizes differ.
+/// Compares two pictures. Throws base::InputError if their sizes differ.
 [[nodiscard]] Comparison compare(const Image& a, const Image& b, int limit /* [level] */);
 
-/// Returns by how much `b` is brighter than `a` in each channel, as a mean over the pixels of `where` [level]; zeros if
-/// there are none. Throws std::invalid_argument when the sizes differ.
+/// Returns the mean difference `b` - `a` of each channel over the pixels of `where` [level]. Returns zeros if `where`
+/// has no pixels. Throws std::invalid_argument if the sizes differ.
 [[nodiscard]] std::array<double, kChannels> meanDifference(const Image& a, const Image& b, const Mask& where);
 
-/// For a person: `reference` dimmed to a quarter, the bad pixels bright red.
+/// Returns a picture for a person: `reference` dimmed to a quarter, with the bad pixels in bright red.
 [[nodiscard]] Image differenceImage(const Image& reference, const Comparison& comparison);
 
-/// The silhouettes of a picture: pixels with more than `contrast` levels between the darkest and brightest of a channel
-/// in their 3x3 surroundings, and the neighbours of such pixels. A rasterizer may decide these either way when the same
-/// surface is drawn through another viewport; anything else that differs is a mistake.
+/// Returns the silhouettes of a picture. They are the pixels in whose 3×3 surroundings a channel differs by more than
+/// `contrast`, and the neighbours of these pixels. A rasteriser may draw these pixels either way when it draws the same
+/// surface through another viewport. A difference at any other pixel is a mistake.
 [[nodiscard]] Mask silhouettes(const Image& reference, int contrast /* [level] */);
 
-/// How many pixels of `bad` are not in `allowed`. Throws std::invalid_argument when the sizes differ.
+/// Returns the number of pixels of `bad` that are not in `allowed`. Throws std::invalid_argument if the sizes differ.
 [[nodiscard]] std::int64_t countOutside(const Mask& bad, const Mask& allowed);
 
 }  // namespace pictures

@@ -17,7 +17,7 @@ struct Options {
     double maxBadShare = 0.01;
 };
 
-/// 0 when the pictures are alike, 1 when they differ.
+/// Compares the pictures. Returns exit status 0 if they are alike, 1 if they differ.
 int comparePictures(const Options& options) {
     const pictures::Image first = pictures::readPng(options.first);
     const pictures::Image second = pictures::readPng(options.second);
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-compare")) {
         return 0;
     }
-    host::CommandLine line("Compares two pictures: exit status 0 alike, 1 different, 2 unusable.", "sandwall-compare");
+    host::CommandLine line("Compares two pictures. Exit status: 0 alike, 1 different, 2 unusable.", "sandwall-compare");
     Options options;
     line.option("A", options.first, "a PNG").required();
     line.option("B", options.second, "a PNG of the same size").required();

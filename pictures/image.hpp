@@ -6,19 +6,19 @@
 #include <span>
 #include <vector>
 
-/// Pictures of the wall: plain pixels, safe from any thread as long as each image has one writer.
+/// Pictures of the wall as plain pixels. Any thread may use them if each image has only one writer.
 namespace pictures {
 
 inline constexpr int kChannels = 3;
-inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // of one image: 0.8 GB
+inline constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // largest number of pixels of one image: 0.8 GB
 
-/// Red, green, blue, 8 bits each, sRGB; row 0 is the top, rows follow without padding.
+/// Image in sRGB with 8 bits each for red, green and blue. Row 0 is the top. Rows follow without padding.
 struct Image {
     int width = 0, height = 0;      // [pixel]
     std::vector<std::uint8_t> rgb;  // width * height * kChannels
 
     Image() = default;
-    /// Black. Throws std::invalid_argument when a side is negative or there are more than kMaxPixels.
+    /// Makes a black image. Throws std::invalid_argument if a side is negative or if there are more than kMaxPixels.
     Image(int width, int height);
 
     [[nodiscard]] std::size_t pixels() const {
@@ -35,19 +35,19 @@ private:
     }
 };
 
-/// An image and where its top left pixel goes.
+/// Image, and the place of its top left pixel.
 struct Placed {
     const Image* image = nullptr;
     int x = 0, y = 0;
 };
 
-/// Copies `image` onto `canvas`; what falls outside is left out.
+/// Copies `image` to `canvas`. Pixels outside the canvas are left out.
 void blit(Image& canvas, const Image& image, int x, int y);
-/// A black canvas with the images on it, in their order.
+/// Returns a black canvas with the images on it, in their order.
 [[nodiscard]] Image assemble(int width, int height, std::span<const Placed> images);
-/// A part of an image. Throws std::invalid_argument when the rectangle does not lie inside.
+/// Returns a part of an image. Throws std::invalid_argument if the rectangle is not inside the image.
 [[nodiscard]] Image crop(const Image& image, int x, int y, int width, int height);
-/// The image moved by whole pixels, right and down for positive numbers; the freed rim is black.
+/// Returns the image moved by whole pixels: right and down for positive numbers. The freed rim is black.
 [[nodiscard]] Image shifted(const Image& image, int right, int down);
 
 }  // namespace pictures

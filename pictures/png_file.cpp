@@ -11,7 +11,8 @@
 namespace pictures {
 namespace {
 
-/// libpng's simplified interface reports by return value: no jump crosses a destructor.
+/// Owner of a libpng image. libpng's simplified interface reports errors by return value, so that no jump skips a
+/// destructor.
 class PngImage {
 public:
     PngImage() { image.version = PNG_IMAGE_VERSION; }
@@ -36,7 +37,7 @@ std::uintmax_t sizeOfFile(const std::filesystem::path& file) {
 }  // namespace
 
 Image readPng(const std::filesystem::path& file) {
-    // Deflate packs at most 1032 to 1, and no pixel of a PNG takes less than one bit.
+    // Deflate compresses at most 1032 to 1, and a pixel of a PNG takes at least one bit.
     constexpr std::uintmax_t kMostPixelsPerByte = 1032 * 8;
     const std::uintmax_t bytes = sizeOfFile(file);
     PngImage png;

@@ -7,12 +7,12 @@
 
 namespace pictures {
 
-/// Reads any PNG as RGB8; transparency is laid over black, 16 bits become 8.
-/// Throws base::InputError naming the file when it is missing, not a whole PNG, larger than kMaxPixels, or claims
-/// more pixels than its bytes can hold.
+/// Reads any PNG as RGB8. Transparent pixels are laid over black, and 16-bit channels become 8-bit. Throws
+/// base::InputError, which names the file, if it is missing, incomplete, not a PNG, or larger than kMaxPixels. It also
+/// throws if the file claims more pixels than its bytes can hold.
 [[nodiscard]] Image readPng(const std::filesystem::path& file);
 
-/// Writes the image; nothing is left behind when that fails. Throws base::InputError naming the file.
+/// Writes the image. Removes the file if writing fails, and throws base::InputError, which names the file.
 void writePng(const std::filesystem::path& file, const Image& image);
 
 }  // namespace pictures

@@ -11,7 +11,7 @@
 namespace pictures {
 namespace {
 
-/// Both pictures whole, the right one moved.
+/// Returns both whole pictures in one, the right one at (`rightX`, `rightY`).
 Image beside(const Image& left, const Image& right, int rightX, int rightY) {
     Image both(rightX + right.width, rightY + right.height);
     blit(both, left, 0, 0);
@@ -19,7 +19,7 @@ Image beside(const Image& left, const Image& right, int rightX, int rightY) {
     return both;
 }
 
-/// The left picture with the pixels of the right one where `fromRight(column, row)`.
+/// Returns the left picture with the pixels of the right one at all places for which fromRight(column, row) is true.
 template <class FromRight>
 Image interleaved(const Image& left, const Image& right, FromRight fromRight) {
     Image both = left;
