@@ -14,10 +14,10 @@ namespace tracking {
 namespace {
 
 constexpr double kMetresPerMillimetre = 0.001;
-constexpr std::uint32_t kReordered = 1000;  // frames: no network holds a packet back for longer than this many
+constexpr std::uint32_t kReordered = 1000;  // [frame]; a network delays a packet by fewer frames
 constexpr int kMaxBodies = 1000;
 
-/// Takes what it expects from the front of a line; once something else was there, nothing more.
+/// Parser that takes expected parts from the front of a line. After the first unexpected part it takes no more.
 class Cursor {
 public:
     explicit Cursor(std::string_view rest) : rest_(rest) {}
@@ -60,15 +60,15 @@ private:
     bool good_ = true;
 };
 
-/// The packet's two lines that matter.
+/// Contents of the two lines of a packet that are read.
 struct Parsed {
     bool good = true;
-    bool bodies = false;  // there was a "6d" line
+    bool bodies = false;  // the packet has a "6d" line
     std::optional<std::uint32_t> frame;
     std::optional<Measured> head;
 };
 
-/// The bodies of a "6d" line; all are read, so that a line with a broken one is not half believed.
+/// Reads the bodies of a "6d" line. Reads all of them, so that a line with a broken body is refused as a whole.
 void readBodies(Cursor line, int wanted, Parsed& parsed) {
     int count = 0;
     parsed.good = line.number(count) && count >= 0 && count <= kMaxBodies;
@@ -79,7 +79,7 @@ void readBodies(Cursor line, int wanted, Parsed& parsed) {
         std::array<double, 9> r{};
         parsed.good = line.mark('[') && line.number(number) && line.number(quality) && line.mark(']') &&
                       line.bracket(place) && line.bracket(r);
-        // A body that is not seen has a negative quality, and zeros for numbers.
+        // A body that the tracker does not see has a negative quality, and its numbers are zeros.
         if (parsed.good && number == wanted && quality >= 0) {
             const glm::dmat3 rotation(r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]);
             parsed.head = Measured{glm::dvec3(place[0], place[1], place[2]) * kMetresPerMillimetre, rotation};
@@ -113,14 +113,14 @@ bool DtrackReader::newer(std::uint32_t frame, bool gone) const {
     if (!newest_ || gone) {
         return true;
     }
-    // Unsigned, so that the counter may run over.
+    // Unsigned, so that the counter may wrap around.
     const std::uint32_t behind = *newest_ - frame;
     return behind > kReordered;
 }
 
 Reading DtrackReader::read(std::span<const std::uint8_t> packet, bool gone) {
     std::string_view text(reinterpret_cast<const char*>(packet.data()), packet.size());
-    // Some senders end the text like a string of C.
+    // Some senders end the text with a zero byte, as in C.
     while (text.ends_with('\0')) {
         text.remove_suffix(1);
     }

@@ -9,11 +9,13 @@
 
 namespace tracking {
 
-/// ART's DTrack, output in ASCII: a line "fr NUMBER" and, in "6d COUNT" and COUNT bodies, [number quality], [x y z and
-/// three angles], [nine numbers of the rotation, column by column]; positions in millimetres. Other lines are skipped.
+/// Reader of packets of ART's DTrack in ASCII. A packet has a line "fr NUMBER" and a line "6d COUNT" with COUNT bodies.
+/// A body is [number quality] [x y z and three angles] [nine numbers of the rotation, column by column]. Positions are
+/// in millimetres. Other lines are skipped.
 ///
-/// Frames that are not newer than the newest are old. Far behind it, or after a silence, they are those of a DTrack
-/// that was started anew. Packets without a frame number are taken as they come.
+/// A frame that is not newer than the newest one is old. If it is far behind the newest one, or if it comes after a
+/// silence, DTrack has been restarted, and the frame counts as new. Packets without a frame number are read in the
+/// order in which they arrive.
 class DtrackReader : public PacketReader {
 public:
     explicit DtrackReader(int body) : body_(body) {}
@@ -26,7 +28,8 @@ private:
     std::optional<std::uint32_t> newest_;
 };
 
-/// The packet of a tracker whose axes are the room's, with this body alone. A pose knows no pitch.
+/// Returns the packet of a tracker whose axes are the room's, with this body only. The pitch is 0, because a pose has
+/// none.
 [[nodiscard]] base::Bytes dtrackPacket(const Pose& pose, std::uint32_t frame, int body);
 
 }  // namespace tracking

@@ -15,13 +15,13 @@
 namespace tracking {
 namespace {
 
-constexpr double kUnitTolerance = 0.01;  // of a direction's or a quaternion's length
+constexpr double kUnitTolerance = 0.01;  // largest error of the length of a direction or a quaternion
 constexpr std::array<std::string_view, 14> kTitles{"time", "x",  "y",  "z",  "yaw",     "pitch",   "roll",
                                                    "qx",   "qy", "qz", "qw", "right_x", "right_y", "right_z"};
-/// Titles come in groups, which are there whole or not at all.
+/// First titles of the groups. A group is complete or absent.
 enum Group : std::size_t { kPlace = 0, kAngles = 4, kQuaternion = 7, kRight = 11, kEnd = 14 };
 
-/// Reads one line after another; knows which cell holds what.
+/// Reader of the trace's lines. It knows which cell has which value.
 class LineReader {
 public:
     LineReader(const std::string& name, const RoomMapping& mapping, std::string_view header)
@@ -61,7 +61,7 @@ public:
             }
             const std::optional<double> read = base::numberOf(cells[cell_[i]]);
             if (!read) {
-                fail(number, fmt::format("{} is no number: '{}'", kTitles[i], cells[cell_[i]].substr(0, 80)));
+                fail(number, fmt::format("{} is not a number: '{}'", kTitles[i], cells[cell_[i]].substr(0, 80)));
             }
             value[i] = *read;
         }
@@ -93,10 +93,11 @@ private:
             turns += g > 0 && there > 0 ? 1 : 0;
         }
         if (turns > 1) {
-            fail(1, "the head's turn is told in more than one way; keep one");
+            fail(1, "several groups of columns give the head's turn; keep one group");
         }
         if (mapping_.eyes != glm::dvec3(0) && has(kRight)) {
-            fail(1, "eyes= needs yaw,pitch,roll or qx,qy,qz,qw: right_x,right_y,right_z does not say where up is");
+            fail(1,
+                 "eyes= needs yaw,pitch,roll or qx,qy,qz,qw: right_x,right_y,right_z does not give the direction up");
         }
     }
 
@@ -119,7 +120,7 @@ private:
         if (has(kRight)) {
             const glm::dvec3 right(value[kRight], value[kRight + 1], value[kRight + 2]);
             requireUnit(glm::length(right), "right_x,right_y,right_z", number);
-            // A direction told in the tracker's axes, and not a turn.
+            // This is a direction in the tracker's axes, not a turn.
             pose.right = glm::normalize(mapping_.axes * right);
         }
         return pose;
@@ -188,7 +189,7 @@ Pose HeadTrace::at(double seconds) const {
     const Sample& from = *(after - 1);
     const double share = (seconds - from.time) / (after->time - from.time);
     const glm::dvec3 right = from.pose.right + share * (after->pose.right - from.pose.right);
-    // A head that looks backwards a sample later has turned one way or the other: the trace does not say which.
+    // If the head looks backwards in the next sample, the trace does not show the direction of the turn.
     const bool turned = glm::length(right) > 1e-6;
     return {from.pose.position + share * (after->pose.position - from.pose.position),
             turned ? glm::normalize(right) : from.pose.right};

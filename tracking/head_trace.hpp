@@ -10,17 +10,20 @@
 
 namespace tracking {
 
-/// A recorded head. The same time gives the same pose, bit for bit: only + - * / and square roots lie between.
+/// Recorded poses of a head. Equal times give equal poses, bit for bit, because at() uses only + - * / and square
+/// roots.
 ///
-/// A CSV with a header: time [s], x, y, z [m], and of the head's turn nothing, or yaw, pitch, roll [degree], or
-/// qx, qy, qz, qw, or right_x, right_y, right_z, which is the direction from the left eye to the right one.
+/// The file is a CSV with a header. Its columns are time [s] and x, y, z [m]. If the head turns, one of three groups
+/// follows: yaw, pitch, roll [degree]; qx, qy, qz, qw; or right_x, right_y, right_z. The last group is the direction
+/// from the left eye to the right one.
 class HeadTrace {
 public:
-    /// Throw base::InputError with file, line and value. `name` stands for the file in messages.
+    /// Both functions throw base::InputError with file, line and value. Messages give `name` as the file's name.
     static HeadTrace load(const std::filesystem::path& file, const RoomMapping& mapping);
     static HeadTrace parse(std::istream& text, const std::string& name, const RoomMapping& mapping);
 
-    /// `seconds` after the first sample, straight between samples; before it the first, behind the end the last.
+    /// Returns the pose at `seconds` after the first sample, interpolated linearly. Before the first sample it returns
+    /// the first pose, after the last one the last pose.
     [[nodiscard]] Pose at(double seconds) const;
     [[nodiscard]] double duration() const { return samples_.back().time; }  // [s]
 

@@ -6,16 +6,18 @@
 
 namespace tracking {
 
-/// opentrack's "UDP over network": six little-endian doubles, x, y, z [cm] and yaw, pitch, roll [degree].
+/// Reader of opentrack's "UDP over network" packets: six little-endian doubles, x, y, z [cm] and yaw, pitch, roll
+/// [degree].
 ///
-/// opentrack counts x to the user's left, y up, z away from the screen, yaw to the right, pitch up, roll to the left.
-/// Here x and yaw are reversed, so that the axes are the room's for a user who faces the wall.
+/// opentrack's x points to the user's left, y up, z away from the screen. Its yaw turns right, pitch up, roll left. The
+/// reader reverses x and yaw, so that the axes are the room's for a user who faces the wall.
 class OpentrackReader : public PacketReader {
 public:
     [[nodiscard]] Reading read(std::span<const std::uint8_t> packet, bool gone) override;
 };
 
-/// The packet in which a head of this pose, in front of the camera, would be told. A pose knows no pitch.
+/// Returns the packet of a tracker that measures this pose in front of the camera. The pitch is 0, because a pose has
+/// none.
 [[nodiscard]] base::Bytes opentrackPacket(const Pose& pose);
 
 }  // namespace tracking

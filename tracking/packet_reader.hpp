@@ -9,19 +9,19 @@
 
 namespace tracking {
 
-/// What a packet said.
+/// Content of a packet.
 struct Reading {
     enum class Kind : std::uint8_t {
         pose,
-        refused,  // not the format, or absurd
-        old,      // overtaken by one that was read before
+        refused,  // wrong format, or implausible
+        old,      // a newer packet was read before
         absent    // well-formed, but the tracker does not see the head
     };
     Kind kind = Kind::refused;
-    Measured measured{};  // for a pose
+    Measured measured{};  // valid for Kind::pose
 };
 
-/// Understands the packets of one tracker, in the order in which they come. Reads any bytes without harm.
+/// Reader of one tracker's packets, in their order of arrival. Any bytes are safe to read.
 class PacketReader {
 public:
     PacketReader() = default;
@@ -29,7 +29,7 @@ public:
     PacketReader(const PacketReader&) = delete;
     PacketReader& operator=(const PacketReader&) = delete;
 
-    /// `gone`: nothing came for so long that the tracker may have been started anew.
+    /// Reads a packet. `gone` tells that no pose came for so long that the tracker may have been restarted.
     [[nodiscard]] virtual Reading read(std::span<const std::uint8_t> packet, bool gone) = 0;
 };
 

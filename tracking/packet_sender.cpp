@@ -15,13 +15,13 @@ namespace {
 
 const Source& checked(const Source& to) {
     if (to.kind != Source::Kind::opentrack && to.kind != Source::Kind::dtrack) {
-        throw base::InputError(fmt::format("--send: '{}' cannot be sent; opentrack: and dtrack: can", to.text));
+        throw base::InputError(fmt::format("--send: cannot send to '{}'; choose opentrack: or dtrack:", to.text));
     }
     if (to.axes != glm::dmat3(1.0) || to.eyes != glm::dvec3(0)) {
-        throw base::InputError("--send: axes= and eyes= are for the receiver; a sender knows origin= alone");
+        throw base::InputError("--send: axes= and eyes= are for the receiver; a sender takes only origin=");
     }
     if (to.port == 0) {
-        throw base::InputError(fmt::format("--send: '{}': there is no port 0 to send to", to.text));
+        throw base::InputError(fmt::format("--send: '{}': cannot send to port 0; give the receiver's port", to.text));
     }
     return to;
 }

@@ -8,13 +8,14 @@
 
 namespace tracking {
 
-/// A head that goes 20 cm to either side of a point in four seconds and looks back at what it left.
+/// Returns the pose of a head that sways 20 cm to either side of a point in four seconds, and turns back to the point.
 [[nodiscard]] Pose sway(double seconds);
 
-/// Tells a pose in the room as a tracker would: the other end of opentrack: and dtrack: sources.
+/// Sender of poses in the room, in the packets of a tracker. It is the other end of the sources opentrack: and dtrack:.
 class PacketSender {
 public:
-    /// `to` is where to send. Throws base::InputError when it is no tracker that sends, or turns axes.
+    /// Sends to `to`. Throws base::InputError if `to` is not opentrack: or dtrack:, if it turns axes, or if its port is
+    /// 0.
     explicit PacketSender(const Source& to);
     void send(const Pose& pose);
     [[nodiscard]] std::uint32_t sent() const { return sent_; }

@@ -6,10 +6,11 @@
 namespace tracking {
 namespace {
 
-/// Trackers print six digits; a matrix that is further off holds something else, such as zeros.
+/// Largest error of a rotation matrix. Trackers print six digits; a matrix with a larger error has other contents, such
+/// as zeros.
 constexpr double kRotationTolerance = 0.01;
 
-/// A turn from axis `from` towards axis `to`.
+/// Returns a turn from axis `from` towards axis `to`.
 glm::dmat3 turn(int from, int to, double degrees) {
     const double cosine = std::cos(glm::radians(degrees)), sine = std::sin(glm::radians(degrees));
     glm::dmat3 matrix(1.0);

@@ -27,7 +27,7 @@ void Presence::look(bool pose, std::int64_t nowNs) {
         state_ = State::lost;
         ++timesLost_;
     } else if (silent > kLostAfterNs && state_ == State::unseen) {
-        say_(fmt::format("head tracking: no pose from {} yet; the viewer stands where the wall file says", what_));
+        say_(fmt::format("head tracking: no pose from {} yet; the viewer stays where the wall file puts it", what_));
         state_ = State::awaited;
     }
     if (!looked_) {

@@ -9,22 +9,22 @@
 
 namespace tracking {
 
-/// Takes a line for the person who runs the wall.
+/// Function that takes a line for the person who runs the wall.
 using Say = std::function<void(const std::string&)>;
-/// A monotonic clock [ns].
+/// Monotonic clock [ns].
 using Clock = std::function<std::int64_t()>;
 
-/// Whether a tracker is there: says once when it is gone, and once when it is back.
+/// Watch on a tracker. It reports once when the tracker is lost, and once when it is back.
 class Presence {
 public:
     static constexpr std::int64_t kLostAfterNs = 500'000'000;
 
-    /// `what` names the tracker in the lines.
+    /// Reports to `say`, in lines that name the tracker `what`.
     Presence(std::string what, Say say) : what_(std::move(what)), say_(std::move(say)) {}
 
-    /// Once per look at the tracker: did a pose come since the last one?
+    /// Must be called each time the tracker is read. `pose` tells whether a pose has come since the last call.
     void look(bool pose, std::int64_t nowNs);
-    /// No pose for so long that whatever comes next may be a tracker started anew.
+    /// Returns whether no pose has come for so long that the tracker may have been restarted.
     [[nodiscard]] bool gone() const { return state_ != State::there; }
     [[nodiscard]] std::uint64_t timesLost() const { return timesLost_; }
 
@@ -33,8 +33,8 @@ private:
 
     std::string what_;
     Say say_;
-    State state_ = State::unseen;  // awaited: it never was there, and this has been said
-    std::int64_t last_ = 0;        // [ns], of the last pose; of the first look before it
+    State state_ = State::unseen;  // awaited: no pose has ever come, and this has been reported
+    std::int64_t last_ = 0;        // [ns], time of the last pose; before it, time of the first look
     bool looked_ = false;
     std::uint64_t timesLost_ = 0;
 };

@@ -8,7 +8,7 @@
 namespace tracking {
 
 Pose RoomMapping::pose(const Measured& measured) const {
-    // A turn seen from mirrored axes is still a turn, so this holds for axes of either handedness.
+    // A turn in mirrored axes is still a turn, so this is right for axes of either handedness.
     const glm::dmat3 head = axes * measured.rotation * glm::transpose(axes);
     return {origin + axes * measured.position + head * eyes, glm::normalize(head[0])};
 }

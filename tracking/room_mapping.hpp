@@ -9,19 +9,20 @@
 
 namespace tracking {
 
-/// How a tracker stands in the room: its axes, its origin, and where the eyes are beside what it tracks.
+/// Place of a tracker in the room: its axes, its origin, and the offset of the eyes from the tracked point.
 struct RoomMapping {
-    glm::dvec3 origin{0};  // [m], of the tracker, in the room
-    glm::dmat3 axes{1.0};  // tracker to room: each axis along one of the room's, to either side
-    glm::dvec3 eyes{0};    // [m], from the tracked point to between the eyes; the head's right, up and backwards
+    glm::dvec3 origin{0};  // [m], the tracker's origin in the room
+    glm::dmat3 axes{1.0};  // from the tracker to the room; each axis is along one of the room's, in either direction
+    glm::dvec3 eyes{
+        0};  // [m], from the tracked point to the midpoint of the eyes, along the head's right, up and backwards
 
     [[nodiscard]] Pose pose(const Measured& measured) const;
 };
 
-/// "x,z,-y": which axis of the tracker runs along the room's x, y and z, reversed with '-'. Nothing when it is not
-/// that.
+/// Reads axes such as "x,z,-y": the tracker's axes that run along the room's x, y and z, reversed with '-'. Returns
+/// nullopt for any other text.
 [[nodiscard]] std::optional<glm::dmat3> axesOf(std::string_view text);
-/// "x,y,z" in metres. Nothing when it is not three numbers.
+/// Reads "x,y,z" in metres. Returns nullopt if the text is not three numbers.
 [[nodiscard]] std::optional<glm::dvec3> pointOf(std::string_view text);
 
 }  // namespace tracking

@@ -13,11 +13,11 @@
 namespace tracking {
 namespace {
 
-constexpr double kFarthestOrigin = 1000;  // [m], as far as a wall file lets a screen stand
-constexpr double kLargestHead = 1;        // [m], from a tracked point to the eyes
+constexpr double kFarthestOrigin = 1000;  // [m], the largest distance of a screen in a wall file
+constexpr double kLargestHead = 1;        // [m], largest distance from a tracked point to the eyes
 constexpr int kMaxBody = 999;
 
-/// One text and what is wrong with it.
+/// Parser of one source's text.
 struct Reader {
     std::string_view text;
     const std::string& who;
@@ -40,7 +40,7 @@ struct Reader {
         return *result;
     }
 
-    /// Reads origin=, axes=, eyes= or from=; false when the word is none of them.
+    /// Reads origin=, axes=, eyes= or from=. Returns false if the word is not one of them.
     bool placed(std::string_view word) {
         const auto equals = word.find('=');
         const std::string_view key = word.substr(0, equals);
@@ -56,7 +56,8 @@ struct Reader {
             boost::system::error_code error;
             source.from = boost::asio::ip::make_address(std::string(value), error).to_string();
             if (error) {
-                fail(fmt::format("from={} is no IP address; write the tracker's, such as from=192.168.1.20", value));
+                fail(
+                    fmt::format("from={} is not an IP address; write the tracker's, such as from=192.168.1.20", value));
             }
         } else if (const std::optional<glm::dmat3> axes = axesOf(value)) {
             source.axes = *axes;
@@ -71,7 +72,7 @@ struct Reader {
         unsigned long port = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), port);
         if (word.empty() || error == std::errc::invalid_argument || end != word.data() + word.size()) {
-            fail(fmt::format("'{}' is no port; write [HOST:]PORT, such as 4242", word));
+            fail(fmt::format("'{}' is not a port; write [HOST:]PORT, such as 4242", word));
         }
         if (error != std::errc{} || port > 65535) {
             fail(fmt::format("port {} is beyond 65535", word));
@@ -84,14 +85,15 @@ struct Reader {
         boost::system::error_code error;
         const auto address = boost::asio::ip::make_address(source.host, error);
         if (error) {
-            fail(fmt::format("'{}' is no IP address; write one of this machine, or 0.0.0.0 for every network", word));
+            fail(fmt::format("'{}' is not an IP address; write one of this machine, or 0.0.0.0 for every network",
+                             word));
         }
         if (address.is_multicast()) {
             fail(fmt::format("{} is a multicast address; let the tracker send to this machine", word));
         }
     }
 
-    /// "[HOST:]PORT", and ":BODY" behind it for DTrack.
+    /// Reads "[HOST:]PORT", for DTrack also ":BODY".
     void readAddress(std::string_view rest) {
         std::string_view host;
         if (rest.starts_with('[')) {
@@ -103,7 +105,7 @@ struct Reader {
             rest.remove_prefix(end + 2);
         } else if (const auto colon = rest.find(':');
                    colon != std::string_view::npos && rest.find_first_not_of("0123456789") < colon) {
-            host = rest.substr(0, colon);  // digits alone would be the port
+            host = rest.substr(0, colon);  // only digits would be the port
             rest.remove_prefix(colon + 1);
         }
         if (!host.empty()) {
@@ -111,8 +113,8 @@ struct Reader {
         }
         const auto parts = base::split(rest, ':');
         if (parts.size() > (source.kind == Source::Kind::dtrack ? 2U : 1U)) {
-            fail(fmt::format("there is more behind the port than {}",
-                             source.kind == Source::Kind::dtrack ? "a body's number" : "there should be"));
+            fail(fmt::format("write {} after the port",
+                             source.kind == Source::Kind::dtrack ? "only a body's number" : "nothing"));
         }
         readPort(parts[0]);
         if (parts.size() == 2) {
@@ -124,7 +126,8 @@ struct Reader {
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), source.body);
         if (word.empty() || error != std::errc{} || end != word.data() + word.size() || source.body < 0 ||
             source.body > kMaxBody) {
-            fail(fmt::format("'{}' is no body; DTrack's packets count them from 0, to at most {}", word, kMaxBody));
+            fail(
+                fmt::format("'{}' is not a body; DTrack's packets count bodies from 0, to at most {}", word, kMaxBody));
         }
     }
 
@@ -141,7 +144,7 @@ struct Reader {
             source.kind = kind == "dtrack" ? Source::Kind::dtrack : Source::Kind::opentrack;
             readAddress(rest);
         } else {
-            fail("is none of none, trace:FILE.csv, opentrack:[HOST:]PORT, dtrack:[HOST:]PORT[:BODY]");
+            fail("is not a source; write none, trace:FILE.csv, opentrack:[HOST:]PORT or dtrack:[HOST:]PORT[:BODY]");
         }
     }
 };
@@ -150,7 +153,7 @@ struct Reader {
 
 Source Source::parse(std::string_view text, const std::string& who, const std::filesystem::path& folder) {
     Reader reader{text, who};
-    // From the end, so that a trace's name may hold blanks.
+    // Reads from the end, so that a trace's name may contain blanks.
     std::string_view words = text;
     while (true) {
         words = base::split(words, '\n').front();

@@ -12,32 +12,34 @@
 
 namespace tracking {
 
-/// Which tracker, and how it stands in the room: the text of --track, or of a wall file.
+/// Tracker and its place in the room, read from the text of --track or of a wall file. The text is one of
 ///
 ///     none
 ///     trace:FILE.csv
 ///     opentrack:[HOST:]PORT
 ///     dtrack:[HOST:]PORT[:BODY]
 ///
-/// and behind it, after blanks, any of  origin=X,Y,Z  axes=x,-z,y  eyes=RIGHT,UP,BACK  from=ADDRESS
+/// After blanks, any of  origin=X,Y,Z  axes=x,-z,y  eyes=RIGHT,UP,BACK  from=ADDRESS  may follow
 /// (docs/head_tracking.md).
 struct Source {
     enum class Kind : std::uint8_t { none, trace, opentrack, dtrack };
 
     Kind kind = Kind::none;
-    std::string text;                  // without what stands behind it; for messages
-    std::filesystem::path file;        // of a trace
-    std::string host = "127.0.0.1";    // an address of this machine to listen on; to send to, for a sender
-    std::string from;                  // the only address that packets are taken from; empty: any, on loopback
-    std::uint16_t port = 0;            // 0: any free one, for tests
-    int body = 0;                      // of DTrack, counted from 0 as in its packets
-    std::optional<glm::dvec3> origin;  // [m]; nothing: where that kind of tracker usually has it
+    std::string text;                  // without the words origin=, axes=, eyes= and from=; for messages
+    std::filesystem::path file;        // file of a trace
+    std::string host = "127.0.0.1";    // address of this machine to listen on; for a sender, the address to send to
+    std::string from;                  // only address from which packets are accepted; empty: any address, on loopback
+    std::uint16_t port = 0;            // 0: any free port, for tests
+    int body = 0;                      // DTrack's body, counted from 0 as in its packets
+    std::optional<glm::dvec3> origin;  // [m]; nullopt: the usual origin of that kind of tracker
     glm::dmat3 axes{1.0};
     glm::dvec3 eyes{0};  // [m]
 
-    /// Throws base::InputError that begins with `who`, such as "--track". `folder` is where a relative trace lies.
+    /// Parses a source. Throws base::InputError that begins with `who`, such as "--track". A relative trace is in
+    /// `folder`.
     static Source parse(std::string_view text, const std::string& who, const std::filesystem::path& folder = {});
-    /// opentrack counts from where the head was when it was centred: from `restingEye` [m]; others from the room's 0.
+    /// Returns the mapping to the room. Without origin=, opentrack's origin is `restingEye` [m], because opentrack
+    /// counts from the place where the head was centred. The origin of other trackers is the room's.
     [[nodiscard]] RoomMapping mapping(glm::dvec3 restingEye) const;
 };
 

@@ -24,7 +24,8 @@ struct Options {
     double seconds = std::numeric_limits<double>::infinity();
 };
 
-/// Calls `act` with the time since the first call, `rate` times a second for so long as it says.
+/// Calls `act` with the time since the first call [s], `rate` times per second, until it returns false or `seconds` are
+/// over.
 template <class Act>
 void atRate(double rate, double seconds, Act act) {
     const auto start = std::chrono::steady_clock::now();
@@ -57,9 +58,9 @@ int listen(const Options& options) {
     const auto say = [](const std::string& line) { host::printLine("{}", line); };
     const auto tracker = openTracker(source, glm::dvec3(0), say);
     if (!tracker) {
-        throw base::InputError("--listen: there is nothing to listen to in 'none'");
+        throw base::InputError("--listen: 'none' is not a tracker; give a source such as opentrack:4242");
     }
-    // What it prints is a trace.
+    // The output is a trace.
     fmt::print("time,x,y,z,right_x,right_y,right_z\n");
     std::optional<Pose> last;
     atRate(options.rate, options.seconds, [&](double time) {
@@ -84,15 +85,16 @@ int main(int argc, char** argv) {
         return 0;
     }
     host::CommandLine line(
-        "Tries head tracking without a wall: sends a head's poses as a tracker would, or prints what arrives.",
+        "Tests head tracking without a wall. Sends a head's poses as a tracker would, or prints the poses that arrive.",
         "sandwall-track");
     Options options;
     const host::Option sending =
         line.option("--send", options.send, "opentrack:[HOST:]PORT or dtrack:[HOST:]PORT[:BODY] to send to");
     line.option("--listen", options.listen, "a source as for sandwall run --track (docs/head_tracking.md)")
         .excludes(sending);
-    line.option("--trace", options.trace, "send this head, instead of one that sways from side to side");
-    line.option("--rate", options.rate, "times a second to send or to look").range(1.0, 1000.0);
+    line.option("--trace", options.trace,
+                "send the poses of this trace, instead of a head that sways from side to side");
+    line.option("--rate", options.rate, "packets to send, or reads of the tracker, per second").range(1.0, 1000.0);
     line.option("--seconds", options.seconds, "end after this time").positive();
     return host::runMain(line, argc, argv, [&] {
         if (!options.trace.empty() && options.send.empty()) {

@@ -12,7 +12,7 @@
 namespace tracking {
 namespace {
 
-constexpr double kPause = 1;  // [s] without a pose outside, before the next one is worth a line again
+constexpr double kPause = 1;  // [s], time without a pose outside, before the next pose outside is reported
 
 }  // namespace
 

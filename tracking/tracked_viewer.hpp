@@ -11,29 +11,29 @@
 
 namespace tracking {
 
-/// The viewer of a wall, frame by frame: the wall's own until a tracker tells more.
+/// Viewer of a wall, frame by frame. Until a tracker sends a pose, it is the wall file's viewer.
 ///
-/// For the master alone, which sends what it says to every rank with the frame. One thread; at() never blocks. A pose
-/// in which an eye is not in front of every screen has no picture: the last good one is held, which is said once.
+/// Only the master uses it; it sends the viewer to every rank with the frame. Used by one thread. at() never blocks. If
+/// an eye would not be in front of every screen, the last good pose is kept, and this is reported once.
 class TrackedViewer {
 public:
-    /// Throws base::InputError when the tracker cannot be had.
+    /// Throws base::InputError if the tracker cannot be opened.
     TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock = host::monotonicNs);
 
-    /// The viewer at this time of the session [s]: frame / refresh rate where every run must show the same, else the
-    /// time since the first frame.
+    /// Returns the viewer at this time of the session [s]. The time is frame / refresh rate if every run must show the
+    /// same, otherwise the time since the first frame.
     [[nodiscard]] walls::Viewer at(double seconds);
-    /// Moves the eyes this far apart [m], from now on. Throws base::InputError when one would not be in front of every
-    /// screen, and nothing has changed.
+    /// Sets the distance between the eyes [m] for all further frames. Throws base::InputError if an eye would not be in
+    /// front of every screen; the distance is then unchanged.
     void separateEyes(double metres);
     [[nodiscard]] Counters counters() const;
     [[nodiscard]] bool tracked() const { return tracker_ != nullptr; }
     [[nodiscard]] std::uint16_t port() const { return tracker_ ? tracker_->port() : 0; }
 
-    static constexpr double kNearestEye = 0.01;  // [m], to a screen's plane, as in a wall file
+    static constexpr double kNearestEye = 0.01;  // [m], least distance to a screen's plane, as in a wall file
 
 private:
-    /// The first tile that an eye of this viewer is not in front of.
+    /// Returns the first tile that an eye of this viewer is not in front of, or null.
     [[nodiscard]] const walls::Tile* tileBehind(const walls::Viewer& viewer) const;
 
     std::vector<walls::Tile> tiles_;

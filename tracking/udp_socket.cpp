@@ -19,8 +19,8 @@ using boost::system::error_code;
 
 namespace {
 
-constexpr std::size_t kLargestDatagram = 65536;  // UDP has room for a little less, so none is ever cut
-constexpr int kMostStrangers = 64;               // that are read over in one call, where the kernel lets them through
+constexpr std::size_t kLargestDatagram = 65536;  // a datagram of UDP is a little smaller, so none is cut off
+constexpr int kMostStrangers = 64;               // most datagrams from other addresses that one call skips
 
 asio::ip::address plain(const asio::ip::address& address) {
     return address.is_v6() && address.to_v6().is_v4_mapped()
@@ -28,10 +28,10 @@ asio::ip::address plain(const asio::ip::address& address) {
                : address;
 }
 
-/// Lets the kernel leave out what comes from elsewhere, before it takes the room of what does not. A kernel that cannot
-/// lets it through to next().
+/// Makes the kernel drop datagrams from other addresses, before they use room in the socket's buffer. If the kernel
+/// cannot, next() drops them.
 void filter(int socket, const asio::ip::address& from) {
-    // The source's address in the header, word by word; a word that differs drops the datagram.
+    // Compares the source address in the header, word by word. A word that differs drops the datagram.
     const base::Bytes words = [&] {
         if (from.is_v4()) {
             const auto bytes = from.to_v4().to_bytes();
@@ -65,7 +65,7 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
         from_ = plain(asio::ip::make_address(from));
     } else if (!endpoint.address().is_loopback()) {
         throw base::InputError(fmt::format(
-            "{}: others can reach {}; name the one tracker's address behind it, such as from=192.168.1.20", who, host));
+            "{}: other machines can reach {}; add the tracker's address, such as from=192.168.1.20", who, host));
     }
     error_code error;
     socket_.open(endpoint.protocol(), error);
@@ -94,7 +94,7 @@ std::optional<std::span<const std::uint8_t>> UdpReceiver::next() {
         error_code error;
         asio::ip::udp::endpoint from;
         const std::size_t size = socket_.receive_from(asio::buffer(buffer_), from, 0, error);
-        if (error) {  // none is there, or something is wrong: either way the next frame looks again
+        if (error) {  // there is no datagram, or an error; in both cases the next frame tries again
             return std::nullopt;
         }
         if (!from_ || plain(from.address()) == *from_) {

@@ -12,17 +12,19 @@
 
 namespace tracking {
 
-/// Datagrams that have arrived at a port of this machine. Never waits.
+/// Receiver of the datagrams at a port of this machine. Never waits.
 class UdpReceiver {
 public:
-    /// `host` is an IP address; datagrams are taken from the address `from` alone, which may be left empty where `host`
-    /// is loopback. Throws base::InputError that begins with `who` when it is, and when the port cannot be had.
+    /// Opens the port. `host` is an IP address. Datagrams are accepted only from the address `from`, which may be empty
+    /// if `host` is loopback. Throws base::InputError that begins with `who` if `from` is empty for another host, or if
+    /// the port cannot be opened.
     UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who);
-    /// The next datagram, whole, valid until the next call; nothing when none is there. A failure counts as none, and
-    /// so does one from elsewhere.
+    /// Returns the next whole datagram, valid until the next call. Returns nullopt if no datagram has arrived, and
+    /// after a failure. Skips datagrams from other addresses.
     [[nodiscard]] std::optional<std::span<const std::uint8_t>> next();
     [[nodiscard]] std::uint16_t port() const { return port_; }
-    /// Datagrams from elsewhere, and those for which the kernel had no room.
+    /// Returns the number of datagrams from other addresses, plus the number of datagrams that the kernel dropped for
+    /// lack of room.
     [[nodiscard]] std::uint64_t strangers() const;
 
 private:
@@ -32,14 +34,14 @@ private:
     std::uint64_t strangers_ = 0;
     std::vector<std::uint8_t> buffer_;
     std::uint16_t port_ = 0;
-    int native_ = -1;  // socket_, for what only reads its counts
+    int native_ = -1;  // socket_, for reading its counts
 };
 
-/// Sends datagrams to one address. Throws base::InputError when the address cannot be sent to.
+/// Sender of datagrams to one address. Throws base::InputError if it cannot send to the address.
 class UdpSender {
 public:
     UdpSender(const std::string& host, std::uint16_t port);
-    /// Nobody listening there is no error.
+    /// Sends a datagram. Does not report an error if no program listens there.
     void send(std::span<const std::uint8_t> datagram);
 
 private:

@@ -9,7 +9,7 @@
 
 namespace tracking {
 
-/// A tracker that sends packets: every look drains the socket down to the newest one. No thread, no lock.
+/// Tracker that sends packets. Each read empties the socket and keeps the newest pose. No thread, no lock.
 class UdpTracker : public HeadTracker {
 public:
     UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader, Say say,
@@ -18,7 +18,8 @@ public:
     [[nodiscard]] Counters counters() const override;
     [[nodiscard]] std::uint16_t port() const override { return receiver_.port(); }
 
-    static constexpr int kMostPackets = 1000;  // read in one look, so that a flood cannot hold the frame up
+    static constexpr int kMostPackets =
+        1000;  // largest number of packets in one read, so that a flood cannot delay the frame
 
 private:
     [[nodiscard]] bool take(std::span<const std::uint8_t> packet, bool gone);

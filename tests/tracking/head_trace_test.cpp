@@ -88,8 +88,8 @@ TEST(HeadTrace, IsPutIntoTheRoom) {
 }
 
 TEST(HeadTrace, NamesFileLineAndValue) {
-    EXPECT_EQ(refusal("time,x,y,z\n0,0,0,0\n1,abc,0,0\n"), "head.csv:3: x is no number: 'abc'");
-    EXPECT_EQ(refusal("time,x,y,z\n0,0,nan,0\n"), "head.csv:2: y is no number: 'nan'");
+    EXPECT_EQ(refusal("time,x,y,z\n0,0,0,0\n1,abc,0,0\n"), "head.csv:3: x is not a number: 'abc'");
+    EXPECT_EQ(refusal("time,x,y,z\n0,0,nan,0\n"), "head.csv:2: y is not a number: 'nan'");
     EXPECT_EQ(refusal("time,x,y,z\n0,0,0\n"), "head.csv:2: 4 values expected, got 3");
     EXPECT_EQ(refusal("time,x,y,z\n0,0,0,0,0\n"), "head.csv:2: 4 values expected, got 5");
     EXPECT_EQ(refusal("time,x,y,z\n\n0,0,0,0\n\n-1,0,0,0\n"), "head.csv:5: time runs backwards: -1 after 0");
@@ -108,7 +108,7 @@ TEST(HeadTrace, NamesWhatIsWrongWithTheColumns) {
     EXPECT_EQ(refusal("time,x,y,z,z\n0,0,0,0,0\n"), "head.csv:1: column 'z' is there twice");
     EXPECT_EQ(refusal("time,x,y,z,jaw\n0,0,0,0,0\n").find("head.csv:1: column 'jaw' is not known"), 0U);
     EXPECT_EQ(refusal("time,x,y,z,yaw,pitch,roll,qx,qy,qz,qw\n0,0,0,0,0,0,0,0,0,0,1\n"),
-              "head.csv:1: the head's turn is told in more than one way; keep one");
+              "head.csv:1: several groups of columns give the head's turn; keep one group");
     EXPECT_NE(refusal("time,x,y,z,right_x,right_y,right_z\n0,0,0,0,1,0,0\n", {{}, glm::dmat3(1.0), {0, 0.1, 0}})
                   .find("eyes= needs"),
               std::string::npos);

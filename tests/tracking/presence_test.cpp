@@ -52,7 +52,7 @@ TEST_F(PresenceTest, SaysThatATrackerWasNeverThere) {
         presence.look(false, at * kMs);
     }
     ASSERT_EQ(lines.size(), 1U);
-    EXPECT_EQ(lines[0], "head tracking: no pose from dtrack:5000 yet; the viewer stands where the wall file says");
+    EXPECT_EQ(lines[0], "head tracking: no pose from dtrack:5000 yet; the viewer stays where the wall file puts it");
     presence.look(true, 9010 * kMs);
     ASSERT_EQ(lines.size(), 2U);
     EXPECT_EQ(lines[1], "head tracking: dtrack:5000 is there");

@@ -79,22 +79,22 @@ TEST(TrackingSource, SaysWhatIsWrongWithAPort) {
     expectComplaint("opentrack:99999999999999999999999", "is beyond 65535");
     for (const char* text : {"opentrack:", "opentrack", "opentrack:-1", "opentrack:42x", "opentrack:x",
                              "opentrack:127.0.0.1:", "dtrack:4242 4243"}) {
-        expectComplaint(text, "is no port");
+        expectComplaint(text, "is not a port");
     }
-    expectComplaint("opentrack:4242:1", "more behind the port");
-    expectComplaint("dtrack:127.0.0.1:5000:1:2", "more behind the port");
+    expectComplaint("opentrack:4242:1", "write nothing after the port");
+    expectComplaint("dtrack:127.0.0.1:5000:1:2", "write only a body's number after the port");
 }
 
 TEST(TrackingSource, SaysWhatIsWrongWithEverythingElse) {
-    expectComplaint("opentrack:nowhere:4242", "'nowhere' is no IP address");
+    expectComplaint("opentrack:nowhere:4242", "'nowhere' is not an IP address");
     expectComplaint("dtrack:224.0.1.1:5000", "is a multicast address");
     expectComplaint("dtrack:[::1:5000", "[ADDRESS]:PORT");
-    expectComplaint("dtrack:5000:x", "'x' is no body");
-    expectComplaint("dtrack:5000:-1", "'-1' is no body");
-    expectComplaint("dtrack:5000:1000", "'1000' is no body");
-    expectComplaint("dtrack:5000:", "'' is no body");
+    expectComplaint("dtrack:5000:x", "'x' is not a body");
+    expectComplaint("dtrack:5000:-1", "'-1' is not a body");
+    expectComplaint("dtrack:5000:1000", "'1000' is not a body");
+    expectComplaint("dtrack:5000:", "'' is not a body");
     for (const char* text : {"", "webcam", "trace", "trace:", "none:1", "Opentrack:4242", "vrpn:Head@host"}) {
-        expectComplaint(text, "is none of none, trace:FILE.csv");
+        expectComplaint(text, "is not a source; write none, trace:FILE.csv");
     }
     expectComplaint("opentrack:1 origin=1,2", "origin=1,2 is not three numbers");
     expectComplaint("opentrack:1 origin=1,2,nan", "is not three numbers");
