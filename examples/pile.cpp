@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smallest program on sand/ alone: a column of sand slides until it rests as a pile.
+// Smallest program that uses only sand/: a column of sand slides until it rests as a pile.
 #include <cinttypes>
 #include <cstdio>
 
@@ -12,7 +12,7 @@ int main() {
     start.terrain = sand::HeightField(kSide, kSide, kCell);
     start.terrain.setHeight(kSide / 2, kSide / 2, 1200 * sand::kUnitsPerCell);  // a column 1200 cells high
     start.rules.columns = start.rules.rows = kSide;
-    start.rules.threshold = sand::kUnitsPerCell;  // stable up to a cell per cell: 45 degrees
+    start.rules.threshold = sand::kUnitsPerCell;  // stable up to one cell per cell: 45 degrees
     start.rules.startThreshold = start.rules.threshold;
     start.rules.sweepsPerStep = 16;
     start.rules.stepsPerSecond = 60;
