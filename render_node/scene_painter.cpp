@@ -247,8 +247,8 @@ void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1, -1);  // with a geometry shader, a driver may compute slightly different depths
     glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO,
-                        GL_ONE);  // keeps alpha, because the window system may use the window's alpha
+    // Keeps alpha, because the window system may use the window's alpha.
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     surface_->draw(sceneToPart, culling_, rule, {});
     surface_->drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
     glDisable(GL_BLEND);

@@ -102,7 +102,7 @@ public:
     void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
     /// Sets the tool's centre. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
-    /// Sets the tool's centre, shape and heading, for a tool that differs from the last one or that was turned.
+    /// Sets the tool's centre, shape and heading. Use it if the tool differs from the last one or was turned.
     void setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape, const sand::Heading& heading);
 
     /// Shows or hides hill-shade and wireframe; ignores all other layers. The next draw() makes the programs of a layer

@@ -55,8 +55,8 @@ private:
     std::vector<std::size_t> eyeOfOutput_;  // index of the eye, for each output
     std::optional<EyeTarget> packed_;
     std::optional<GlProgram> program_;
-    std::optional<GlVertexArray>
-        array_;  // needed because a core profile draws only with a vertex array, even an empty one
+    // Needed because a core profile draws only with a vertex array, even an empty one.
+    std::optional<GlVertexArray> array_;
     std::optional<Light> light_;
 };
 

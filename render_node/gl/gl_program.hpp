@@ -27,8 +27,8 @@ struct ProgramFiles {
     std::string_view vertex, fragment;
     std::string_view look{};      // put before the other files, after light.glsl and the tool's file
     std::string_view geometry{};  // geometry shader; empty: none
-    std::string_view tool =
-        "ball.glsl";  // put before the other files, after light.glsl: the light that the tool takes away
+    // Put before the other files, after light.glsl: the light that the tool takes away.
+    std::string_view tool = "ball.glsl";
 };
 
 /// Linked shaders and their uniforms.

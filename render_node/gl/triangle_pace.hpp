@@ -30,8 +30,8 @@ public:
 
 private:
     static constexpr int kTrianglesPerFinish = 32768;
-    static constexpr int kTrianglesPerDraw =
-        128;  // the other data of one draw call take as much memory as 128 triangles
+    // The other data of one draw call take as much memory as 128 triangles.
+    static constexpr int kTrianglesPerDraw = 128;
     bool software_ = false;
     int waiting_ = 0;
 };

@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kChunk = 16;  // [quad], shortest side of a chunk, except in small fields
 constexpr int kGroup = 8;   // [chunk], side of a group
-constexpr std::size_t kManyBytes =
-    16UL << 20;                         // of vertices; above it, vertices that were not drawn lately are removed
+// Memory of vertices [byte]; above it, vertices that were not drawn lately are removed.
+constexpr std::size_t kManyBytes = 16UL << 20;
 constexpr std::uint64_t kLately = 120;  // [draw]; one or two seconds
 
 // Levels need sides that are multiples of twice the largest stride. A field without levels gets chunks of equal size.

@@ -31,8 +31,8 @@ class SandSurface {
 public:
     /// Distance up to which a vertex depends on cells around its own [cell].
     static constexpr int kReach = kSkyDistances.back();
-    static constexpr int kBlock =
-        8;  // [cell], as in the sand's lists of changes, and as many as an AVX2 vector has floats
+    // [cell], as in the sand's lists of changes, and as many as an AVX2 vector has floats.
+    static constexpr int kBlock = 8;
 
     explicit SandSurface(const sand::HeightField& field);
 

@@ -14,8 +14,8 @@ namespace render_node {
 
 /// Figures of the last complete frame that a tile shows.
 struct TileFigures {
-    double drawMs = 0,
-           waitMs = 0;  // of this rank: time to draw all eyes; time from its arrival at the barrier to its swap
+    // Figures of this rank: time to draw all eyes; time from its arrival at the barrier to its swap.
+    double drawMs = 0, waitMs = 0;
     lockstep::WallFigures wall;  // figures from the master
 };
 
@@ -55,9 +55,8 @@ public:
     [[nodiscard]] const History& frameMs() const { return frameMs_; }  // time from swap to swap
     [[nodiscard]] const History& drawMs() const { return drawMs_; }
     [[nodiscard]] const History& waitMs() const { return waitMs_; }
-    [[nodiscard]] const History& skewMs() const {
-        return skewMs_;
-    }  // delay of this rank's swap after the first swap of the wall
+    // Delay of this rank's swap after the first swap of the wall.
+    [[nodiscard]] const History& skewMs() const { return skewMs_; }
     /// Returns whether the wall waits for this tile.
     [[nodiscard]] bool drags() const;
 

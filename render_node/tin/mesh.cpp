@@ -133,8 +133,8 @@ bool TinMesh::takeOver(const TinSurface::Change& change) {
 void TinMesh::sendAllVertices() {
     const std::vector<TinVertex>& all = surface_.vertices();
     bytes_ -= room_ * sizeof(TinVertex);
-    room_ = std::max(
-        room_, all.size() + all.size() / 4);  // leaves room, so that a growing surface is not sent whole each time
+    // Leaves room, so that a growing surface is not sent whole each time.
+    room_ = std::max(room_, all.size() + all.size() / 4);
     bytes_ += room_ * sizeof(TinVertex);
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
     glBufferData(GL_ARRAY_BUFFER, bytesOf<TinVertex>(room_), nullptr, GL_DYNAMIC_DRAW);
