@@ -13,8 +13,8 @@ namespace tracking {
 struct RoomMapping {
     glm::dvec3 origin{0};  // [m], the tracker's origin in the room
     glm::dmat3 axes{1.0};  // from the tracker to the room; each axis is along one of the room's, in either direction
-    glm::dvec3 eyes{
-        0};  // [m], from the tracked point to the midpoint of the eyes, along the head's right, up and backwards
+    // [m], from the tracked point to the midpoint of the eyes, along the head's right, up and backwards.
+    glm::dvec3 eyes{0};
 
     [[nodiscard]] Pose pose(const Measured& measured) const;
 };

@@ -18,8 +18,8 @@ public:
     [[nodiscard]] Counters counters() const override;
     [[nodiscard]] std::uint16_t port() const override { return receiver_.port(); }
 
-    static constexpr int kMostPackets =
-        1000;  // largest number of packets in one read, so that a flood cannot delay the frame
+    // Largest number of packets in one read, so that a flood cannot delay the frame.
+    static constexpr int kMostPackets = 1000;
 
 private:
     [[nodiscard]] bool take(std::span<const std::uint8_t> packet, bool gone);

@@ -49,8 +49,8 @@ std::string eyesLine(const Wall& wall) {
 std::string gapText(const Gaps& gaps, double bezel, const char* direction) {
     const double off = std::max({std::abs(gaps.least - bezel), std::abs(gaps.most - bezel), gaps.aslant});
     if (gaps.count > 0 && off > kSameLength) {
-        throw std::logic_error(fmt::format("gaps {} measure {} to {} m and {} aslant, for a bezel of {}", direction,
-                                           gaps.least, gaps.most, gaps.aslant, bezel));
+        throw std::logic_error(fmt::format("gaps {} measure {} to {} m and {} aslant; the grid has a bezel of {}",
+                                           direction, gaps.least, gaps.most, gaps.aslant, bezel));
     }
     return gaps.count == 0 ? fmt::format("none {}", direction)
                            : fmt::format("{} {} of {:.1f} mm", gaps.count, direction, std::abs(gaps.least) * 1000);
@@ -71,10 +71,9 @@ std::string pixelsLine(const Wall& wall) {
         worst = std::max(worst, std::abs(pixelShape(tile) / rightPixelShape(wall.stereo, tile) - 1));
         stretched = stretched || isStretched(wall.stereo, tile);
     }
-    const char* shape = !stretched ? "square"
-                        : wall.stereo == Stereo::sideBySide
-                            ? "twice as wide as high, for a display that stretches halves,"
-                            : "twice as high as wide, for a display that stretches halves,";
+    const char* shape = !stretched                          ? "square"
+                        : wall.stereo == Stereo::sideBySide ? "twice as wide as high (the display stretches halves)"
+                                                            : "twice as high as wide (the display stretches halves)";
     return line("pixels", fmt::format("{} within {:.2f} %", shape, worst * 100));
 }
 
