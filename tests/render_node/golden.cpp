@@ -21,12 +21,13 @@ using pictures::Image;
 using pictures::Mask;
 
 constexpr int kLevels = 8;
-// llvmpipe gives the same pixels with vectors of any width. Another version of it, or another processor, may decide a
-// silhouette or round a grain the other way: softpipe, another renderer, differs in 13 pixels of 86,400 at most, and in
-// one picture along a rim, which is a row of 233 pixels.
+// llvmpipe gives the same pixels with vectors of any width. Another version of llvmpipe, or another processor, may draw
+// a silhouette differently or round a grain the other way. softpipe, another renderer, differs in at most 13 of 86,400
+// pixels. In one picture it differs along a rim, a row of 233 pixels.
 constexpr double kMostBad = 0.005;
-// [level], in the mean of a channel. Roundings go both ways: softpipe is 0.07 levels off at most, and 0.09 in the
-// tool's part. A processor without SSE4.1 truncates levels instead of rounding them and is 0.4 to 0.9 levels darker.
+// Largest difference of a channel's mean [level]. Roundings go both ways: softpipe is at most 0.07 levels off, and 0.09
+// levels in the tool's part. A processor without SSE4.1 truncates levels instead of rounding them, and is 0.4 to 0.9
+// levels darker.
 constexpr double kMostMean = 0.25;
 
 constexpr const char* kHow =
@@ -39,7 +40,7 @@ bool writesGoldens() {
 
 const std::filesystem::path kFailures = failures();
 
-/// Leaves got, and want and what differs where there is a golden.
+/// Writes the file "got". If there is a golden picture, also writes "want" and "diff".
 void leave(const std::string& name, const Image& got, const Image* want, const Image* difference) {
     std::filesystem::create_directories(kFailures);
     pictures::writePng(kFailures / (name + ".got.png"), got);
@@ -51,7 +52,7 @@ void leave(const std::string& name, const Image& got, const Image* want, const I
     }
 }
 
-/// Returns which limit the pixels of `where` break, or nothing.
+/// Returns the limit that the pixels of `where` exceed, or an empty text.
 std::string faultWithin(const std::string& what, const Mask& where, const Image& want, const Image& got,
                         const pictures::Comparison& comparison) {
     const auto pixels = static_cast<double>(std::count(where.begin(), where.end(), 1));
@@ -97,7 +98,7 @@ void expect(const std::filesystem::path& folder, const std::string& name, const 
     if (writesGoldens()) {
         std::filesystem::create_directories(folder);
         pictures::writePng(file, got);
-        // A run that compares nothing must not pass.
+        // A run that compares no picture must not pass.
         ADD_FAILURE() << "wrote " << file << "; look at it, and run again without SANDWALL_WRITE_GOLDENS";
         return;
     }
@@ -114,7 +115,7 @@ void expect(const std::filesystem::path& folder, const std::string& name, const 
         return;
     }
     EXPECT_GT(pictures::compare(want, pictures::shifted(got, 1, 0), kLevels).badShare, kMostBad)
-        << name << " shows too little to tell a pixel's shift";
+        << name << " shows too little to detect a shift of one pixel";
     if (const std::string why = fault(want, got, tool); !why.empty()) {
         const Image difference = pictures::differenceImage(want, pictures::compare(want, got, kLevels));
         leave(name, got, &want, &difference);

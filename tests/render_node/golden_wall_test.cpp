@@ -21,17 +21,17 @@ namespace {
 using pictures::Image;
 using pictures::Mask;
 
-/// The pictures of one wall, and where the tool is in them.
+/// Pictures of one wall, and the tool's pixels in them.
 struct WallPictures {
     Image engaged;   // the golden picture's scene: a red ball in the sand
     Image hovering;  // the same ball at the same place, of steel
     Image without;   // the same sand without a ball
-    Mask part;       // what the golden picture holds by itself for the tool
+    Mask part;       // pixels that are compared separately for the tool
 };
 
 class GoldenWalls : public testing::Test {
 protected:
-    /// Calls `check` with every wall file, reduced, and the sand on it. Returns how many there are.
+    /// Calls `check` with every wall file, at reduced size, and with the sand on it. Returns the number of wall files.
     int forEachWall(const std::function<void(const std::string&, const walls::Wall&)>& check) {
         int count = 0;
         for (const std::string& name : sample::wallNames()) {
@@ -76,21 +76,21 @@ TEST_F(GoldenWalls, AreThoseOfTheWallFiles) {
     EXPECT_EQ(goldens, std::set<std::string>(names.begin(), names.end()));
 }
 
-// The part that is held by itself is found by geometry; the pictures show what the tool really changes.
+// The part that is compared separately comes from geometry. The pictures show the pixels that the tool really changes.
 TEST_F(GoldenWalls, HoldAPartThatHasAllThatTheToolChangesAndLittleElse) {
     const int count = forEachWall([this](const std::string&, const walls::Wall& wall) {
         const WallPictures shown = picturesOf(wall);
         const pictures::Comparison tool = pictures::compare(shown.without, shown.engaged, 0);
         EXPECT_EQ(pictures::countOutside(tool.bad, shown.part), 0);
         const auto part = std::count(shown.part.begin(), shown.part.end(), 1);
-        // The ball alone is a disc of one radius in a box of some five by four and a half: a seventh.
+        // The ball alone is a disc of one radius in a box of some 5 by 4.5 radii: a seventh of the box.
         EXPECT_GT(static_cast<double>(tool.badPixels), static_cast<double>(part) / 7);
         EXPECT_LT(part, static_cast<std::ptrdiff_t>(shown.part.size() / 8));
     });
     EXPECT_EQ(count, 14);
 }
 
-/// `from` with the pixels of `other` where `where` is not 0.
+/// Returns `from` with the pixels of `other` where `where` is not 0.
 Image withPixels(Image from, const Image& other, const Mask& where) {
     for (std::size_t i = 0; i < from.rgb.size(); ++i) {
         if (where[i / pictures::kChannels] != 0) {
@@ -100,7 +100,7 @@ Image withPixels(Image from, const Image& other, const Mask& where) {
     return from;
 }
 
-/// Every level as `change` makes it.
+/// Returns the picture with `change` applied to every level.
 Image withLevels(Image image, const std::function<int(int)>& change) {
     for (std::uint8_t& level : image.rgb) {
         level = static_cast<std::uint8_t>(std::clamp(change(level), 0, 255));
@@ -113,7 +113,7 @@ TEST_F(GoldenWalls, FailForAnotherToolAndForNoTool) {
     const int count = forEachWall([&](const std::string& name, const walls::Wall& wall) {
         const Image want = pictures::readPng(golden::folder("golden") / (name + ".png"));
         const WallPictures shown = picturesOf(wall);
-        // Red and steel differ in the ball's own pixels alone.
+        // The red ball and the steel ball differ only in the ball's own pixels.
         const Mask ball = pictures::compare(shown.engaged, shown.hovering, 0).bad;
         const auto fails = [&](const Image& got) { return golden::fault(want, got, shown.part).empty() ? 0 : 1; };
         EXPECT_EQ(fails(shown.engaged), 0);
@@ -148,7 +148,7 @@ protected:
         const int failed = wish ? setenv(kVariable, wish->c_str(), 1) : unsetenv(kVariable);
         ASSERT_EQ(failed, 0);
     }
-    void TearDown() override { set(before_); }  // whoever runs all golden tests may have set it
+    void TearDown() override { set(before_); }  // restores the value that the caller of all golden tests may have set
 
     static constexpr const char* kVariable = "SANDWALL_WRITE_GOLDENS";
     const char* const given_ = std::getenv(kVariable);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What makes sand look like sand, measured in pictures of it.
+// Properties that make sand look like sand, measured in pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ double mean(const Pixels& pixels, int x0, int y0, int x1, int y1) {
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-/// How far neighbouring pixels differ in some rows, root mean square.
+/// Returns the root mean square difference of neighbouring pixels in some rows.
 double roughness(const Pixels& pixels, int y0, int y1) {
     double sum = 0;
     for (int y = y0; y < y1; ++y) {
@@ -47,7 +47,7 @@ double roughness(const Pixels& pixels, int y0, int y1) {
     return std::sqrt(sum / ((kLookWidth - 1) * (y1 - y0)));
 }
 
-/// A plane that rises to the east (1 is 45 degrees) with the given seed in its rows.
+/// Returns a plane that rises to the east (slope 1 is 45 degrees), with the given seed in its rows.
 scene::Scene slopeScene(double east, double north) {
     scene::Scene scene = sample::flatScene(128, 128);
     for (int row = 0; row < 128; ++row) {
@@ -66,7 +66,7 @@ protected:
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
 };
 
-// Sand in the plane of a screen comes out on the same pixels wherever the head is: so must its grains.
+// Sand in the plane of a screen is drawn on the same pixels wherever the head is. So its grains must be too.
 TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
     ScenePainter view(sample::flatScene(128, 128), glm::dmat4(1));
     const walls::Screen screen{{0.75, 0.8, 0}, {1.25, 0.8, 0}, {0.75, 1.175, 0}};
@@ -83,7 +83,7 @@ TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
     }
 }
 
-// Far sand is what a finer picture shows, averaged: no grain stands for its neighbours.
+// Far sand must look like the average of a finer picture: a single grain must not replace its neighbours.
 TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
     constexpr int kFiner = 6;
     ScenePainter view(sample::flatScene(256, 256), glm::dmat4(1));
@@ -102,7 +102,7 @@ TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
             }
         }
     }
-    // Rows of far sand, clear of the box's far end, to near sand.
+    // Rows from far sand, away from the box's far end, to near sand.
     double before = 0;
     for (const int row : {110, 150, 190, 270}) {
         const double rough = roughness(seen, row, row + 20);
@@ -117,7 +117,7 @@ TEST_F(Look, GrainFadesWithTheDistanceWithoutAliasing) {
 
 TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
     const auto colourOf = [&](double slope) {
-        // The sun stands on the axis of slopes that rise to the north: both get the same share of it.
+        // The sun is on the axis of slopes that rise to the north, so that both slopes get the same share of it.
         scene::Scene scene = slopeScene(0, slope);
         scene.look.sunDirection = {0, std::sin(0.5 * std::atan(-slope)), std::cos(0.5 * std::atan(slope))};
         ScenePainter view(scene, glm::dmat4(1));
@@ -133,21 +133,23 @@ TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
     const glm::dvec3 level = colourOf(0), slid = colourOf(std::tan(glm::radians(34.0)));
     std::printf("level %.0f %.0f %.0f, slid %.0f %.0f %.0f\n", level.r, level.g, level.b, slid.r, slid.g, slid.b);
     EXPECT_LT(slid.g, level.g - 4);
-    EXPECT_GT(slid.g, 0.8 * level.g) << "subtle it is not";
+    EXPECT_GT(slid.g, 0.8 * level.g) << "too dark for slid sand";
     EXPECT_GT(slid.r / slid.b, 1.05 * level.r / level.b);
 }
 
-/// By how much the tool darkens the ground under it.
+/// Darkening of the ground under the tool.
 struct Shadow {
     double darkest = 0;
-    double softness = 0;  // pixels that are darker at all, over those that are by half of the darkest
+    // Number of darkened pixels, divided by the number of pixels with at least half of the largest darkening.
+    double softness = 0;
 };
 
 TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
     scene::Scene scene = sample::flatScene(256, 256, 0.05);
     scene.look.sunDirection = {0, 0, 1};
     ScenePainter view(scene, glm::dmat4(1));
-    // From beside, so that the ball hides nothing that it shades; it is in the upper half of the picture.
+    // Seen from the side, so that the ball does not hide the ground that it shades. The ball is in the upper half of
+    // the picture.
     const auto beside = sample::camera({1, 0.2, 0.6}, {1, 1, 0});
     const Pixels ground = sample::draw(view, beside, target_);
     const auto shadowFrom = [&](double height /* [radius] */) {
@@ -169,14 +171,14 @@ TEST_F(Look, ToolsShadowIsDarkerAndTighterTheCloserItComes) {
     };
     Shadow lower = shadowFrom(1.2);
     EXPECT_GT(lower.darkest, 130);
-    lower.softness = 0;  // in touch, the sky's light that the ball takes is more than its shadow's edge
+    lower.softness = 0;  // at contact, the ball takes more skylight than the shadow's edge takes sunlight
     for (const double height : {2.5, 5.0, 10.0}) {
         const Shadow shadow = shadowFrom(height);
         EXPECT_LT(shadow.darkest, lower.darkest - 5);
         EXPECT_GT(shadow.softness, lower.softness);
         lower = shadow;
     }
-    view.setTool(sample::probeAt(scene, {1, 1, 0.05 * 31}), false);  // above what is seen
+    view.setTool(sample::probeAt(scene, {1, 1, 0.05 * 31}), false);  // above the visible part
     EXPECT_TRUE(sample::draw(view, beside, target_) == ground) << "a shadow from 31 radii";
 }
 
@@ -201,7 +203,7 @@ TEST_F(Look, WireframeDrawsEveryEdgeAndLeavesTheFacesAlone) {
     const Pixels without = sample::draw(view, above_, target_);
     view.setLayers(layersOf({lockstep::Overlay::wireframe}));
     const Pixels with = sample::draw(view, above_, target_);
-    // 3.75 mm to a pixel, 62.5 mm to a cell; vertices are over the middle of cells, cells (15, 15) and (16, 16) are
+    // A pixel spans 3.75 mm, a cell 62.5 mm. Vertices are over the middles of cells. Cells (15, 15) and (16, 16) are
     // half a cell from the middle of the picture.
     const auto pixelAt = [](double x, double y) {
         return glm::ivec2(200 + static_cast<int>(std::floor((x - 1) / 0.00375)),

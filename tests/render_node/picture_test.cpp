@@ -19,7 +19,7 @@ using sample::Pixels;
 constexpr int kWidth = 400;
 constexpr int kHeight = 300;
 
-/// The hash that picture_hash prints with this many threads of llvmpipe.
+/// Returns the hash that picture_hash prints with `threads` threads of llvmpipe.
 std::string hashWithThreads(int threads) {
     const std::string command =
         "LP_NUM_THREADS=" + std::to_string(threads) + " '" SANDWALL_BIN_DIR "/picture_hash' 2>&1";
@@ -60,7 +60,7 @@ TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
             const glm::ivec3 colour = sample::pixel(pixels, kWidth, x, y);
-            // A hue between red and yellow, bright and not garish.
+            // The hue is between red and yellow, bright but not too saturated.
             sandy += colour.r > colour.g && colour.g > colour.b && colour.r > 150 && colour.b > 80 ? 1 : 0;
             darkest = std::min(darkest, colour.r);
             brightest = std::max(brightest, colour.r);
@@ -74,11 +74,11 @@ TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
     const scene::Scene scene = sample::flatScene(256, 256);
     sand::Replica terrain(scene);
     ScenePainter view(scene, glm::dmat4(1));
-    // North-south through the middle; the sun stands in the west, so that the eastern slope faces it.
+    // The furrow runs north-south through the middle. The sun is in the west, so that the eastern slope faces it.
     sample::drag(terrain, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
     view.update(terrain.surface().data(), terrain.takeChange());
     const Pixels pixels = sample::draw(view, above_, target_);
-    // 1.5 m over 400 pixels: 3.75 mm each; the furrow is some 5 cm wide on either side of column 200.
+    // 1.5 m over 400 pixels: 3.75 mm per pixel. The furrow is some 5 cm wide on either side of column 200.
     const double west = meanLuminance(pixels, 193, 130, 198, 170);
     const double east = meanLuminance(pixels, 202, 130, 207, 170);
     const double level = meanLuminance(pixels, 60, 130, 100, 170);
@@ -123,13 +123,13 @@ TEST_F(Picture, ShowsTheToolTrueToSize) {
             red += colour.r > 2 * colour.g && colour.r > 60 ? 1 : 0;
         }
     }
-    // Seen from 1 m with 400 pixels to a metre there: a disc of 20 pixels radius, tangents r/√(d² − r²).
+    // Seen from 1 m, with 400 pixels per metre there: a disc of 20 pixels radius, with tangents r/√(d² − r²).
     const double radius = 0.05 / std::sqrt(1 - 0.05 * 0.05) * 400;
     EXPECT_NEAR(red, 3.14159 * radius * radius, 0.12 * 3.14159 * radius * radius);
 }
 
-/// The middle of what is darker in `with` than in `without`, weighted by how much darker it is [pixel]. The red pixels
-/// of the ball itself do not count.
+/// Returns the middle of the pixels that are darker in `with` than in `without`, weighted by the difference [pixel].
+/// Ignores the red pixels of the ball itself.
 glm::dvec2 middleOfShadow(const Pixels& without, const Pixels& with) {
     glm::dvec2 sum(0);
     double weight = 0;
@@ -148,19 +148,20 @@ glm::dvec2 middleOfShadow(const Pixels& without, const Pixels& with) {
 }
 
 TEST_F(Picture, ToolsShadowFallsAwayFromTheSun) {
-    constexpr double kHigh = 0.3, kPixel = 1.5 / kWidth;  // [m]: of the ball over the sand; what a pixel of sand spans
+    // [m]: height of the ball above the sand; size of a pixel on the sand.
+    constexpr double kHigh = 0.3, kPixel = 1.5 / kWidth;
     for (const glm::dvec3 sun : {glm::dvec3(-0.55, 0.35, 0.6), {0.5, 0.3, 0.8}, {0.1, -0.6, 0.8}, {-0.5, -0.4, 0.8}}) {
         scene::Scene scene = sample::flatScene(128, 128, 0.05);
         scene.look.sunDirection = {sun.x, sun.y, sun.z};
         ScenePainter view(scene, glm::dmat4(1));
         const Pixels without = sample::draw(view, above_, target_);
         view.setTool(sample::probeAt(scene, {1, 1, kHigh}), true);
-        // The line from the sun through the ball's middle meets the level sand here; north is up in the picture.
+        // The line from the sun through the ball's middle meets the level sand here. North is up in the picture.
         const glm::dvec2 away = glm::dvec2(sun) * (-kHigh / sun.z / kPixel);
         const glm::dvec2 expected(kWidth / 2.0 + away.x, kHeight / 2.0 - away.y);
         const glm::dvec2 middle = middleOfShadow(without, sample::draw(view, above_, target_));
-        // The far half of the shadow is paler (docs/look.md): at half of its length, 21 pixels, by an eighth. That
-        // draws its middle nearer by a quarter of their product, 0.7 pixels.
+        // The far half of the shadow is paler (docs/look.md): by an eighth at half of its length, 21 pixels. That moves
+        // its middle nearer by a quarter of their product, 0.7 pixels.
         EXPECT_LT(glm::distance(middle, expected), 1)
             << middle.x << ", " << middle.y << " instead of " << expected.x << ", " << expected.y;
     }

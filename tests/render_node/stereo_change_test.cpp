@@ -38,7 +38,8 @@ Pictures picturesOf(const render_node::TilePainter& painter) {
     return pictures;
 }
 
-// Whatever mode a tile comes from, it shows what a tile shows that was started in that mode.
+// A tile that changes to a mode must show the same as a tile that was started in that mode. The test tries every pair
+// of modes.
 TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(48);

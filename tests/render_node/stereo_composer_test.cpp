@@ -15,7 +15,7 @@ using render_node::EyeTarget;
 using render_node::StereoComposer;
 using walls::Stereo;
 
-/// Random levels; one half of the picture is dark, where light has more steps than levels tell.
+/// Returns random levels. One half of the picture is dark, where light has more steps than there are levels.
 Image noise(int width, int height, unsigned seed) {
     std::mt19937 random(seed);
     Image image(width, height);
@@ -51,7 +51,7 @@ walls::Tile tileOf(Stereo stereo, int width, int height) {
 
 class Composer : public testing::Test {
 protected:
-    /// Targets of the eyes of a mode, with what each sees in them.
+    /// Returns the targets of a mode's eyes, with each eye's picture in them.
     std::vector<EyeTarget> eyesOf(Stereo stereo) const {
         std::vector<EyeTarget> targets;
         for (const walls::Eye eye : walls::eyesOf(stereo)) {
@@ -76,7 +76,7 @@ TEST_F(Composer, EqualsTheReferenceInEveryModeAndSize) {
                                     Stereo::anaglyphColour, Stereo::anaglyphHalf, Stereo::anaglyphDubois}) {
             const std::vector<EyeTarget> eyes = eyesOf(stereo);
             StereoComposer composer(stereo, tileOf(stereo, width, height));
-            // What the drawing of sand leaves behind must not matter.
+            // GL state that is left from drawing sand must not matter.
             glEnable(GL_DEPTH_TEST);
             glEnable(GL_CULL_FACE);
             composer.compose(eyes);
@@ -91,11 +91,11 @@ TEST_F(Composer, EqualsTheReferenceInEveryModeAndSize) {
     }
 }
 
-// Eyes of which a rectangle has changed, and nothing else: the output is the whole one again, and outside of what the
-// rectangle reaches nothing was touched.
+// A rectangle of each eye has changed. The output must equal the whole composition, and pixels that the rectangle does
+// not reach must not be touched.
 TEST_F(Composer, PutsOnlyTheChangedRectangleTogether) {
     setSize(61, 47);
-    const render_node::PixelRect changed{10, 7, 33, 20};  // rows from below
+    const render_node::PixelRect changed{10, 7, 33, 20};  // rows counted from the bottom
     for (const Stereo stereo : {Stereo::sideBySide, Stereo::topBottom, Stereo::rowInterlaced, Stereo::checkerboard,
                                 Stereo::anaglyphColour, Stereo::anaglyphHalf, Stereo::anaglyphDubois}) {
         std::vector<EyeTarget> eyes = eyesOf(stereo);
@@ -117,7 +117,7 @@ TEST_F(Composer, PutsOnlyTheChangedRectangleTogether) {
         EXPECT_EQ(pictureOf(*composer.shown(eyes)[0].picture), pictures::packStereo(stereo, left, right))
             << walls::stereoName(stereo);
 
-        // Now everything differs, and only the rectangle is told of: the rest must stay as it was.
+        // Now every pixel differs, but only the rectangle is composed. All other pixels must stay unchanged.
         fill(eyes[0], right_);
         fill(eyes[1], before);
         composer.compose(eyes, changed);

@@ -24,7 +24,7 @@ protected:
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
 };
 
-/// A screen of 0.8 x 0.6 m and 800 x 600 pixels, two metres before the viewer.
+/// Returns a screen of 0.8 x 0.6 m and 800 x 600 pixels, two metres in front of the viewer.
 walls::Wall plainWall() {
     walls::Wall wall;
     wall.viewer.eye = {0, 0.3, 2};
@@ -38,7 +38,8 @@ walls::Wall plainWall() {
     return walls::shownIn(wall, Stereo::passive);
 }
 
-/// Where a ball hangs in front of nothing: the middle of all pixels that are not background [pixel].
+/// Returns the middle of a ball in front of an empty background: the middle of all pixels that are not background
+/// [pixel].
 glm::dvec2 middleOf(const Image& image, glm::ivec3 background) {
     glm::dvec2 sum(0);
     double count = 0;
@@ -59,13 +60,14 @@ TEST_F(StereoPicture, ShowsAPointWithTheParallaxOfItsDepth) {
     const walls::Wall wall = plainWall();
     scene::Scene scene = sample::flatScene(16, 16, 0.015);
     scene.look.backgroundColour = {0, 1, 0};
-    // Upright like the room, the sand five metres below the floor, out of sight: only the tool is seen.
+    // The scene is upright like the room. The sand is five metres below the floor, out of sight, so that only the tool
+    // is visible.
     const glm::dmat4 sceneToRoom({1, 0, 0, 0}, {0, 0, -1, 0}, {0, 1, 0, 0}, {0, -5, 0, 1});
     render_node::ScenePainter view(scene, sceneToRoom);
     for (const double wanted : {-1.0, -0.5, 0.0, 0.5, 2.0}) {
         const sand::ProbePoint probe = sample::probeAt(scene, {0.06, wanted, 5.25});
         view.setTool(probe, true);
-        // Probes are quantised: the truth is where the tool really is, from the middle of the screen's lower edge.
+        // Probes are quantised, so the exact place of the tool is used, from the middle of the screen's lower edge.
         const double unit = scene.terrain.cellSize() / sand::kProbePerCell;  // [m]
         const glm::dvec3 at(probe.x * unit, probe.z * unit - 5, probe.y * unit);
         const double behind = at.z;
@@ -74,12 +76,13 @@ TEST_F(StereoPicture, ShowsAPointWithTheParallaxOfItsDepth) {
                             {0, 255, 0});
         };
         const glm::dvec2 left = shown(Eye::left), right = shown(Eye::right), middle = shown(Eye::middle);
-        // By similar triangles separation * s / (s + D), a pixel being a millimetre; to the right for what lies behind.
+        // Similar triangles give a parallax of separation * s / (s + D). A pixel is a millimetre. A point behind the
+        // screen has its parallax to the right.
         const double parallax = 1000 * 0.065 * behind / (behind + 2);
         EXPECT_NEAR(right.x - left.x, parallax, 0.25) << behind << " m behind the screen";
         EXPECT_NEAR(right.y, left.y, 0.25);
         EXPECT_NEAR(middle.x, (left.x + right.x) / 2, 0.25);
-        // And where the point itself must be: on the line from the eye.
+        // The point itself must be on the line from the eye.
         EXPECT_NEAR(middle.x, 400 + 1000 * at.x * 2 / (behind + 2), 0.25);
         EXPECT_NEAR(middle.y, 600 - 1000 * (0.3 + (at.y - 0.3) * 2 / (behind + 2)), 0.25);
     }
@@ -105,7 +108,7 @@ TEST_F(StereoPicture, OfOneEyeIsTheMiddleBetweenTwo) {
     EXPECT_NE(apart[1], monoShown[0]);
 }
 
-// Whatever mode the file of a wall names, in mono it shows the picture from between the eyes.
+// In mono, every wall must show the picture from the midpoint of the eyes, whatever the mode of its file is.
 TEST_F(StereoPicture, OfMonoIsTheMiddleOfTheEyesOnEveryWall) {
     const sample::DugScene dug;
     for (const std::string& name : sample::wallNames()) {
@@ -140,7 +143,7 @@ TEST_F(StereoPicture, OfTheLeftEyeAloneIsThatOfTheLeftOutput) {
     EXPECT_NE(both[0], both[1]);
 }
 
-/// Two corners that a face shares with another.
+/// Two corners that a face shares with another face.
 struct Joint {
     glm::dvec3 from, to;
 };
@@ -160,8 +163,9 @@ std::optional<Joint> jointOf(const Screen& first, const Screen& second) {
     return shared.size() == 2 ? std::optional(Joint{shared[0], shared[1]}) : std::nullopt;
 }
 
-/// What a face shows along one of its edges. The face is moved outwards by half a pixel, so that its last pixels lie on
-/// the edge itself, as those of the other face do: both then look along the same rays.
+/// Returns the pixels of a face along one of its edges. The face is moved outwards by half a pixel, so that its last
+/// pixels are on the edge itself. The last pixels of the other face are there too. So both faces look along the same
+/// rays.
 std::vector<glm::ivec3> alongEdge(render_node::ScenePainter& view, const walls::Wall& wall, const walls::Tile& tile,
                                   const Joint& joint, Eye eye) {
     Screen screen = tile.screen;
@@ -184,7 +188,7 @@ std::vector<glm::ivec3> alongEdge(render_node::ScenePainter& view, const walls::
     return colours;
 }
 
-/// Of the pixels that meet, the mean of the largest difference of a channel [level].
+/// Returns the mean, over the pixels that meet, of the largest difference of a channel [level].
 double meanDifference(const std::vector<glm::ivec3>& a, const std::vector<glm::ivec3>& b, std::size_t shift = 0) {
     double sum = 0;
     for (std::size_t i = 0; i + shift < a.size(); ++i) {
@@ -213,7 +217,8 @@ TEST_F(StereoPicture, FacesOfACaveJoinAlongTheirEdges) {
                     alongEdge(view, cave, cave.tiles[j], *joint, eye == Eye::left ? Eye::right : Eye::left);
                 ASSERT_EQ(first.size(), second.size());
                 const std::string edge = cave.tiles[i].name + " and " + cave.tiles[j].name;
-                // What is left is grain: the texture is seen from another side, and another mipmap is taken.
+                // The remaining difference is grain: the texture is seen from another side, and another mip level is
+                // used.
                 EXPECT_LT(meanDifference(first, second), 0.5) << edge;
                 EXPECT_GT(meanDifference(first, second, 1), 1) << edge << ", a pixel apart";
                 EXPECT_GT(meanDifference(first, other), 1) << edge << ", eyes swapped";

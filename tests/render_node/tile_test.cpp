@@ -15,14 +15,14 @@ using render_node::EyeTarget;
 using render_node::ScenePainter;
 using sample::Pixels;
 
-constexpr int kAcross = 4;  // tiles
+constexpr int kAcross = 4;  // number of tiles across
 constexpr int kDown = 3;
 constexpr int kTileWidth = 256;
 constexpr int kTileHeight = 192;
 constexpr int kWallWidth = kAcross * kTileWidth;
 constexpr int kWallHeight = kDown * kTileHeight;
 
-/// Pixel by pixel, whether the scene's distance jumps nearby: the places where tiles may differ from the whole.
+/// Returns for each pixel whether the scene's distance jumps nearby. At these pixels tiles may differ from the whole.
 std::vector<bool> silhouettes(const EyeTarget& whole) {
     std::vector<float> depth(static_cast<std::size_t>(kWallWidth) * kWallHeight);
     glBindFramebuffer(GL_FRAMEBUFFER, whole.framebuffer());
@@ -35,7 +35,7 @@ std::vector<bool> silhouettes(const EyeTarget& whole) {
     std::vector<bool> out(depth.size());
     for (int y = 0; y < kWallHeight; ++y) {
         for (int x = 0; x < kWallWidth; ++x) {
-            // A plane seen in perspective is linear in 1/distance: what bends by more than 0.1 % is an edge.
+            // A plane in perspective is linear in 1/distance. A bend of more than 0.1 % is an edge.
             bool edge = false;
             for (int v = std::max(1, y - 2); v <= std::min(kWallHeight - 2, y + 2); ++v) {
                 for (int u = std::max(1, x - 2); u <= std::min(kWallWidth - 2, x + 2); ++u) {
@@ -52,13 +52,13 @@ std::vector<bool> silhouettes(const EyeTarget& whole) {
 }
 
 struct Difference {
-    double share = 0;      // of pixels that differ by more than 8 levels in some channel
-    double elsewhere = 0;  // share of pixels that do so away from silhouettes
+    double share = 0;      // share of pixels that differ by more than 8 levels in some channel
+    double elsewhere = 0;  // share of pixels that differ so much away from silhouettes
 };
 
 class TiledWall : public testing::Test {
 protected:
-    /// The whole wall put together from its tiles, each drawn with a view of its own, as ranks do.
+    /// Returns the whole wall, assembled from its tiles. Each tile is drawn with its own view, as ranks do.
     Pixels tiled(const glm::dvec3& eye) {
         Pixels wall(3UL * kWallWidth * kWallHeight);
         const EyeTarget target(kTileWidth, kTileHeight);
@@ -86,10 +86,10 @@ protected:
         const sample::Window window{share.x, share.y, 1 + share.x, 1 + share.y};
         return sample::draw(view, sample::camera(eye, eye + forward_, window), wholeTarget_);
     }
-    /// What is other where the picture is moved by a hair: there a rounding decides which of two levels of the grain is
-    /// drawn.
+    /// Returns the pixels that change when the picture is moved by a tiny distance. At these pixels rounding chooses
+    /// between two levels of the grain.
     std::vector<bool> undecided(const Pixels& reference) {
-        constexpr double kHair = 0.002;  // [pixel], far more than roundings, far less than anything seen
+        constexpr double kHair = 0.002;  // [pixel], far more than rounding errors, far less than a visible distance
         std::vector<bool> mask(static_cast<std::size_t>(kWallWidth) * kWallHeight);
         for (const glm::dvec2 hair : {glm::dvec2(kHair, kHair), {-kHair, kHair}, {kHair, -kHair}, {-kHair, -kHair}}) {
             const Pixels other = whole(leftEye_, hair);
@@ -104,7 +104,7 @@ protected:
         view.setTool(sample::probeAt(scene_, {1.1, 0.9, 0.06}), true);
         return view;
     }
-    /// Compares with the picture moved `shift` pixels to the right.
+    /// Compares with the picture that is moved `shift` pixels to the right.
     static Difference compare(const Pixels& wall, const Pixels& reference, const std::vector<bool>& edges,
                               int shift = 0) {
         int differ = 0;
@@ -178,10 +178,10 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     int left = 0;
     for (int frame = 0; frame < 18; ++frame) {
         const glm::dvec3 from(0.3 + 0.2 * frame, 0.5, 0.02);
-        if (frame >= 6) {  // it hovers, and only dims the sand
+        if (frame >= 6) {  // the tool hovers and only dims the sand
             lazy.setTool(sample::probeAt(scene_, {0.2 + 0.09 * frame, 0.5 + 0.03 * frame, frame % 2 == 0 ? 0.05 : 0.5}),
                          false);
-        } else if (frame != 3) {  // it rests once
+        } else if (frame != 3) {  // the tool rests in one frame
             sample::drag(terrain, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
             lazy.setTool(terrain.probe(), frame % 2 == 0);
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each eye of a viewer sees: the outputs of every tile, as a rank paints them, taken apart as glasses do, beside
-// pictures that are drawn from where that eye is.
+// Compares the picture that each eye of a viewer sees with a picture that is drawn from the eye's place. The outputs of
+// every tile are painted as a rank paints them, and separated as glasses do.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ const glm::dvec3 kHeadAt(0.1, 1.5, 2.5);               // [m]
 constexpr double kScreenWide = 1, kScreenHigh = 0.75;  // [m], of each screen
 constexpr double kDeskHigh = 0.38, kDeskFront = 0.8;   // [m]
 
-/// Two tiles beside each other in the plane z = 0, and a desk before them.
+/// Returns a wall of two neighbouring tiles in the plane z = 0, and a desk in front of them.
 walls::Wall gridAndDesk(Stereo stereo) {
     walls::Wall wall;
     wall.viewer = {kHeadAt, kEyesApart, {1, 0, 0}};
@@ -50,12 +50,13 @@ walls::Wall gridAndDesk(Stereo stereo) {
     return walls::shownIn(wall, stereo);
 }
 
-/// The camera of an eye that looks at tile 0, 1 or the desk: by hand, without walls::viewOf and walls::eyePosition.
+/// Returns the camera of an eye that looks at tile 0, tile 1 or the desk. It is computed without walls::viewOf() and
+/// walls::eyePosition().
 render_node::Camera cameraByHand(std::size_t tile, Eye eye) {
     const double aside = eye == Eye::left ? -kEyesApart / 2 : eye == Eye::right ? kEyesApart / 2 : 0;
     const glm::dvec3 at(kHeadAt.x + aside, kHeadAt.y, kHeadAt.z);
     const double left = tile == 0 ? -1.00625 : tile == 1 ? 0.00625 : -0.5;
-    // A desk is seen from above: its top edge is the far one.
+    // A desk is seen from above, so that its top edge is the far one.
     const double distance = tile == 2 ? at.y - kDeskHigh : at.z;
     const double bottom = tile == 2 ? at.z - kDeskFront : 0.7 - at.y;
     const double toNear = 0.1 / distance;
@@ -66,7 +67,7 @@ render_node::Camera cameraByHand(std::size_t tile, Eye eye) {
     return {projection * glm::lookAt(at, at + ahead, up), at};
 }
 
-/// ChannelLevels of channels as Image::rgb has them; -1 where an eye sees nothing of them.
+/// Levels of channels, in the order of Image::rgb; -1 if an eye does not see the channel.
 using ChannelLevels = std::vector<int>;
 
 double lightOf(int level) {
@@ -79,13 +80,14 @@ int levelOf(double light) {
         std::lround(255 * (share <= 0.0031308 ? 12.92 * share : 1.055 * std::pow(share, 1 / 2.4) - 0.055)));
 }
 
-/// The matrices of docs/stereo.md: what goes into red, green, blue, of the left eye's red, green, blue and the right's.
+/// The matrices of docs/stereo.md: the weights of the left eye's and the right eye's red, green, blue in each of red,
+/// green, blue.
 constexpr std::array<std::array<double, 6>, 3> kDubois{
     {{0.456100, 0.500484, 0.176381, -0.0434706, -0.0879388, -0.00155529},
      {-0.0400822, -0.0378246, -0.0157589, 0.378476, 0.733640, -0.0184503},
      {-0.0152161, -0.0205971, -0.00546856, -0.0721527, -0.112961, 1.22640}}};
 
-/// What a pixel of an anaglyph has to show in one channel for these pixels of the left and the right eye.
+/// Returns the level that an anaglyph must show in one channel for these pixels of the left and the right eye.
 int anaglyphLevel(Stereo stereo, std::size_t channel, const std::uint8_t* left, const std::uint8_t* right) {
     if (stereo == Stereo::anaglyphDubois) {
         double sum = 0;
@@ -103,7 +105,7 @@ int anaglyphLevel(Stereo stereo, std::size_t channel, const std::uint8_t* left, 
 
 bool isAnaglyph(Stereo stereo) { return stereo >= Stereo::anaglyphColour; }
 
-/// Whether an eye sees a pixel's channel through the glasses that a mode needs.
+/// Returns whether an eye sees a pixel's channel through the glasses that a mode needs.
 bool passes(Stereo stereo, Eye eye, int x, int y, std::size_t channel) {
     const bool left = eye == Eye::left;
     return stereo == Stereo::rowInterlaced  ? (y % 2 == 0) == left
@@ -112,7 +114,7 @@ bool passes(Stereo stereo, Eye eye, int x, int y, std::size_t channel) {
                                             : true;
 }
 
-/// What an eye sees of an output through the glasses that the mode needs.
+/// Returns the levels that an eye sees of an output through the glasses that the mode needs.
 ChannelLevels seenThroughGlasses(Stereo stereo, const OutputPicture& output, Eye eye) {
     const bool right = eye == Eye::right;
     Image image = sample::pictureOf(right && output.right != nullptr ? *output.right : *output.picture);
@@ -129,7 +131,7 @@ ChannelLevels seenThroughGlasses(Stereo stereo, const OutputPicture& output, Eye
     return levels;
 }
 
-/// What it should see there, if the two eyes see these pictures.
+/// Returns the levels that the eye should see there, if these are the pictures of the two eyes.
 ChannelLevels levelsWanted(Stereo stereo, Eye eye, const Image& left, const Image& right) {
     ChannelLevels levels;
     const Image& own = eye == Eye::right ? right : left;
@@ -141,20 +143,20 @@ ChannelLevels levelsWanted(Stereo stereo, Eye eye, const Image& left, const Imag
     return levels;
 }
 
-/// The share of what is seen that is other than wanted by more than 8 levels.
+/// Returns the share of the seen levels that differ by more than 8 from the right ones.
 double shareOfWrong(const ChannelLevels& seen, const ChannelLevels& expected) {
     int count = 0, wrong = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         count += seen[i] >= 0 ? 1 : 0;
         wrong += seen[i] >= 0 && std::abs(seen[i] - expected.at(i)) > 8 ? 1 : 0;
     }
-    EXPECT_GE(count, kEyePixels.x * kEyePixels.y) << "of three channels a third at least";
+    EXPECT_GE(count, kEyePixels.x * kEyePixels.y) << "at least one of three channels";
     return static_cast<double>(wrong) / count;
 }
 
-// Shares of the levels that an eye sees. A frustum that is computed in another order is rounded otherwise, which may
-// turn a pixel at a silhouette; here it turned none. Of the other eye's picture 7 % and more are wrong, and of the left
-// eye's beside the one from the middle 2.6 %.
+// Limits for the share of wrong levels. A frustum that is computed in another order has other rounding errors, which
+// may change a pixel at a silhouette; here they changed none. If an eye sees the other eye's picture, at least 7 % of
+// the levels are wrong. If the left eye sees the picture from the middle, 2.6 % are wrong.
 constexpr double kFewWrong = 0.001, kManyWrong = 0.02;
 
 class Viewer : public testing::Test {
@@ -190,7 +192,7 @@ protected:
         }
         return state;
     }
-    /// The sand as an eye sees it through a tile.
+    /// Returns the sand as an eye sees it through a tile.
     [[nodiscard]] Image drawn(std::size_t tile, Eye eye) const {
         const sand::Replica terrain = dug();
         render_node::ScenePainter painter(scene_, sceneToRoom());
@@ -200,20 +202,21 @@ protected:
         painter.draw(cameraByHand(tile, eye), target);
         return sample::pictureOf(target);
     }
-    /// Every eye sees its own picture on every output of the tile, and would not pass for the other.
+    /// Checks that every eye sees its own picture on every output of the tile, and that the other eye's picture would
+    /// fail.
     void expectEachEyeItsPicture(Stereo stereo, std::size_t tile, const std::vector<OutputPicture>& outputs) {
         const std::string what = "tile " + std::to_string(tile) + " in " + std::string(walls::stereoName(stereo));
         const auto pictureFor = [&](Eye eye) { return expected_.at(tile).at(static_cast<std::size_t>(eye)); };
         const bool both = walls::eyesOf(stereo).size() == 2;
         ASSERT_FALSE(outputs.empty()) << what;
         for (const Eye eye : {Eye::left, Eye::right}) {
-            // Where a wall shows one picture, both eyes of a viewer see that.
+            // If a wall shows one picture, both eyes of a viewer see it.
             const Image left = pictureFor(both ? Eye::left : walls::eyesOf(stereo)[0]);
             const Image right = both ? pictureFor(Eye::right) : left;
             const Image other = stereo == Stereo::left ? pictureFor(Eye::right) : pictureFor(Eye::left);
             for (std::size_t i = 0; i < outputs.size(); ++i) {
                 if (stereo == Stereo::passive && i != static_cast<std::size_t>(eye)) {
-                    continue;  // its glass stops the light of this projector
+                    continue;  // the eye's glass blocks the light of this projector
                 }
                 const ChannelLevels seen = seenThroughGlasses(stereo, outputs[i], eye);
                 EXPECT_LT(shareOfWrong(seen, levelsWanted(stereo, eye, left, right)), kFewWrong)
@@ -228,11 +231,11 @@ protected:
 
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     scene::Scene scene_ = sample::duneScene(128);
-    std::array<std::vector<Image>, 3> expected_;  // by tile, then in the order of walls::Eye
-    int seen_ = 0;                                // outputs that were compared, by each eye
+    std::array<std::vector<Image>, 3> expected_;  // for each tile, in the order of walls::Eye
+    int seen_ = 0;                                // number of outputs that each eye was compared on
 };
 
-// A grid and a screen of another plane in one wall, so that several outputs of a mode stand beside each other.
+// A wall has a grid and a screen in another plane, so that several outputs of a mode are compared.
 TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
     for (const std::string& name : walls::stereoNames()) {
         const Stereo stereo = walls::stereoNamed(name);
@@ -248,7 +251,7 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
     EXPECT_EQ(seen_, 12 * 3 * 2);
 }
 
-// One session that goes through the modes: an operator changes them, and what is open stays open.
+// One session changes through all modes, as an operator does. Open outputs stay open.
 TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
     for (const Stereo begun : {Stereo::anaglyphColour, Stereo::passive}) {
         const walls::Wall wall = gridAndDesk(begun);
@@ -258,7 +261,7 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
                 : std::vector{Stereo::checkerboard, Stereo::anaglyphDubois, Stereo::mono,   Stereo::anaglyphColour,
                               Stereo::right,        Stereo::rowInterlaced,  Stereo::active, Stereo::anaglyphHalf};
         std::array<sand::Replica, 2> terrains{dug(), dug()};
-        std::vector<walls::Wall> shown(modes.size() + 1, wall);  // painters look at them
+        std::vector<walls::Wall> shown(modes.size() + 1, wall);  // painters refer to them
         std::array<std::unique_ptr<TilePainter>, 2> painters;
         for (std::size_t tile = 0; tile < painters.size(); ++tile) {
             painters.at(tile) = std::make_unique<TilePainter>(shown[0], shown[0].tiles[tile], scene_, "host",
@@ -278,7 +281,7 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
     EXPECT_EQ(seen_, 2 * 2 * 9 + 2 * (3 * 2 + 3 * 4));
 }
 
-// Without quad buffers a rank draws one eye in a frame, and a window takes one eye from it: they must agree on which.
+// Without quad buffers a rank draws one eye per frame, and a window shows one eye of it. Both must choose the same eye.
 TEST_F(Viewer, SeesOfEyesInTurnTheOneThatWasDrawnInThisFrame) {
     const walls::Wall wall = gridAndDesk(Stereo::active);
     TilePainter inTurn(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain}),

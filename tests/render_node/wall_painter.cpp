@@ -14,14 +14,15 @@
 namespace sample {
 namespace {
 
-constexpr int kGap = 4;  // [pixel], between what different outputs of a tile show
+constexpr int kGap = 4;  // [pixel], between the pictures of different outputs of a tile
 
 render_node::Camera cameraOf(const walls::Wall& wall, const walls::Screen& screen, walls::Eye eye) {
     const glm::dvec3 position = walls::eyePosition(wall.viewer, eye);
     return {walls::viewOf(screen, position, wall.clip.near, wall.clip.far).viewProjection, position};
 }
 
-/// The wall with the size of its outputs' buffers in place of the eyes' pictures, to lay these out.
+/// Returns the wall for the layout of its outputs: with the sizes of the outputs' buffers instead of the sizes of the
+/// eyes' pictures.
 walls::Wall ofBuffers(walls::Wall wall) {
     for (walls::Tile& tile : wall.tiles) {
         tile.pixels = walls::outputPixels(wall.stereo, tile.pixels);
@@ -32,7 +33,7 @@ walls::Wall ofBuffers(walls::Wall wall) {
     return wall;
 }
 
-/// Where the line from the sun through the ball's centre meets the sand.
+/// Returns the place where the line from the sun through the ball's centre meets the sand.
 glm::dvec3 shadowOf(const Ball& ball) {
     const glm::dvec3 step = glm::normalize(ball.sun) * (0.1 * ball.radius);
     glm::dvec3 place = ball.centre;
@@ -42,11 +43,13 @@ glm::dvec3 shadowOf(const Ball& ball) {
     return place;
 }
 
-/// White in the box around the ball and its shadow as one eye sees them through one tile, black elsewhere. A tile sees
-/// nothing of what begins behind the eye; a box that begins before it and ends behind it would be the whole tile.
+/// Returns a mask of one tile, as one eye sees it: white in the box around the ball and its shadow, black elsewhere. If
+/// the box begins behind the eye, the tile sees no part of it. If the box begins in front of the eye and ends behind
+/// it, it would cover the whole tile.
 Image boxOf(const Ball& ball, const glm::dmat4& sceneToClip, glm::ivec2 pixels) {
-    // In radii: the ball dims sand up to 1.8 of them (docs/look.md). A shadow on level sand is an ellipse, longer by
-    // the sine of the sun's height: 1.48 radii to either side under this sun, and 0.2 of penumbra.
+    // Lengths in radii of the ball. The ball dims sand up to a distance of 1.8 (docs/look.md). A shadow on level sand
+    // is an ellipse, longer by the sine of the sun's height. It extends 1.48 to either side under this sun, plus 0.2 of
+    // penumbra.
     constexpr double kReach = 2;
     glm::dvec2 low(std::numeric_limits<double>::max()), high(-low);
     for (const glm::dvec3& centre : {ball.centre, shadowOf(ball)}) {

@@ -16,12 +16,12 @@
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
 
-/// Walls drawn tile by tile in one process, as their ranks would.
+/// Walls that are drawn tile by tile in one process, as their ranks would draw them.
 namespace sample {
 
 using pictures::Image;
 
-/// Dunes with a furrow dug through them, the tool still in the sand.
+/// Dunes with a furrow through them. The tool is still in the sand.
 struct DugScene {
     scene::Scene scene = ballInDunes();
     sand::Replica terrain{scene};
@@ -41,51 +41,52 @@ private:
 
 inline std::filesystem::path wallFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
 
-/// The files of walls/configs, in the order of their names. Throws if there is none.
+/// Returns the files of walls/configs, in the order of their names. Throws if there is no file.
 [[nodiscard]] std::vector<std::string> wallNames();
 
-/// The same display with each side of a tile `by` times shorter in pixels, at least one.
+/// Returns the same display with each side of a tile `by` times shorter in pixels, at least one pixel.
 [[nodiscard]] walls::Wall reduced(walls::Wall wall, int by);
 
-/// The same display with as many pixels as divide those of every tile, and at most so many from end to end.
+/// Returns the same display with smaller tiles. One number divides the sides of all tiles: the least that divides them
+/// without remainder and leaves at most `mostPixels` pixels in the whole picture.
 [[nodiscard]] walls::Wall smallWall(const walls::Wall& full, int mostPixels);
 
 [[nodiscard]] Image pictureOf(const render_node::EyeTarget& target);
 
-/// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView). `depth` takes GL's depths,
-/// the lowest row first.
+/// Draws the sand as seen through one screen. `sand` must have the wall's stage (makeView). `depth` receives GL's
+/// depths, the lowest row first.
 [[nodiscard]] Image drawThrough(render_node::ScenePainter& sand, const walls::Wall& wall, const walls::Screen& screen,
                                 glm::ivec2 pixels, walls::Eye eye, std::vector<float>* depth = nullptr);
 [[nodiscard]] render_node::ScenePainter makeView(const DugScene& dug, const walls::Wall& wall);
-/// Where the wall has the sand stand.
+/// Returns the matrix from the scene to the wall's room.
 [[nodiscard]] glm::dmat4 sceneToRoom(const walls::Wall& wall, const scene::Scene& scene);
 
-/// What the outputs of a tile show, in their order; an output that shows the eyes in turn gives the left, then the
-/// right.
+/// Returns the pictures of a tile's outputs, in their order. An output that shows the eyes in turn gives the left
+/// picture, then the right one.
 [[nodiscard]] std::vector<Image> outputsOf(render_node::ScenePainter& sand, const walls::Wall& wall,
                                            const walls::Tile& tile);
 
-/// One picture of all that the wall's outputs show, bezels black: first outputs as they stand on the wall, second
-/// ones, or second eyes, below.
+/// Returns one picture of all outputs of the wall, with black bezels. First outputs are at their places on the wall;
+/// second outputs, or second eyes, are below them.
 [[nodiscard]] Image wallOfOutputs(const walls::Wall& wall, const std::vector<std::vector<Image>>& outputsByTile);
 
-/// All that the wall shows of the sand.
+/// Returns one picture of everything that the wall shows of the sand.
 [[nodiscard]] Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall);
 
-/// A ball over or in sand, in the scene's axes [scene unit].
+/// Ball over or in the sand, in the scene's axes [scene unit].
 struct Ball {
     glm::dvec3 centre;
     double radius;
-    glm::dvec3 sun;                                     // the direction towards it
+    glm::dvec3 sun;                                     // direction towards the sun
     std::function<double(const glm::dvec2&)> groundAt;  // height of the sand at a place
 };
 [[nodiscard]] Ball ballOf(const DugScene& dug);
 
-/// Returns which pixels of a picture of all outputs (wallOfOutputs) may show the ball, its shadow, or sand that it
-/// dims: a box for every tile and eye, from the geometry alone.
+/// Returns the pixels, in a picture of all outputs (wallOfOutputs), that may show the ball, its shadow, or sand that it
+/// dims. The result is a box for every tile and eye, from the geometry alone.
 [[nodiscard]] pictures::Mask partOfBall(const Ball& ball, const glm::dmat4& sceneToRoom, const walls::Wall& wall);
 
-/// Every tile's pattern for one eye, put together.
+/// Returns one picture of every tile's pattern for one eye.
 [[nodiscard]] Image patternOfWall(const walls::Wall& wall, lockstep::Pattern pattern, walls::Eye eye,
                                   std::uint64_t frame = 0);
 

@@ -18,19 +18,20 @@ using walls::Screen;
 
 constexpr int kSeamLevels = 8;
 constexpr double kSeamMostBad = 0.01;
-constexpr double kBend = 0.001;            // of the distance, from pixel to pixel: more is a silhouette
-constexpr double kHair = 0.002;            // [pixel], far more than roundings, far less than anything seen
-constexpr double kMostUndecided = 0.0005;  // of the pixels
+// Largest relative bend of the distance from pixel to pixel; a larger one is a silhouette.
+constexpr double kBend = 0.001;
+constexpr double kHair = 0.002;            // [pixel], far more than rounding errors, far less than a visible distance
+constexpr double kMostUndecided = 0.0005;  // largest share of pixels whose grain depends on rounding
 constexpr int kSeamMostPixels = 700000;
 
-/// A screen that one camera sees as a whole, and the parts of it that are drawn on their own.
+/// Screen that one camera sees as a whole, and the parts of it that are drawn separately.
 struct Whole {
     Screen screen;
     glm::ivec2 pixels;
     std::vector<std::pair<Screen, walls::PixelRect>> parts;
 };
 
-/// The part of a screen that shows these pixels of it.
+/// Returns the part of a screen that shows these pixels of it.
 Screen partOf(const Screen& screen, glm::ivec2 pixels, const walls::PixelRect& rect) {
     const glm::dvec3 x = (screen.lowerRight - screen.lowerLeft) / double(pixels.x);
     const glm::dvec3 y = (screen.upperLeft - screen.lowerLeft) / double(pixels.y);
@@ -38,7 +39,7 @@ Screen partOf(const Screen& screen, glm::ivec2 pixels, const walls::PixelRect& r
     return {corner, corner + x * double(rect.width), corner + y * double(rect.height)};
 }
 
-/// A screen of its own in four unequal parts.
+/// Returns a screen in four unequal parts.
 Whole inParts(const walls::Tile& tile) {
     const int x = tile.pixels.x * 2 / 5, y = tile.pixels.y * 3 / 7;
     Whole whole{tile.screen, tile.pixels, {}};
@@ -51,7 +52,7 @@ Whole inParts(const walls::Tile& tile) {
     return whole;
 }
 
-/// The same grid with bezels of whole pixels, so that a crop of the whole can equal a tile.
+/// Returns the same grid with bezels of whole pixels, so that a crop of the whole can equal a tile.
 walls::Wall withWholeBezels(walls::Wall wall) {
     walls::Grid& grid = *wall.grid;
     const glm::dvec2 pixel = grid.tileSize / glm::dvec2(grid.tilePixels);
@@ -60,7 +61,8 @@ walls::Wall withWholeBezels(walls::Wall wall) {
     return wall;
 }
 
-/// What of a wall one camera can see at a time: its grid of several tiles, minus the bezels, and each other screen.
+/// Returns the parts of a wall that one camera can see at a time. They are a grid of several tiles without its bezels,
+/// and each other screen.
 std::vector<Whole> wholesOf(const walls::Wall& wall) {
     std::vector<Whole> wholes;
     if (wall.grid && wall.grid->rows * wall.grid->columns > 1) {
@@ -94,14 +96,14 @@ struct Count {
     double pixels = 0, bad = 0, badWhenMoved = 0, badInTheOtherEye = 0, silhouettes = 0;
 };
 
-/// Silhouettes and sharp edges, two pixels around: where the distance of what is seen jumps or bends. There the
-/// renderer may decide a pixel either way when the same thing is drawn through another viewport. `depth` is GL's, row 0
-/// the lowest.
+/// Returns silhouettes and sharp edges, and two pixels around them: places where the distance of the scene jumps or
+/// bends. The renderer may draw such a pixel either way when it draws the same scene through another viewport. `depth`
+/// is GL's; row 0 is the lowest.
 pictures::Mask silhouettes(const std::vector<float>& depth, const walls::Clip& clip, glm::ivec2 size) {
     const auto at = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x);
     };
-    // A plane seen in perspective is linear in 1/distance.
+    // A plane in perspective is linear in 1/distance.
     const auto nearness = [&](int x, int y) {
         const double z = 2.0 * double{depth[at(x, size.y - 1 - y)]} - 1;
         return (clip.far + clip.near - z * (clip.far - clip.near)) / (2 * clip.far * clip.near);
@@ -122,8 +124,8 @@ pictures::Mask silhouettes(const std::vector<float>& depth, const walls::Clip& c
     return mask;
 }
 
-/// Adds to `edges` what is other where the screen is moved by a hair: there a rounding decides which of two levels of
-/// the grain is drawn.
+/// Adds to `edges` the pixels that change when the screen is moved by a tiny distance. At these pixels rounding chooses
+/// between two levels of the grain.
 void addUndecided(pictures::Mask& edges, render_node::ScenePainter& view, const walls::Wall& wall, const Whole& whole,
                   const Image& picture) {
     const pictures::Mask known = edges;
@@ -153,7 +155,7 @@ pictures::Mask cropOf(const pictures::Mask& mask, int width, const walls::PixelR
 
 class WallSeams : public testing::Test {
 protected:
-    /// Draws every part alone and holds it against the crop of the whole.
+    /// Draws every part alone and compares it with the crop of the whole.
     static void compareParts(render_node::ScenePainter& view, const walls::Wall& wall, const Whole& whole,
                              Count& count) {
         std::vector<float> depth;
@@ -187,8 +189,9 @@ protected:
     sample::DugScene dug_;
 };
 
-// At most 1 % of a tile may differ by more than 8 levels from the one picture of the whole, all at silhouettes and
-// where two levels of the grain meet; a tile that is a pixel off, or shows the other eye, must not pass.
+// At most 1 % of a tile may differ by more than 8 levels from the one picture of the whole. These pixels are at
+// silhouettes and between two levels of the grain. A tile that is one pixel off, or that shows the other eye, must
+// fail.
 TEST_F(WallSeams, EveryTileOfEverySampleIsItsPartOfTheWhole) {
     for (const std::string& name : sample::wallNames()) {
         SCOPED_TRACE(name);

@@ -14,7 +14,7 @@ using render_node::SandSurface;
 
 constexpr int kBlock = SandSurface::kBlock;
 
-/// Overwritten cells in `count` blocks of a field of `side` cells, each within its block.
+/// Returns overwritten cells in `count` blocks of a field of `side` cells. Each rectangle is within its block.
 std::vector<SandSurface::Overwritten> someIn(int side, int count, std::mt19937& random) {
     const auto below = [&random](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
     std::vector<SandSurface::Overwritten> result;
@@ -52,7 +52,7 @@ TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
     }
 }
 
-// Two places far apart do not become one rectangle, however far.
+// Two distant places must not become one rectangle, at any distance.
 TEST(ChangedParts, KeepPlacesFarApart) {
     const std::vector<SandSurface::Overwritten> overwritten{{{3, 3, 5, 5}, {}}, {{2040, 2041, 2048, 2048}, {}}};
     const std::vector<sand::CellRect> parts = render_node::changedParts(overwritten);

@@ -23,8 +23,8 @@ using render_node::SandVertex;
 using render_node::ScenePainter;
 using VertexBits = std::array<std::uint32_t, 4>;
 
-constexpr int kSide = 32;   // [quad], of a chunk
-constexpr int kChunks = 4;  // on a side of the field
+constexpr int kSide = 32;   // [quad], side of a chunk
+constexpr int kChunks = 4;  // number of chunks along a side of the field
 
 double random(std::mt19937& source, double most) { return static_cast<double>(source() % 1000U) / 1000 * most; }
 
@@ -51,7 +51,7 @@ sand::CellRect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * k
 
 using Place = std::pair<int, int>;  // column and row of the vertex grid
 
-/// A field in chunks of random levels.
+/// Field whose chunks have random levels.
 class Patchwork {
 public:
     explicit Patchwork(std::uint32_t seed) : random_(seed) {
@@ -74,7 +74,7 @@ private:
     std::array<int, kChunks * kChunks> levels_{};
 };
 
-// Every edge of every triangle is met by one of the opposite direction, between the very same vertices.
+// For every edge of a triangle there must be an edge in the opposite direction between the same two vertices.
 TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
     const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
@@ -104,7 +104,7 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
     }
 }
 
-/// The largest distance of a chunk's triangles from the vertices below or above them [cell].
+/// Returns the largest distance of a chunk's triangles from the vertices below or above them [cell].
 double distanceOf(const SandSurface& surface, const sand::CellRect& chunk, const ChunkLevels& levels) {
     const std::vector<SandVertex> own = render_node::verticesOf(surface, chunk, levels.level);
     const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
@@ -144,7 +144,7 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
         const auto errors = render_node::errorsOf(surface, vertices, sun, render_node::kLevels - 1);
         for (int level = 1; level < render_node::kLevels; ++level) {
             const double said = errors.height[static_cast<std::size_t>(level)];
-            // The north and east edges count with the chunks beyond.
+            // The north and east edges belong to the chunks beyond them.
             const double whole = distanceOf(surface, vertices, {level, {level, level, level, level}});
             EXPECT_GE(whole, 0.999 * said) << "chunk " << chunk << ", level " << level;
             const double inner = distanceOf(surface, vertices, {level, {0, 0, 0, 0}});
@@ -153,7 +153,7 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
     }
 }
 
-// sand_levels.cpp weighs mottling as the shader does; neither can ask the other.
+// grid/levels.cpp weighs mottling as the shader does. The test compares the two, because neither can read the other.
 TEST(Levels, CountMottlingAsTheShaderShadesIt) {
     const std::string& shader = render_node::shaderSource("sunlit.glsl").text;
     EXPECT_NE(shader.find("* (0.86 + 0.28 * mottling)"), std::string::npos) << shader;
@@ -167,7 +167,7 @@ TEST(Levels, OfASmallFieldAreNone) {
     EXPECT_EQ(render_node::coarsestLevel(16384, 16384), render_node::kLevels - 1);
 }
 
-// Tiles of one plane, seen by one eye, share what is sharp: each chunk must be drawn alike by all of them.
+// Tiles of one plane, seen by one eye, must draw each chunk alike.
 TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     const walls::Wall wall = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");
     const glm::dmat4 sceneToRoom = walls::stageToRoom(wall.stage, 2, 2, 0);
@@ -192,12 +192,12 @@ TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     EXPECT_LT(coarse, 1800);
 }
 
-/// A strip of dunes with a furrow, large enough for three levels.
+/// Returns a strip of dunes with a furrow, large enough for three levels.
 class LargeField : public testing::Test {
 protected:
     static scene::Scene strip() {
         scene::Scene scene = sample::flatScene(2048, 256, 0.012);
-        sand::grid::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // at rest as they are
+        sand::grid::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // the dunes are at rest
         return scene;
     }
     std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
@@ -205,7 +205,7 @@ protected:
     sand::Replica terrain_{scene_};
 };
 
-// Below the sand there is the floor of its box: a crack shows it, deeper than any sand.
+// The floor of the box is below the sand. Through a crack the floor would be visible, deeper than any sand.
 TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
     sample::drag(terrain_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
     ScenePainter view(scene_, glm::dmat4(1));
@@ -246,7 +246,7 @@ TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
     }
 }
 
-// While a hand digs, chunks change their level, and their neighbours' edges with them; now and then the head moves.
+// While a hand digs, chunks and their neighbours' edges change their levels. Sometimes the head moves.
 TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     ScenePainter view(scene_, glm::dmat4(1));
     constexpr int kEyes = 2;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions drawn twice, in parts and whole: every frame must be equal in every byte.
+// Sessions that are drawn twice, in parts and whole. Every frame must be equal in every byte.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using sample::Pixels;
 
 constexpr int kSteps = 170;
 
-/// What a hand does: it drags through the sand, lifts, rests while sand slides, digs along the rim and out over it.
+/// Strokes of a hand: it drags through the sand, lifts, rests while sand slides, and digs along the rim and across it.
 sand::Step stepOf(const scene::Scene& scene, int i) {
     const auto between = [&](int first, int end, glm::dvec3 from, glm::dvec3 to) {
         return glm::mix(from, to, double(i - first) / (end - first));
@@ -40,7 +40,7 @@ sand::Step stepOf(const scene::Scene& scene, int i) {
     return step;
 }
 
-/// Steep heaps, so that sand still slides when the hand rests.
+/// Returns steep heaps, so that sand still slides while the hand rests.
 scene::Scene sessionScene(sand::Rim rim) {
     scene::Scene scene = sample::duneScene(128);
     scene.rules.rim = rim;
@@ -60,7 +60,7 @@ struct Twice {
         : screen(tile.screen), eye(shown), inParts(tile.pixels.x, tile.pixels.y), whole(tile.pixels.x, tile.pixels.y) {}
 };
 
-/// What a step's frame shows beside the sand.
+/// Things that a step's frame shows in addition to the sand.
 struct Shown {
     lockstep::Overlays layers;
     std::optional<render_node::ForceArrow> force;
@@ -80,7 +80,7 @@ struct Tally {
     double pixels = 0, all = 0;
 };
 
-/// The smallest rectangle around all pixels that differ.
+/// Returns the smallest rectangle around all pixels that differ.
 PixelRect difference(const Pixels& a, const Pixels& b, int width) {
     PixelRect found{};
     const int height = static_cast<int>(a.size()) / 3 / width;
@@ -96,7 +96,7 @@ PixelRect difference(const Pixels& a, const Pixels& b, int width) {
 
 class Redraw : public testing::Test {
 protected:
-    /// Draws and compares one eye; the first difference fails the test.
+    /// Draws one eye both ways and compares the pictures. The first difference fails the test.
     static void drawTwice(ScenePainter& view, const walls::Wall& wall, const walls::Viewer& viewer, Twice& twice,
                           Tally& tally) {
         const glm::dvec3 position = walls::eyePosition(viewer, twice.eye);
@@ -113,7 +113,7 @@ protected:
         twice.before = whole;
     }
 
-    /// Another view of the same scene that has taken over the sand at once shows the same.
+    /// Checks that another view of the same scene, which takes over the whole sand at once, draws the same picture.
     static void checkAgainstFreshView(const scene::Scene& scene, const sand::Replica& terrain,
                                       const glm::dmat4& sceneToRoom, const Shown& shown,
                                       const render_node::Camera& camera, const Twice& twice) {
@@ -125,7 +125,8 @@ protected:
         ASSERT_TRUE(sample::draw(fresh, camera, twice.whole) == twice.before);
     }
 
-    /// The whole session on these tiles of a wall, counted from 0. With `headMoves` the viewer moves every 23 steps.
+    /// Runs the whole session on these tiles of a wall, counted from 0. With `headMoves` the viewer moves every 23
+    /// steps.
     static Tally play(const std::string& name, int smaller, const std::vector<std::size_t>& tiles, sand::Rim rim,
                       bool headMoves, walls::Stereo stereo, LayersAt layersAt = noLayers) {
         walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
@@ -218,14 +219,14 @@ TEST_F(Redraw, WithTheForcesArrowIsEqualToTheWhole) {
     EXPECT_GT(tally.inPart, kSteps / 3);
 }
 
-// Each layer comes and goes while the tool drags, rests and digs along the rim; two change in one frame.
+// Each layer is shown and hidden while the tool drags, rests and digs along the rim. Two layers change in one frame.
 TEST_F(Redraw, WhileLayersAreSwitchedIsEqualToTheWhole) {
     const LayersAt switched = [](int step) {
         lockstep::Overlays layers;
         layers.set(Overlay::wireframe, (step >= 10 && step < 20) || step >= 110);
         layers.set(Overlay::hillShade, (step >= 15 && step < 30) || (step >= 75 && step < 80));
         layers.set(Overlay::force, (step >= 5 && step < 40) || (step >= 95 && step < 125));
-        layers.set(Overlay::statistics, step % 7 == 0);  // not the sand's affair
+        layers.set(Overlay::statistics, step % 7 == 0);  // does not change the sand's picture
         return layers;
     };
     const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, switched);
@@ -234,7 +235,7 @@ TEST_F(Redraw, WhileLayersAreSwitchedIsEqualToTheWhole) {
     EXPECT_GT(tally.skipped, 0);
 }
 
-/// How near a change comes to an edge of the rectangle that lies within the picture [pixel].
+/// Returns the distance of a change from the nearest edge of the rectangle that is inside the picture [pixel].
 int slack(const PixelRect& drawn, const PixelRect& changed, const EyeTarget& target) {
     int least = 1000;
     const auto edge = [&](bool within, int gap) { least = within ? std::min(least, gap) : least; };
@@ -245,7 +246,7 @@ int slack(const PixelRect& drawn, const PixelRect& changed, const EyeTarget& tar
     return least;
 }
 
-// Both corners of the field change: the rectangle around them is all of it.
+// Both corners of the field change. A rectangle around them would be the whole field.
 TEST_F(Redraw, ReadsOnlyWhatIsListedAndWhatLiesAroundIt) {
     scene::Scene scene = sample::flatScene(512, 512);
     ScenePainter view(scene, glm::dmat4(1));
@@ -255,13 +256,13 @@ TEST_F(Redraw, ReadsOnlyWhatIsListedAndWhatLiesAroundIt) {
     const std::int64_t before = view.placesRead();
     view.update(sand::GridData{scene.terrain},
                 {.whole = false, .parts = sand::CellChange{{{96, 96, 104, 104}, {400, 400, 408, 408}}}});
-    // For each of two blocks of 64 cells: what lies around it as far as light (10 cells) and a triangle of level 2 (4
-    // cells) reach, 29 × 29 cells, and the heights of nine chunks of 17 × 17 cells at most.
+    // For each of two blocks of 64 cells, reads the cells around it within reach of light (10 cells) and of a triangle
+    // of level 2 (4 cells): 29 × 29 cells. Also reads the heights of at most nine chunks of 17 × 17 cells.
     EXPECT_LT(view.placesRead() - before, 2 * (64 + 29 * 29 + 9 * 17 * 17));
     EXPECT_GE(view.placesRead() - before, 2 * 64);
 }
 
-// Seen from the side, a post of 30 cells stands in front of sand far behind it.
+// Seen from the side, a post of 30 cells hides sand far behind it.
 TEST_F(Redraw, ErasesAPostThatIsGone) {
     scene::Scene scene = sample::flatScene(128, 128);
     scene.terrain.setHeight(64, 30, 30 * sand::kUnitsPerCell);
@@ -277,8 +278,8 @@ TEST_F(Redraw, ErasesAPostThatIsGone) {
     EXPECT_TRUE(inParts.read() == sample::draw(view, beside, whole));
 }
 
-// A session's changes fade out before the edge of what may change. Posts on level sand hide the sky as far away as
-// sand can, so that a rectangle that is two pixels too small on any side is found out.
+// The changes of a session fade out before the edge of the rectangle that may change. Posts on level sand hide the sky
+// as far away as sand can. So the test finds a rectangle that is two pixels too small on any side.
 TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
     scene::Scene scene = sample::flatScene(128, 128);
     ScenePainter view(scene, glm::dmat4(1));
@@ -303,8 +304,8 @@ TEST_F(Redraw, ReachesAsFarAsAPostHidesTheSkyAndNotMuchFurther) {
     EXPECT_LE(least, 2);
 }
 
-// Under the usual sun, one in the zenith, one that draws shadows out and one that stands too low for them to be bounded
-// closely.
+// Tests the usual sun, a sun in the zenith and a sun with long shadows. Also tests a sun that is too low for its
+// shadows to be bounded closely.
 TEST_F(Redraw, FollowsAToolHighAboveTheSandAndItsShadow) {
     for (const std::vector<double>& sun :
          std::vector<std::vector<double>>{scene::Look{}.sunDirection, {0, 0, 1}, {-0.6, 0.7, 0.3}, {0.9, -0.4, 0.1}}) {
@@ -345,8 +346,8 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
     EXPECT_TRUE(view.drawIfChanged(above, inParts, memory).empty());
 }
 
-// Tools of every shape, lifted, dragged, turned on the spot and switched while they stand in the sand, low over the rim
-// too, whose boards take their shadow.
+// Tools of every shape are lifted, dragged, turned on the spot and switched while they are in the sand. They are also
+// low over the rim, so that the boards take their shadow.
 TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
     scene::Scene scene = sample::duneScene(128);
     scene.rules.toolRadius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);

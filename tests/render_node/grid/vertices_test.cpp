@@ -44,7 +44,7 @@ TEST(SandSurface, LevelGroundSeesTheWholeSkyAndAPitLess) {
     const std::vector<SandVertex> level = allVertices(SandSurface(field));
     EXPECT_TRUE(std::all_of(level.begin(), level.end(), [](const SandVertex& v) { return v.open == 65535; }));
     field.setHeight(15, 15, -4 * sand::kUnitsPerCell);
-    // Each of the eight horizons is 4 cells up at 2 cells (2·√2 on the diagonals): sin² = 4/5 and 2/3.
+    // Each of the eight horizons rises by 4 cells at a distance of 2 cells (2·√2 on the diagonals): sin² = 4/5 and 2/3.
     EXPECT_NEAR(allVertices(SandSurface(field))[16 * 33 + 16].open / 65535.0, 1 - (4 * 0.8 + 4 * 2.0 / 3) / 8, 1e-4);
 }
 
@@ -93,7 +93,7 @@ sand::CellRect spoil(sand::HeightField& field, std::mt19937& random) {
     return cells;
 }
 
-// Sides that 8 does not divide: the blocks at two edges are cut off.
+// 8 does not divide the sides, so that the blocks at two edges are cut off.
 TEST(SandSurface, TakesOverHeightsAndSaysExactlyWhatItOverwrote) {
     std::mt19937 random(20240612);
     sand::HeightField field(45, 29, 1);
@@ -168,7 +168,7 @@ TEST(SandSurface, ReadsEachListedCellOnceAndLargePartsByTheirBlocks) {
     EXPECT_EQ(surface.placesRead() - before, 64 * 8);
     before = surface.placesRead();
     (void)surface.heights({39, 79, 105, 89});
-    // 8 blocks, and a ring one cell wide around 64 × 8 cells.
+    // 8 blocks, and a ring that is one cell wide around 64 × 8 cells.
     EXPECT_EQ(surface.placesRead() - before, 8 + 2 * (66 + 8));
 }
 

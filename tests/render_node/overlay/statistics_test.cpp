@@ -40,13 +40,13 @@ lockstep::ViewState viewOf(const walls::Wall& wall, const scene::Scene& scene, b
     return view;
 }
 
-/// As the master tells them of a wall whose rank 5 is slow.
+/// Returns the master's figures for a wall whose rank 5 is slow.
 TileFigures figuresOf(std::uint64_t frame) {
     const double draw = 2 + static_cast<double>(frame * 7 % 5);
     return {draw, 31 - draw, {33.3, lockstep::Drag{5, 0.97, 30.1}, frame - 1, 0, 0, {0, 12, 500, 7, 90, 131}}};
 }
 
-/// Outside of `rect`, by its pixels from below, every byte is the same.
+/// Returns whether every byte outside `rect` is equal. `rect` counts pixels from the bottom.
 testing::AssertionResult equalOutside(const PixelRect& rect, const Pixels& a, const Pixels& b,
                                       const EyeTarget& target) {
     const int width = target.width(), height = target.height();
@@ -62,7 +62,7 @@ testing::AssertionResult equalOutside(const PixelRect& rect, const Pixels& a, co
     return testing::AssertionSuccess();
 }
 
-/// The same session on one tile twice: one shows the statistics for a while, one never does.
+/// One session on one tile, drawn twice: one tile shows the statistics for some time, the other never does.
 class StatisticsOverlay : public testing::Test {
 protected:
     void prepare(walls::Stereo stereo, int smaller) {
@@ -73,7 +73,7 @@ protected:
         shown_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6", sand::GridData{scene_.terrain});
         never_ = std::make_unique<TilePainter>(wall_, tile, scene_, "node6", sand::GridData{scene_.terrain});
     }
-    /// A frame of digging, or of rest.
+    /// Draws a frame of digging or of rest.
     void paintBoth(bool statistics, bool dig, bool oneEye = false) {
         ++frame_;
         for (sand::Replica* terrain : {&first_, &second_}) {
@@ -137,7 +137,7 @@ TEST_F(StatisticsOverlay, ComesOffEachEyeThatIsShownInTurn) {
     for (int i = 0; i < 20; ++i) {
         const bool on = i >= 4 && i < 9;
         paintBoth(on, i < 15, true);
-        if (!on && i != 9) {  // in frame 9 one of the eyes is not drawn yet
+        if (!on && i != 9) {  // in frame 9 one eye is not drawn yet
             expectEqualOutside({}, "frame " + std::to_string(i));
         } else {
             expectEqualOutside(covered_, "frame " + std::to_string(i));
@@ -222,7 +222,7 @@ TEST(OverlayLayout, GraphsEndAtRoundNumbers) {
     EXPECT_DOUBLE_EQ(render_node::axisEnd(0.13), 0.2);
 }
 
-/// The words on one tile of the tiled wall, after some frames.
+/// Returns the texts on one tile of the tiled wall, after some frames.
 std::vector<TileStatistics::Line> wordsOf(int rank, std::size_t letters, const lockstep::WallFigures& wall) {
     const walls::Wall tiled = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");
     TileStatistics statistics(tiled, tiled.tiles.at(static_cast<std::size_t>(rank - 1)), "a-host-with-a-long-name");

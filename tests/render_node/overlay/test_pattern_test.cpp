@@ -19,7 +19,7 @@ using lockstep::Pattern;
 using pictures::Image;
 using walls::Eye;
 
-/// A place on the wall, seen from its middle [m], and how much of a line's colour is there.
+/// Place on the wall, from its middle [m], and the share of a line's colour there.
 struct Mark {
     double u, v, weight;
 };
@@ -34,7 +34,8 @@ protected:
         render_node::TestPatternView(wall_, tile, "node").draw(pattern, eye, frame, target);
         return sample::pictureOf(target);
     }
-    /// The marks of one colour on all tiles, `weightOf(colour)` of each; tiles moved together by `missing` of a bezel.
+    /// Returns the marks of one colour on all tiles; weightOf(colour) is the share of each. The tiles are moved
+    /// together by the share `missing` of a bezel.
     template <class WeightOf>
     std::vector<Mark> marks(WeightOf weightOf, double missing = 0) const {
         std::vector<Mark> found;
@@ -44,7 +45,7 @@ protected:
             const Image image = draw(tile, Pattern::grid, Eye::left);
             const glm::dvec2 corner = glm::dvec2(tile.screen.lowerLeft - grid.lowerLeft) - size / 2.0 -
                                       missing * grid.bezel * glm::dvec2(tile.column - 1, grid.rows - tile.row);
-            // The outermost pixels are the frame's.
+            // The outermost pixels belong to the frame.
             for (int y = 1; y + 1 < image.height; ++y) {
                 for (int x = 1; x + 1 < image.width; ++x) {
                     const double weight = weightOf(image.at(x, y));
@@ -67,7 +68,8 @@ protected:
 double diagonalColour(const std::uint8_t* c) { return c[1] > c[0] && c[1] > c[2] ? c[1] - c[0] : 0; }
 double circleColour(const std::uint8_t* c) { return c[0] > c[1] && c[1] > c[2] ? c[0] - c[2] : 0; }
 
-/// How far the rising diagonal strays from the straight line that fits it best, averaged over short pieces [m].
+/// Returns the distance of the rising diagonal from the straight line that fits it best, averaged over short pieces
+/// [m].
 double bend(const std::vector<Mark>& marks) {
     constexpr double kPiece = 0.05;  // [m]
     struct Sum {
@@ -108,7 +110,7 @@ double bend(const std::vector<Mark>& marks) {
 
 TEST_F(PatternOfAWall, ALineCrossesBezelsStraight) {
     EXPECT_LT(bend(marks(diagonalColour)), 0.25 * pixel());
-    // The same pictures put side by side without bezels: the measure tells.
+    // If the pictures are placed side by side without bezels, the measure must be large.
     EXPECT_GT(bend(marks(diagonalColour, 1)), 0.25 * pixel());
 }
 
@@ -171,7 +173,7 @@ TEST_F(PatternOfAWall, ShowsEachEyeItsOwnLetterInItsOwnColourAndHalf) {
     const Image left = draw(wall_.tiles[0], Pattern::eyes, Eye::left);
     const Image right = draw(wall_.tiles[0], Pattern::eyes, Eye::right);
     int leftLit = 0, rightLit = 0;
-    for (int y = 4; y < left.height - 4; ++y) {  // within the white frame
+    for (int y = 4; y < left.height - 4; ++y) {  // inside the white frame
         for (int x = 4; x < left.width - 4; ++x) {
             const std::uint8_t *l = left.at(x, y), *r = right.at(x, y);
             ASSERT_EQ(l[1] + l[2], 0) << "the left eye's is red";
@@ -216,7 +218,7 @@ TEST_F(PatternOfAWall, WritesTheFontsDots) {
     painter.addText("R4?z", {1, 1}, 1, glm::vec3(1));
     painter.paint(target);
     const Image image = sample::pictureOf(target);
-    const std::string shown = "R4#Z";  // '?' and '#' are boxes, small letters are capitals
+    const std::string shown = "R4#Z";  // '?' and '#' are boxes, lower-case letters look like capitals
     for (int letter = 0; letter < 4; ++letter) {
         const auto rows = render_node::glyphOf(shown[static_cast<std::size_t>(letter)]);
         for (int y = 0; y < 7; ++y) {

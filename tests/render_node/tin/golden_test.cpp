@@ -26,7 +26,7 @@ void step(sand::Replica& terrain, bool engaged, std::vector<sand::ProbePoint> pa
         {.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = engaged, .path = std::move(path), .edit = edit});
 }
 
-/// A script's hand over sand that is level at the start, at four places a step.
+/// Moves a scripted hand over sand that is level at the start, at four places per step.
 void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridge::Strokes& strokes) {
     haptic_bridge::StrokeDevice device(strokes);
     const double half = 0.5 * std::min(scene.rules.columns, scene.rules.rows) * kProbePerCell;
@@ -70,10 +70,11 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
                    sample::partOfBall(ball, sample::sceneToRoom(wall, scene), wall));
 }
 
-/// A stamp of half this length pressed into the sand, its length turned so far, and taken away again.
+/// Presses a stamp into the sand and takes it away. `radius` is half of its length, and `heading` is the direction of
+/// its length.
 void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
     const double probe = terrain.cellSize() / kProbePerCell;  // [scene unit]
-    constexpr double kDepth = 0.06;                           // [scene unit], under the sand's middle height
+    constexpr double kDepth = 0.06;                           // [scene unit], below the sand's mean height
     sand::Tuning stamp = terrain.rules().tuning();
     stamp.toolHalfWidth = static_cast<std::int32_t>(radius / probe * stamp.toolHalfWidth / stamp.toolRadius);
     stamp.toolRadius = static_cast<std::int32_t>(radius / probe);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TIN as it looks: like the grid, flat or smooth, with its wires and constraints.
+// Look of a TIN: like the grid, flat or smooth, with its wires and constraints.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -22,7 +22,7 @@ using sample::Tin;
 
 constexpr int kPictureWidth = 400, kPictureHeight = 300;
 
-/// What GL was asked to compile.
+/// Shader sources that GL was asked to compile.
 class CompiledShaders {
 public:
     CompiledShaders() {
@@ -46,9 +46,9 @@ private:
 };
 
 struct Unlike {
-    int most = 0;      // of a channel
-    double mean = 0;   // of all channels
-    double share = 0;  // of channels that differ by more than 8
+    int most = 0;      // largest difference of a channel
+    double mean = 0;   // mean difference of all channels
+    double share = 0;  // share of channels that differ by more than 8
 };
 
 Unlike compare(const Pixels& a, const Pixels& b) {
@@ -72,7 +72,8 @@ protected:
     render_node::Camera slanted_ = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
 };
 
-// The same vertices: what differs are normals, from the triangles around and not from the cells beside.
+// The vertices are equal. The pictures differ by the normals, which come from the triangles around a vertex instead of
+// the neighbouring cells.
 TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
     scene::Scene scene = sample::duneScene(128);
     scene.look.detail = 0;
@@ -92,7 +93,7 @@ TEST_F(TinLook, OfAGridsSurfaceIsThatOfTheGrid) {
     }
 }
 
-// Few large triangles under the sun of a map, which no grain hides.
+// Few large triangles under the sun of a map, without grain that would hide them.
 TEST_F(TinLook, IsFlatOrSmoothAsTheSceneSays) {
     scene::Scene scene = sample::flatScene(6, 6);
     for (int i = 0; i < 36; ++i) {
@@ -124,7 +125,7 @@ int apart(const glm::ivec3& a, const glm::ivec3& b) {
     return std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b);
 }
 
-// A corner of the field and a place within it, each some triangles wide.
+// The holes are a corner of the field and a place inside it, each some triangles wide.
 TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
     scene::Scene scene = sample::duneScene(32);
     scene.look.detail = 0;
@@ -146,8 +147,8 @@ TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
     const auto colour = [](const Pixels& seen, int x, int y) { return sample::pixel(seen, kPictureWidth, x, y); };
     const glm::ivec3 wood = colour(open, 200, 150);
     EXPECT_GT(wood.r, wood.b + 40) << "the bottom of the box is seen in the middle of the hole";
-    EXPECT_GT(apart(wood, colour(closed, 200, 150)), 100) << "where there is sand else";
-    EXPECT_EQ(colour(open, 100, 150), colour(closed, 100, 150)) << "beside it nothing is another";
+    EXPECT_GT(apart(wood, colour(closed, 200, 150)), 100) << "without the hole there is sand";
+    EXPECT_EQ(colour(open, 100, 150), colour(closed, 100, 150)) << "the sand beside the hole stays as it was";
     EXPECT_EQ(sample::draw(again, above_, target_), open);
     EXPECT_EQ(sample::draw(again, slanted_, target_), sample::draw(view, slanted_, target_));
 }
@@ -155,7 +156,7 @@ TEST_F(TinLook, LeavesHolesOpenWhicheverSlotsTheirTrianglesHave) {
 TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
     scene::Scene scene = sample::flatScene(16, 16);
     Tin tin(scene.terrain);
-    // From the middle of cell (7, 7) to that of (8, 7), as its edges lie: south of the picture's middle.
+    // The edge leads from the middle of cell (7, 7) to the middle of cell (8, 7), south of the picture's middle.
     const glm::dvec2 middle(1, 0.9375);
     const auto reddest = [&](const Pixels& seen) {
         int most = -255;

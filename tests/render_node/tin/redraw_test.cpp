@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TIN that changes, drawn in parts and whole: every frame must be equal in every byte, and little is sent.
+// A changing TIN, drawn in parts and whole. Every frame must be equal in every byte, and only few bytes are sent to GL.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -20,7 +20,8 @@ using sample::Tin;
 constexpr int kRedrawWidth = 200, kRedrawHeight = 150, kCells = 64;
 constexpr double kUnit = sand::kUnitsPerCell;
 
-/// What an edit does to a TIN: vertices rise and sink, come and go, edges turn, constraints are set and released.
+/// Makes a random edit of a TIN. Vertices rise, sink, appear and are removed; edges turn; constraints are set and
+/// released.
 void edit(Tin& tin, std::mt19937& random, std::vector<Tin::Vertex>& added) {
     const auto any = [&](std::size_t count) { return static_cast<std::int32_t>(random() % count); };
     const auto slot = [&] {
@@ -32,7 +33,7 @@ void edit(Tin& tin, std::mt19937& random, std::vector<Tin::Vertex>& added) {
     };
     const std::size_t edge = random() % 3;
     switch (random() % 6) {
-        case 0: {  // a heap near some vertex, which may be on the rim
+        case 0: {  // a heap near a random vertex, which may be on the rim
             const Tin::Vertex first = any(kCells * kCells);
             for (int i = 0; i < 3; ++i) {
                 tin.setHeight(first + i, tin.height(first + i) + kUnit * (static_cast<double>(any(600)) - 300) / 100);
@@ -65,7 +66,7 @@ void edit(Tin& tin, std::mt19937& random, std::vector<Tin::Vertex>& added) {
 
 class TinRedraw : public testing::Test {
 protected:
-    /// Draws what random edits leave, with a tool that hovers and rests. `layers` are shown in every third ten steps.
+    /// Draws a TIN after random edits, with a tool that hovers and rests. `layers` are shown in every third ten steps.
     void play(unsigned seed, sand::Rim rim, const render_node::Camera& camera, lockstep::Overlays layers, bool flat) {
         std::mt19937 random(seed);
         scene::Scene scene = sample::duneScene(kCells);
@@ -92,7 +93,8 @@ protected:
             skipped += drawn.empty() ? 1 : 0;
             severalParts += view.counts().pixels < drawn.area() ? 1 : 0;
             ASSERT_TRUE(inParts.read() == sample::draw(view, camera, whole)) << "seed " << seed << ", step " << i;
-            if (i % 20 == 19) {  // a replica that starts here, its triangles in other slots, begun at other corners
+            // A replica that starts here has its triangles in other slots, beginning at other corners.
+            if (i % 20 == 19) {
                 ScenePainter fresh(scene, sand::TinData{start.view()}, glm::dmat4(1));
                 Tin other = tin;
                 other.shuffle(random);
@@ -125,8 +127,8 @@ TEST_F(TinRedraw, OverAnOpenRimWithWiresIsEqualToTheWhole) {
 
 TEST_F(TinRedraw, InFacetsIsEqualToTheWhole) { play(3, sand::Rim::closed, above_, {}, true); }
 
-// An island so far from other ground that nobody sees it rise: no normal and no light is another, and what is drawn
-// anew has still to be where the sand stands now.
+// An island is so far from other ground that its rise changes no normal and no light. It must still be drawn again at
+// its new height.
 TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     const auto fromMiddle = [](double x, double y) {
         constexpr int kMiddle = kCells / 2;
@@ -152,7 +154,7 @@ TEST_F(TinRedraw, OfAnIslandThatRisesAsAWholeIsEqualToTheWhole) {
     EXPECT_TRUE(inParts.read() == sample::draw(view, slanted_, whole));
 }
 
-/// Bytes that GL was sent, while it lives.
+/// Counter of the bytes that GL was sent during the object's lifetime.
 class SentBytes {
 public:
     SentBytes() {
@@ -182,7 +184,7 @@ private:
     static inline PFNGLBUFFERSUBDATAPROC part_;
 };
 
-// A camera that sees a part of the field, now here and now there: what was put off is there when it comes into sight.
+// A camera sees different parts of the field in turn. Postponed changes must be visible when they come into sight.
 TEST_F(TinRedraw, WithWhatIsUnseenPutOffIsEqualToTheWhole) {
     for (const unsigned seed : {5U, 6U, 7U}) {
         std::mt19937 random(seed);
@@ -228,8 +230,8 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     const Tin::Vertex vertex = 30 * (kCells + 2) + 30;
     tin.setHeight(vertex, kUnit);
     const auto [rise, pixels] = draw();
-    // The places that see it, in eight directions ten cells far, and normals of the vertices around; 20 bytes each,
-    // with gaps of at most eight.
+    // Sends the places that see the change, in eight directions up to ten cells away, and the normals of the vertices
+    // around. Each vertex takes 20 bytes, and gaps of at most eight vertices are sent too.
     EXPECT_GT(rise, 0);
     EXPECT_LE(rise, 21 * 21 * 20);
     EXPECT_GT(pixels, 0);
@@ -239,8 +241,8 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
     const render_node::Camera elsewhere = sample::camera({1.8, 1.7, 0.3}, {1.8, 1.8, 0});
     tin.setHeight(vertex, 2 * kUnit);
     view.update(sand::TinData{tin.view()}, tin.takeChange(), {&elsewhere, 1});
-    EXPECT_EQ(SentBytes::take(), 0) << "nobody sees it";
-    EXPECT_GT(draw().first, 0) << "somebody does";
+    EXPECT_EQ(SentBytes::take(), 0) << "no camera sees it";
+    EXPECT_GT(draw().first, 0) << "a camera sees it";
 
     tin.setHeight(vertex, 0);
     (void)draw();
@@ -252,7 +254,7 @@ TEST_F(TinRedraw, SendsWhatChangedAndNothingElse) {
         ++slot;
     }
     tin.flip(slot, 0);
-    // On level sand no light is another: the triangles of one chunk, of about 512, or of two.
+    // On level sand the light does not change. So the triangles of one or two chunks are sent, of about 512 each.
     const auto [turn, around] = draw();
     EXPECT_GT(turn, 0);
     EXPECT_LE(turn, 2 * 512 * 12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The drawn surface of a TIN on the CPU: a function of the TIN, whatever came between.
+// The drawn surface of a TIN on the CPU depends only on the TIN, not on earlier TINs.
 #include "render_node/tin/vertices.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using render_node::TinChunk;
 using render_node::TinSurface;
 using sample::Tin;
 
-/// The corners of a chunk's triangles in order, and where its parts end.
+/// Returns the corners of a chunk's triangles in order, and the ends of its parts.
 std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> orderOf(TinSurface& surface,
                                                                                      TinChunk& chunk) {
     (void)surface.settle(chunk);
@@ -43,7 +43,8 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
     (void)tin.takeParts();
     TinSurface surface(tin.view(), cell);
     for (int round = 0; round < 4; ++round) {
-        for (const auto& [vertex, corners] : within) {  // nearer to one corner than to the others
+        // Weights of a place that is nearer to one corner than to the others.
+        for (const auto& [vertex, corners] : within) {
             const auto near = static_cast<std::size_t>(random() % 3);
             sand::tin::Place sum{0, 0};
             for (std::size_t k = 0; k < 3; ++k) {
@@ -88,12 +89,12 @@ TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
     tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
     (void)tin.takeParts();
     TinSurface surface(tin.view(), cell);
-    const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66
+    const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66 vertices
     const auto place = tin.mesh().places[beside];
     tin.setHeight(beside, tin.height(beside) + 1e6);
     const TinSurface::Change change = surface.update(tin.view(), tin.takeParts());
     const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
-    const double reach = 14 * cell;  // the light's, and a triangle's side
+    const double reach = 14 * cell;  // reach of light, and a triangle's side
     EXPECT_FALSE(change.boxes.empty());
     for (const render_node::Box& box : change.boxes) {
         EXPECT_TRUE(glm::all(glm::greaterThan(glm::dvec2(box.low), at - reach))) << box.low.x << ", " << box.low.y;

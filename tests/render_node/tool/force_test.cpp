@@ -17,10 +17,11 @@ using render_node::ForceArrow;
 using render_node::ToolForce;
 
 constexpr double kRadius = 0.04;  // [scene unit], 5 cells
-// Places are floats near 1, off by 6e-8 each; an arrow has 0.06 scene units for a newton.
+// Places are floats near 1, with an error of 6e-8 each. An arrow has 0.06 scene units per newton.
 constexpr double kNewtonsOfFloats = 4e-6;
 
-/// A field of 250 x 250 cells under a tool of 5. It is bare rock, so that no tool changes it: depths are exact.
+/// Field of 250 x 250 cells under a tool of radius 5 cells. It is bare rock, so that no tool changes it and depths are
+/// exact.
 scene::Scene rockScene() {
     scene::Scene scene = sample::flatScene(250, 250, kRadius);
     scene.rules.toolRadius = 5 * sand::kProbePerCell;
@@ -36,7 +37,7 @@ scene::Scene rockScene() {
 
 class Arrow : public testing::Test {
 protected:
-    /// The next step: the tool's centre there [cell], touching.
+    /// Applies the next step, with the tool's centre at this place [cell], touching.
     void press(const glm::dvec3& place, bool engaged = true) { press(terrain_, place, engaged); }
     static void press(sand::Replica& terrain, const glm::dvec3& place, bool engaged = true) {
         const glm::ivec3 at(place * double{sand::kProbePerCell});
@@ -55,8 +56,8 @@ protected:
     sand::Replica terrain_{scene_};
 };
 
-// On level ground a tool whose centre is at 4 and 2 cells is 1 and 3 cells deep, 0.008 and 0.024: with k_s = 100 it is
-// pushed with 100 (e^0.004 - 1) and 100 (e^0.012 - 1) N.
+// On level ground, a tool whose centre is at a height of 4 and 2 cells is 1 and 3 cells deep: 0.008 and 0.024. With k_s
+// = 100 the push is 100 (e^0.004 - 1) and 100 (e^0.012 - 1) N.
 TEST_F(Arrow, IsAsLongAsTheForceIsLarge) {
     scene_.force = {100, 0.5, 0};
     ToolForce force(scene_.force);
@@ -71,7 +72,8 @@ TEST_F(Arrow, IsAsLongAsTheForceIsLarge) {
     EXPECT_NEAR(newtons(*force.arrow(terrain_)), 1.2072289, kNewtonsOfFloats);
 }
 
-// Level ground 0.02 over the lowest point: 10 N of that share of the unit length, which is 1, and not 500.
+// The ground is 0.02 above the lowest point. The push is 10 N times 0.02 divided by the unit length, which is 1, and
+// not 500.
 TEST_F(Arrow, FollowsTheScenesLaw) {
     scene_.force.law = sand::ForceLaw::controlPoints;
     ToolForce force(scene_.force);
@@ -91,8 +93,8 @@ TEST_F(Arrow, EndsAtTheGreatestForceThatADeviceGives) {
     EXPECT_NEAR(newtons(*arrow), 3.3, kNewtonsOfFloats) << "docs/look.md";
 }
 
-// At a depth of 0.02 the push is 50 (e^0.01 - 1) = 0.5025084 N. A hand that moves 1.25 cells, 0.01, in a step of 1/60 s
-// meets friction of 50 · 0.01 of that: the arrow leans back by one in two.
+// At a depth of 0.02 the push is 50 (e^0.01 - 1) = 0.5025084 N. The hand moves 1.25 cells, 0.01, in a step of 1/60 s.
+// The friction is 50 · 0.01 of the push, so that the arrow leans back by one in two.
 TEST_F(Arrow, LeansAgainstTheHandsMovement) {
     scene_.force = {50, 0.5, 50};
     ToolForce force(scene_.force);

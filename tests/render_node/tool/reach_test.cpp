@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bounds of a ball's light against places drawn at random, where the shaders' formulae are other than 0.
+// Compares the bounds of a ball's light with random places where the shaders' formulae are not 0.
 #include "render_node/tool/reach.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using render_node::Box;
 const glm::dvec3 kBallCentre(0.3, -0.2, 1.1);
 constexpr double kBallRadius = 0.4, kLowestSand = -1.5, kHighestSand = 1.7;
 
-/// As in shaders/light.glsl.
+/// The formulae of shaders/light.glsl.
 bool isInShadow(const glm::dvec3& place, const glm::dvec3& sun) {
     const glm::dvec3 away = (kBallCentre - place) / kBallRadius;
     const double along = glm::dot(away, sun);
@@ -22,7 +22,8 @@ bool isInShadow(const glm::dvec3& place, const glm::dvec3& sun) {
     return along > -0.2 && along < 20 && miss < 1 + 0.08 + 0.07 * std::max(along, 0.0);
 }
 
-/// Two boxes' convex hull at a height, if both are flat; around both else. Beyond the flat ones: empty.
+/// Returns the cross section of the convex hull of two boxes at a height, if the first box is flat. Above and below the
+/// hull it is empty. If the first box is not flat, returns the box around both.
 Box hullAt(const std::array<Box, 2>& boxes, double height) {
     const Box &top = boxes.front(), &bottom = boxes.back();
     if (top.low.z != top.high.z || top.low.z == bottom.low.z) {
@@ -54,7 +55,8 @@ TEST_P(ToolReach, BoundsTheShadowAndNotMuchMore) {
     int inShadow = 0, inHull = 0;
     for (int i = 0; i < 400'000; ++i) {
         const double z = height(random);
-        // Around the axis, as wide as any shadow is; lowered, so that low suns have some of it in reach.
+        // Places around the axis, within the width of any shadow. They are lower for low suns, so that their shadows
+        // have some of the places in reach.
         const double along = (kBallCentre.z - z) / std::max(sun_.z, 0.25);
         const glm::dvec2 axis = glm::dvec2(kBallCentre) - along * glm::dvec2(sun_);
         const glm::dvec3 place(axis.x + 6 * wide(random), axis.y + 6 * wide(random), z);
@@ -68,8 +70,8 @@ TEST_P(ToolReach, BoundsTheShadowAndNotMuchMore) {
     }
     ASSERT_GT(inShadow, 500);
     if (sun_.z > 0.3) {
-        EXPECT_LT(inHull,
-                  2.5 * inShadow);  // a box around an ellipse that lies aslant in it, and the shadow's upper end
+        // The box is around an ellipse that lies askew in it, and around the shadow's upper end.
+        EXPECT_LT(inHull, 2.5 * inShadow);
     }
 }
 
