@@ -12,10 +12,10 @@
 namespace walls {
 namespace {
 
-/// Walls with the mistakes that people make.
+/// Walls with usual mistakes.
 std::filesystem::path brokenWalls() { return SANDWALL_SOURCE_DIR "/tests/walls/broken"; }
 
-/// What the first comment of a broken wall promises: "# expect: 12: eye_separation must be positive".
+/// Error that the first comment of a broken wall announces: "# expect: 12: eye_separation must be positive".
 struct Promise {
     std::string line, message;
 };
@@ -35,7 +35,7 @@ Promise promiseOf(const std::filesystem::path& file) {
     return numbered && promise.message.size() >= 10 ? promise : Promise{};
 }
 
-/// The line that loading this wall is refused with, and the checks that follow; empty if it is accepted.
+/// Loads a wall and checks the error. Returns the error's line, or "" if the wall is accepted.
 std::string complaintAbout(const std::filesystem::path& file) {
     try {
         (void)loadWall(file);
@@ -68,7 +68,7 @@ TEST(BrokenWalls, AreRefusedByTheProgramInTheSameLine) {
 }
 
 TEST(BrokenWalls, BecomeWholeByOneEdit) {
-    // The gallery's frame is sound: it is the one mistake that each file is refused for.
+    // The frame of all broken walls is valid, so that each file is refused only for its one mistake.
     std::ifstream stream(brokenWalls() / "eye_misspelt.toml");
     std::string text{std::istreambuf_iterator<char>(stream), {}};
     text.replace(text.find("eyes ="), 4, "eye ");

@@ -60,9 +60,9 @@ TEST(WholeWall, RefusesWhatHasNoSingleExtent) {
 }
 
 TEST(WholeWall, ShowsEveryPointWhereEachOfItsTilesWould) {
-    // Every tile's frustum is a part of the one frustum of the wall: a point shows at the same pixel of the canvas
-    // whichever tile computes it, in the middle of a tile, on a bezel or two tiles away. So a straight line crosses a
-    // bezel straight.
+    // Every tile's frustum is a part of the wall's one frustum. So a point is at the same pixel of the canvas whichever
+    // tile computes it. The point may be in the middle of a tile, on a bezel or two tiles away. A straight line then
+    // crosses a bezel straight.
     const Wall wall = config("tiled_3x4.toml");
     const Wall whole = wholeWall(wall);
     const Canvas canvas = wallCanvas(wall);
@@ -84,7 +84,7 @@ TEST(WholeWall, ShowsEveryPointWhereEachOfItsTilesWould) {
 }
 
 TEST(WholeWall, PartsTheEyesByTheirParallaxInPixels) {
-    // 0.065 m apart, 3 m from the wall, a point 1 m before it, 1 mm per pixel.
+    // The eyes are 0.065 m apart and 3 m from the wall. The point is 1 m in front of the wall. A pixel is 1 mm.
     const Wall whole = wholeWall(config("tiled_3x4.toml"));
     const PixelRect all{0, 0, 4126, 2324};
     const glm::dvec3 point(0.2, 1.2, 1.0);

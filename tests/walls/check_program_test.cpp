@@ -57,7 +57,7 @@ TEST(CheckProgram, ShowsAnyWallInAnyMode) {
 }
 
 TEST(CheckProgram, AsksForTheEyesThatAnotherModeDraws) {
-    // The head is 2 cm before the right screen: enough for mono, too little for a right eye.
+    // The head is 2 cm in front of the right screen: enough for mono, but too little for a right eye.
     Wall cave = shownIn(config("flex_cave.toml"), Stereo::mono);
     cave.viewer.eye.x = 1.58;
     const std::string file = testing::TempDir() + "near_" + std::to_string(::getpid()) + ".toml";

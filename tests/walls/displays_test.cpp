@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What must hold of every display of the project, derived from where its viewer and screens stand.
+// Properties of every display of the project, derived from the places of its viewer and screens.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,11 +15,12 @@ View viewFrom(const Wall& wall, const Tile& tile, Eye eye) {
 }
 
 TEST(Displays, PartTheEyesByTheFormula) {
-    // With the eyes parallel to the screen and `distance` before it, similar triangles give a point `behind` the screen
-    // a parallax of separation * behind / (behind + distance): negative before it, none on it, positive behind it.
+    // The eyes are parallel to the screen, `distance` in front of it. A point `behind` the screen then has the parallax
+    // separation * behind / (behind + distance), by similar triangles. It is negative in front of the screen, 0 on it,
+    // and positive behind it.
     for (const std::string& name : configNames()) {
         const Wall wall = config(name);
-        // The CAVE's first screen stands beside the eyes; its front does not.
+        // The CAVE's first screen is at the side of the eyes. The front screen is not.
         const Tile& tile = name == "flex_cave.toml" ? wall.tiles[1] : wall.tiles[0];
         const Screen& screen = tile.screen;
         ASSERT_LT(glm::distance(wall.viewer.right, screen.right()), 1e-12) << name;
@@ -33,7 +34,7 @@ TEST(Displays, PartTheEyesByTheFormula) {
             const double parallax = glm::dot(right - left, screen.right());
             EXPECT_NEAR(parallax, wall.viewer.eyeSeparation * behind / (behind + distance), 1e-12) << name;
             EXPECT_NEAR(glm::dot(right - left, screen.up()), 0, 1e-12) << name;
-            // The same for an eye shown alone.
+            // Checks the parallax in pixels, with the view of each eye alone.
             const double pixels = parallax / screen.width() * tile.pixels.x;
             const PixelRect rect{0, 0, tile.pixels.x, tile.pixels.y};
             EXPECT_NEAR(pixelAt(rect, viewFrom(wall, tile, Eye::right), point).x -
@@ -68,8 +69,8 @@ TEST(Displays, ShowInMonoTheMiddleBetweenTheEyes) {
 }
 
 TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
-    // The picture of a line on a plane is a line: four of its points, two seen by each of two neighbours, lie on one
-    // line of the wall's plane, whatever the bezel hides.
+    // The picture of a line on a plane is a line. Four points of it, two seen by each of two neighbours, are on one
+    // line in the wall's plane, whatever the bezel hides.
     const Wall wall = config("tiled_3x4.toml");
     const glm::dvec3 from(-1.9, 0.5, 0.4), to(1.8, 2.3, -3.0);
     int bezels = 0;
@@ -99,7 +100,8 @@ TEST(Displays, LeadAStraightLineStraightAcrossABezel) {
 }
 
 TEST(Displays, OfTheCaveShareThePixelsOfTheirEdges) {
-    // A point on the seam of left and front is in the last column of one and the first of the other, at one height.
+    // A point on the seam of left and front is in the last column of one screen and in the first column of the other.
+    // Its height is the same in both.
     const Wall cave = config("flex_cave.toml");
     const Tile& left = cave.tiles[0];
     const Tile& front = cave.tiles[1];

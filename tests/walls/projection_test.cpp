@@ -16,7 +16,7 @@ namespace walls {
 namespace {
 
 constexpr double kNear = 0.1, kFar = 50;  // [m]
-constexpr double kDistance = 2;           // [m], eye to screen
+constexpr double kDistance = 2;           // [m], from the eye to the screen
 constexpr double kSeparation = 0.065;     // [m]
 
 const Viewer kViewer{{0, 0.3, kDistance}, kSeparation, {1, 0, 0}};
@@ -100,8 +100,8 @@ TEST(Projection, ShowsEveryPointOnTheLineFromTheEye) {
 }
 
 TEST(Projection, GivesThePointTheParallaxOfItsDepth) {
-    // By similar triangles a point s behind the screen shows separation * s / (s + distance) further right in the right
-    // eye than in the left: zero on the screen, crossed before it, the whole separation at infinity.
+    // By similar triangles, a point s behind the screen is separation * s / (s + distance) further right for the right
+    // eye than for the left. This is 0 on the screen, negative in front of it, and the whole separation at infinity.
     const View left = plainView(Eye::left), right = plainView(Eye::right);
     for (const double s : {-1.0, -0.5, 0.0, 0.5, 2.0, 40.0}) {
         const glm::dvec3 point(0.1, 0.25, -s);
@@ -151,7 +151,7 @@ TEST(Cave, FacesJoinAlongTheirEdges) {
                 const View first = viewOf(cave, cave.tiles[i], eye), second = viewOf(cave, cave.tiles[j], eye);
                 for (const double along : {0.0, 0.3, 1.0}) {
                     const glm::dvec3 edge = glm::mix(shared[0], shared[1], along);
-                    // Before, on and behind the edge: whatever is seen there is seen at the same place by both faces.
+                    // In front of, on and behind the edge, both faces show a point at the same place.
                     for (const double depth : {0.4, 1.0, 3.0}) {
                         const glm::dvec3 point = first.eye + (edge - first.eye) * depth;
                         EXPECT_LT(glm::distance(shownAt(cave.tiles[i].screen, first, point), edge), 1e-9);

@@ -17,7 +17,7 @@ namespace walls {
 inline std::filesystem::path configFolder() { return std::filesystem::path(SANDWALL_SOURCE_DIR) / "walls/configs"; }
 inline Wall config(const std::string& name) { return loadWall(configFolder() / name); }
 
-/// Every sample of the project, by name. Throws if there is none.
+/// Returns the names of all sample walls. Throws if there is no sample.
 inline std::vector<std::string> configNames() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(configFolder())) {
@@ -33,7 +33,7 @@ inline std::vector<std::string> configNames() {
     return names;
 }
 
-/// What is said against the text of a wall.
+/// Returns the error for the text of a wall, or "no complaint".
 inline std::string complaint(const std::string& text) {
     try {
         (void)parseWall(text, "lab.toml");
@@ -43,17 +43,17 @@ inline std::string complaint(const std::string& text) {
     return "no complaint";
 }
 
-/// A 0.8 x 0.6 m screen of 800 x 600 pixels, straight before an eye 2 m away at the height of its middle.
+/// Returns a 0.8 x 0.6 m screen of 800 x 600 pixels, straight in front of an eye 2 m away at the height of its middle.
 inline Screen plainScreen() { return {{-0.4, 0, 0}, {0.4, 0, 0}, {-0.4, 0.6, 0}}; }
 
-/// Where a point of the room shows, on the plane of the screen, by the matrices [m, room].
+/// Returns the place at which the matrices show a point of the room, on the plane of the screen [m, room].
 inline glm::dvec3 shownAt(const Screen& screen, const View& view, glm::dvec3 point) {
     const glm::dvec4 clip = view.viewProjection * glm::dvec4(point, 1);
     return screen.lowerLeft + (screen.lowerRight - screen.lowerLeft) * ((clip.x / clip.w + 1) / 2) +
            (screen.upperLeft - screen.lowerLeft) * ((clip.y / clip.w + 1) / 2);
 }
 
-/// The same in pixels of a canvas, also where the point lies beyond the tile.
+/// Returns the place at which the matrices show a point, in pixels of a canvas. It may lie outside the tile.
 inline glm::dvec2 pixelAt(const PixelRect& rect, const View& view, glm::dvec3 point) {
     const glm::dvec4 clip = view.viewProjection * glm::dvec4(point, 1);
     return {rect.x + rect.width * (clip.x / clip.w + 1) / 2, rect.y + rect.height * (1 - clip.y / clip.w) / 2};

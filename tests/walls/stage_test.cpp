@@ -24,7 +24,7 @@ TEST(Stage, LaysAnUntiltedFieldFlatWithNorthAwayFromTheViewer) {
     expectNear(apply(toRoom, {3, 2, 0.5}), {1, 0.8, -2});
     expectNear(apply(toRoom, {0, 0, 0.5}), {-0.5, 0.8, -1});  // south-west
     expectNear(apply(toRoom, {6, 4, 0.5}), {2.5, 0.8, -3});   // north-east
-    expectNear(apply(toRoom, {3, 2, 1.5}), {1, 1.3, -2});     // a unit higher
+    expectNear(apply(toRoom, {3, 2, 1.5}), {1, 1.3, -2});     // one unit higher
 }
 
 TEST(Stage, ScalesTheLongerSideWhicheverItIs) {

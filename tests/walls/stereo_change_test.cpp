@@ -15,7 +15,7 @@ walls::Wall sampleWall(const char* name) {
     return walls::loadWall(std::filesystem::path(SANDWALL_SOURCE_DIR "/walls/configs") / name);
 }
 
-/// The modes that the wall's outputs can show.
+/// Returns the modes that the wall's outputs can show.
 std::set<std::string> shownBy(const walls::Wall& wall) {
     std::set<std::string> names;
     for (const std::string& name : walls::stereoNames()) {

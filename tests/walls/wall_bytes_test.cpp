@@ -21,7 +21,7 @@ TEST(WallBytes, GiveBackTheWholeWall) {
     }
 }
 
-/// A wall in which every field has a value of its own.
+/// Returns a wall in which every field has a different value.
 Wall fullWall() {
     Wall wall = config("tiled_3x4.toml");
     wall.refreshHz = 119.88;
@@ -95,7 +95,7 @@ TEST(WallBytes, AreRefusedForAWallThatCannotBe) {
         {"outputs of another stereo", [](Wall& w) { w.stereo = Stereo::active; }},
         {"eyes exchanged between outputs",
          [](Wall& w) { std::swap(w.tiles[5].outputs[0].eyes, w.tiles[5].outputs[1].eyes); }},
-        {"an eye nobody has", [](Wall& w) { w.tiles[5].outputs[0].eyes = {static_cast<Eye>(3)}; }},
+        {"an eye that does not exist", [](Wall& w) { w.tiles[5].outputs[0].eyes = {static_cast<Eye>(3)}; }},
         {"monitor and window at once", [](Wall& w) { w.tiles[0].outputs[0].window = glm::ivec2(0); }},
     };
     for (const auto& [what, spoil] : cases) {

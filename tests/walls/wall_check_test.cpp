@@ -39,11 +39,11 @@ TEST(Contact, IsFoundWhicheverScreenComesFirstAndHoweverTheyAreTurned) {
     const std::vector<Case> cases{
         {screen, Contact::overlapping},
         {moved(screen, {0.78, 0, 0}), Contact::overlapping},
-        {{{-0.1, 0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.2, 0}}, Contact::overlapping},      // within
+        {{{-0.1, 0.1, 0}, {0.1, 0.1, 0}, {-0.1, 0.2, 0}}, Contact::overlapping},      // one within the other
         {{{0, -0.1, 0}, {0.6, 0.5, 0}, {-0.3, 0.2, 0}}, Contact::overlapping},        // turned in the plane
         {{{0.6, -0.35, 0}, {1.1, 0.15, 0}, {0.35, -0.1, 0}}, Contact::none},          // beside a corner
         {{{-0.4, 0.2, 0.3}, {0.4, 0.2, 0.3}, {-0.4, 0.2, -0.3}}, Contact::crossing},  // through the middle
-        {{{-0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {-0.1, 0.2, -0.3}}, Contact::crossing},  // no edge meets an edge
+        {{{-0.1, 0.2, 0.3}, {0.1, 0.2, 0.3}, {-0.1, 0.2, -0.3}}, Contact::crossing},  // no edge meets another edge
         {{{-0.4, 0.2, 0.3}, {0.4, 0.2, 0.3}, {-0.4, 0.2, 0.001}}, Contact::none},     // ends at the plane
         {{{0.45, 0.2, 0.3}, {0.9, 0.2, 0.3}, {0.45, 0.2, -0.3}}, Contact::none},      // passes beside it
     };

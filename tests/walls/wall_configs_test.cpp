@@ -14,7 +14,7 @@
 namespace walls {
 namespace {
 
-/// A corner of the field of sand, taken as square, in the room.
+/// Returns a corner of the field of sand in the room. The field is taken as square.
 glm::dvec3 sandCorner(const Wall& wall, int east, int north) {
     return glm::dvec3(stageToRoom(wall.stage, 1, 1, 0) * glm::dvec4(east, north, 0, 1));
 }
@@ -62,7 +62,7 @@ TEST(WallConfigs, DesktopIsOneMonoRank) {
     EXPECT_EQ(wall.tiles[0].outputs, (std::vector<Output>{{"r1c1", {Eye::middle}, {}, {}}}));
 }
 
-/// One camera for the whole of a flat wall; nothing for a CAVE.
+/// Returns the wall as one screen for one camera if the wall is flat. Returns nullopt for a CAVE.
 std::optional<Wall> oneCamera(const Wall& wall) {
     if (wall.grid) {
         return wholeWall(wall);
@@ -167,7 +167,7 @@ TEST(WallConfigs, EveryFileLoadsAndPassesTheCheck) {
     EXPECT_EQ(configNames().size(), 14U);
 }
 
-/// A locale that writes 1,5 for one and a half and 1.024 for a thousand and twenty-four.
+/// Locale that writes 1,5 for one and a half, and 1.024 for a thousand and twenty-four.
 class DecimalComma : public std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
     char do_thousands_sep() const override { return '.'; }

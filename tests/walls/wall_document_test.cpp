@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/wall_files.md: every example is a wall, and the stranger's wall has the facts of the tape measure.
+// docs/wall_files.md: every example must be a valid wall, and the walls must have the measures that the text gives.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -32,7 +32,7 @@ std::vector<std::string> examples() {
     return blocks;
 }
 
-/// A part of a wall file, with the tables that it leaves out taken from the first example, a whole one.
+/// Completes a part of a wall file with the missing tables of the first example, which is a whole wall file.
 std::string completed(const std::string& part, const std::string& whole) {
     std::string text = part;
     for (const std::string table : {"[viewer]", "[grid]", "[stage]"}) {
@@ -63,7 +63,7 @@ TEST(WallDocument, LeadsFromATapeMeasureToAWallThatPasses) {
         EXPECT_EQ(tile.pixels, glm::ivec2(1920, 1080));
         EXPECT_NEAR(tile.screen.distanceTo(wall.viewer.eye), 2.5, 1e-12);
     }
-    // Two bezels of 3.5 mm meet between lit areas.
+    // Two bezels of 3.5 mm are between neighbouring lit areas.
     EXPECT_NEAR(wall.tiles[1].screen.lowerLeft.x - wall.tiles[0].screen.lowerRight.x, 2 * 0.0035, 1e-12);
     EXPECT_NEAR(wall.tiles[0].screen.lowerLeft.y - wall.tiles[2].screen.upperLeft.y, 2 * 0.0035, 1e-12);
     EXPECT_NEAR(wall.tiles[2].screen.lowerLeft.y, 0.80, 1e-12) << "above the floor";

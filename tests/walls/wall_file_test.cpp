@@ -38,7 +38,7 @@ upper_left = [-1.5, 0.0, 0.0]
 pixels = [1500, 1000]
 )";
 
-/// The sample with one line replaced; an empty `now` takes the line away.
+/// Returns the sample with one line replaced. An empty `now` removes the line.
 std::string edited(const std::string& was, const std::string& now) {
     std::string text = kWall;
     const std::size_t at = text.find(was + "\n");
@@ -103,7 +103,7 @@ TEST(WallFile, NamesTheLineOfWhatIsWrong) {
         {"name = \"lab\"", "name = ", ""},
     };
     for (const Case& wrong : cases) {
-        // A missing width is noticed at the table; all else at the line itself.
+        // A missing width is reported at the table. All other errors are reported at the line itself.
         const std::string line =
             complaint(edited(wrong.was, wrong.now.rfind("tilt", 0) == 0 ? "width = 2\n" + wrong.now : wrong.now));
         const int expected = lineOf(wrong.was) + (wrong.now.rfind("tilt", 0) == 0 ? 1 : 0);
@@ -114,7 +114,7 @@ TEST(WallFile, NamesTheLineOfWhatIsWrong) {
 }
 
 TEST(WallFile, NamesAScreenGivenFromTheWrongSide) {
-    // Left and right exchanged: the screen then faces away from the viewer.
+    // Left and right are exchanged, so that the screen faces away from the viewer.
     std::string text = edited("lower_left = [-1.5, 0.0, 2.0]", "lower_left = [1.5, 0.0, 2.0]");
     text.replace(text.find("lower_right = [1.5, 0.0, 2.0]"), 29, "lower_right = [-1.5, 0.0, 2.0]");
     text.replace(text.find("upper_left = [-1.5, 0.0, 0.0]"), 29, "upper_left = [1.5, 0.0, 0.0]");

@@ -9,7 +9,7 @@
 namespace walls {
 namespace {
 
-/// Two rows of two tiles and a floor.
+/// Returns a wall with two rows of two tiles, and a floor.
 std::string wallWith(const std::string& mode, const std::string& more, const std::string& gap = "") {
     return "refresh = 120\n[viewer]\neye = [0.0, 1.6, 3.0]\n[stereo]\nmode = \"" + mode +
            "\"\n[grid]\nrows = 2\ncolumns = 2\ntile_size = [1.0, 0.75]\n" + gap +
@@ -37,7 +37,7 @@ monitors = ["DP-1", "DP-2"]
     EXPECT_EQ(wall.tiles[0].outputs[1].monitor, "DP-2");
     EXPECT_EQ(wall.tiles[1].place, (Place{"node-2.lab", ":0.1", 1}));
     EXPECT_EQ(wall.tiles[4].place, (Place{"node-2.lab", ":0.1", 1}));
-    EXPECT_EQ(wall.tiles[2].place, Place{}) << "nobody said where: anywhere";
+    EXPECT_EQ(wall.tiles[2].place, Place{}) << "no place is given, so any machine may draw it";
     EXPECT_EQ(wall.tiles[1].outputs[0].monitor, "");
     EXPECT_EQ(wall.tiles[1].outputs[0].window, std::nullopt);
 }
@@ -58,7 +58,7 @@ TEST(WallPlace, OfAllMeansEveryTile) {
 }
 
 TEST(WallPlace, LetsEveryMachineOfAHostFileCallItsMonitorsAlike) {
-    // No host: mpirun's host file says where the ranks go, and every machine has a DP-1.
+    // Without a host, mpirun's host file places the ranks, and every machine has a DP-1.
     const Wall wall = parseWall(wallWith("mono", "[[place]]\ntiles = \"all\"\nmonitors = [\"DP-1\"]\n"), "lab.toml");
     EXPECT_EQ(wall.tiles[4].outputs[0].monitor, "DP-1");
     const std::string twice =
