@@ -19,7 +19,7 @@
 namespace pictures {
 namespace {
 
-/// A bright square from (10, 10) to (19, 19) on dark ground.
+/// Returns a bright square from (10, 10) to (19, 19) on dark ground.
 Image square() {
     Image image(30, 30);
     std::fill(image.rgb.begin(), image.rgb.end(), std::uint8_t{40});
@@ -33,7 +33,7 @@ TEST(Compare, CountsPixelsBeyondTheLimitAndNotAtIt) {
     const Image a = square();
     Image b = a;
     b.at(3, 4)[1] = 40 + 8;  // at the limit: not bad
-    b.at(5, 6)[2] = 40 - 9;  // one beyond
+    b.at(5, 6)[2] = 40 - 9;  // one level beyond the limit
     b.at(15, 15)[0] = 255;   // two channels of one pixel count once
     b.at(15, 15)[1] = 0;
     const Comparison comparison = compare(a, b, 8);
@@ -60,7 +60,7 @@ TEST(Compare, RefusesPicturesOfDifferentSizes) {
 TEST(Compare, TellsByHowMuchAPictureIsBrighterInTheMean) {
     const Image a = square();
     Image b = a;
-    Mask ground(a.pixels(), 1);  // all but the square's 100 pixels
+    Mask ground(a.pixels(), 1);  // all pixels except the square's 100
     for (int y = 10; y < 20; ++y) {
         for (int x = 10; x < 20; ++x) {
             ground[static_cast<std::size_t>(y * 30 + x)] = 0;
@@ -81,7 +81,7 @@ TEST(Silhouettes, AreTheEdgeOfTheSquareTwoPixelsToEitherSide) {
     const Mask mask = silhouettes(square(), 32);
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 30; ++x) {
-            // The 3x3 surroundings reach one pixel over the edge, the neighbours of those another one.
+            // The 3x3 surroundings reach one pixel over the edge, and their neighbours one more pixel.
             const bool near = x >= 8 && x < 22 && y >= 8 && y < 22;
             const bool inside = x >= 12 && x < 18 && y >= 12 && y < 18;
             EXPECT_EQ(mask[static_cast<std::size_t>(y * 30 + x)], near && !inside ? 1 : 0) << x << "," << y;
@@ -133,7 +133,7 @@ TEST(Silhouettes, EqualTheirDefinitionOnRandomPictures) {
 TEST(Silhouettes, ExcuseAWobblingEdgeButNoSpotInTheOpen) {
     const Image reference = square();
     Image other = reference;
-    other.at(10, 15)[0] = other.at(10, 15)[1] = other.at(10, 15)[2] = 40;  // the edge moved by a pixel here
+    other.at(10, 15)[0] = other.at(10, 15)[1] = other.at(10, 15)[2] = 40;  // the edge is one pixel further here
     const Mask edges = silhouettes(reference, 32);
     EXPECT_EQ(countOutside(compare(reference, other, 8).bad, edges), 0);
     other.at(15, 15)[0] = 100;

@@ -8,7 +8,7 @@
 namespace pictures {
 namespace {
 
-/// Every pixel its own colour.
+/// Returns a picture in which every pixel has a different colour.
 Image numbered(int width, int height) {
     Image image(width, height);
     for (int y = 0; y < height; ++y) {

@@ -29,7 +29,7 @@ protected:
         std::ifstream stream(file_, std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};
     }
-    /// The complaint about the file, which must name it and be one line.
+    /// Returns the error about the file. It must name the file and be one line.
     [[nodiscard]] std::string complaint() const {
         try {
             (void)readPng(file_);
@@ -59,7 +59,7 @@ void putBigEndian(std::vector<char>& bytes, std::size_t at, std::uint32_t value)
     }
 }
 
-/// Writes another size into a PNG's header, with the header's checksum made right again.
+/// Writes another size into a PNG's header, and corrects the header's checksum.
 void claimSize(std::vector<char>& bytes, std::uint32_t width, std::uint32_t height) {
     putBigEndian(bytes, 16, width);
     putBigEndian(bytes, 20, height);
@@ -108,7 +108,7 @@ TEST_F(PngFile, RefusesWhatIsNoPng) {
 TEST_F(PngFile, RefusesAPictureCutShortAnywhere) {
     writePng(file_, noise(20, 20, 1));
     const std::vector<char> whole = bytes();
-    // The last chunk holds no pixel; libpng does without it.
+    // The last chunk has no pixels, and libpng does not need it.
     for (std::size_t size = 0; size < whole.size() - 16; size += 13) {
         store({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
         (void)complaint();

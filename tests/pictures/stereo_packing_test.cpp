@@ -14,7 +14,7 @@ namespace {
 
 using walls::Stereo;
 
-/// Every pixel its own colour; no colour is in two eyes.
+/// Returns a picture in which every pixel has a different colour. The two eyes share no colour.
 Image eye(int width, int height, int blue) {
     Image image(width, height);
     for (int y = 0; y < height; ++y) {
@@ -104,8 +104,8 @@ TEST(StereoPacking, DuboisKeepsEachEyeBehindItsFilter) {
         return packStereo(Stereo::anaglyphDubois, left, right).rgb;
     };
     const auto onlyLeft = luminance(grey(200), grey(0));
-    EXPECT_GT(onlyLeft[0], 200);  // 1.13 of the light
-    EXPECT_EQ(onlyLeft[1], 0);    // what must be taken away from black stays black
+    EXPECT_GT(onlyLeft[0], 200);  // the weight is 1.13
+    EXPECT_EQ(onlyLeft[1], 0);    // a negative amount of light is clamped to black
     EXPECT_EQ(onlyLeft[2], 0);
     const auto onlyRight = luminance(grey(0), grey(200));
     EXPECT_EQ(onlyRight[0], 0);
@@ -113,7 +113,7 @@ TEST(StereoPacking, DuboisKeepsEachEyeBehindItsFilter) {
     EXPECT_GT(onlyRight[2], 200);
 }
 
-// The matrices solve a least-squares problem, here from the measured spectra themselves: XYZ of each phosphor, bare
+// The matrices solve a least-squares problem. The test solves it with the measured spectra: XYZ of each phosphor, bare
 // and behind each filter (Sanders and McAllister 2003), columns red, green, blue.
 TEST(StereoPacking, DuboisMatricesAreTheLeastSquaresProjection) {
     const auto rows = [](glm::dvec3 x, glm::dvec3 y, glm::dvec3 z) { return glm::transpose(glm::dmat3(x, y, z)); };

@@ -16,7 +16,7 @@ using Kind = Reading::Kind;
 
 const std::string kStraight = "[1.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 1.0]";
 
-/// A body at x [mm].
+/// Returns a body at x [mm].
 std::string body(int number, double x, const std::string& rotation = kStraight, double quality = 1) {
     return fmt::format("[{} {:.3f}][{:.3f} 1700.000 2500.000 0.0000 0.0000 0.0000]{}", number, quality, x, rotation);
 }
@@ -34,18 +34,18 @@ TEST(Dtrack, TellsMillimetres) {
 }
 
 TEST(Dtrack, TellsTheRotationColumnByColumn) {
-    // By 30 degrees about the tracker's z, counter-clockwise: its x axis goes towards y.
+    // A turn by 30 degrees about the tracker's z, counter-clockwise: its x axis turns towards y.
     const Reading reading = read(frame(1, body(0, 0, "[0.866025 0.5 0 -0.5 0.866025 0 0 0 1]")));
     ASSERT_EQ(reading.kind, Kind::pose);
     EXPECT_TRUE(near(reading.measured.rotation[0], {std::sqrt(0.75), 0.5, 0}, 1e-6));
-    // Where z is up and y runs into the wall that is a turn to the left: the right eye comes nearer to the wall.
+    // If z is up and y points into the wall, this is a turn to the left: the right eye comes nearer to the wall.
     RoomMapping mapping;
     mapping.axes = axesOf("x,z,-y").value();
     EXPECT_TRUE(near(mapping.pose(reading.measured).right, {std::sqrt(0.75), 0, -0.5}, 1e-6));
 }
 
 TEST(Dtrack, AgreesWithTheAnglesBesideTheMatrix) {
-    // The angles are about x, then y, then z of the turned body; numbers rounded as the tracker rounds them.
+    // The angles are about x, then y, then z of the turned body. The numbers are rounded as the tracker rounds them.
     const double x = glm::radians(20.0), y = glm::radians(-35.0), z = glm::radians(50.0);
     const glm::dmat3 aboutX(1, 0, 0, 0, std::cos(x), std::sin(x), 0, -std::sin(x), std::cos(x));
     const glm::dmat3 aboutY(std::cos(y), 0, -std::sin(y), 0, 1, 0, std::sin(y), 0, std::cos(y));
@@ -150,7 +150,7 @@ TEST(Dtrack, RefusesWhatIsMalformed) {
 }
 
 TEST(Dtrack, SurvivesAnyBytes) {
-    // Seeded, so that a failure comes again; the sanitizer build is the judge of what is read.
+    // The random numbers are seeded, so that a failure can be repeated. The sanitizer build checks the reads.
     std::mt19937 random(4);
     const std::string good = "fr 12\n6d 2 " + body(0, 1) + " " + body(1, 2) + "\n";
     int poses = 0;

@@ -63,9 +63,9 @@ TEST(HeadTrace, GivesTheSamePoseForTheSameFrameInAnyOrder) {
 }
 
 TEST(HeadTrace, UnderstandsEveryWayToTellATurn) {
-    const glm::dvec3 left(std::sqrt(0.75), 0, -0.5);  // by 30 degrees
+    const glm::dvec3 left(std::sqrt(0.75), 0, -0.5);  // turned by 30 degrees
     EXPECT_TRUE(near(parse("time,x,y,z,yaw,pitch,roll\n0,0,0,0,30,0,0\n").at(0).right, left));
-    // A turn by 30 degrees about y: cos 15 and sin 15.
+    // A turn by 30 degrees about y has the quaternion of cos 15° and sin 15°.
     EXPECT_TRUE(near(parse("time,x,y,z,qw,qx,qy,qz\n0,0,0,0,0.9659258263,0,0.2588190451,0\n").at(0).right, left, 1e-9));
     EXPECT_TRUE(
         near(parse("right_z,right_y,right_x,time,z,y,x\n-0.5,0,0.8660254038,0,0,0,0\n").at(0).right, left, 1e-9));

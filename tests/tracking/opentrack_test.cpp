@@ -22,7 +22,7 @@ TEST(Opentrack, TellsCentimetresAndDegrees) {
 }
 
 TEST(Opentrack, CountsYawToTheRight) {
-    // Turned to the right by 30 degrees, the right eye is farther from the wall: sin 30 = 1/2.
+    // With the head turned to the right by 30 degrees, the right eye is farther from the wall: sin 30° = 1/2.
     const Reading reading = read(test::doubles({0, 0, 0, 30, 0, 0}));
     EXPECT_TRUE(near(reading.measured.rotation[0], {std::sqrt(0.75), 0, 0.5}));
 }
@@ -33,7 +33,7 @@ TEST(Opentrack, CountsPitchUpAndRollToTheLeft) {
 }
 
 TEST(Opentrack, IsLittleEndian) {
-    // 1.0 is 3f f0 00 00 00 00 00 00, written from its end.
+    // 1.0 is 3f f0 00 00 00 00 00 00, written from its last byte.
     base::Bytes packet(48, 0);
     packet[15] = 0x3f;
     packet[14] = 0xf0;

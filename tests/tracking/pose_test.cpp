@@ -13,14 +13,14 @@ using test::near;
 const double kHalf = std::sqrt(0.5);
 
 TEST(HeadPose, AHeadThatTurnsLeftHasItsRightEyeNearerTheWall) {
-    // The wall lies at -z: who looks at it and turns by 90 degrees to the left has the wall at his right hand.
+    // The wall is at -z. A viewer who faces the wall and turns left by 90 degrees has the wall on the right.
     EXPECT_TRUE(near(rotationOf(90, 0, 0)[0], {0, 0, -1}));
     EXPECT_TRUE(near(rotationOf(45, 0, 0)[0], {kHalf, 0, -kHalf}));
     EXPECT_TRUE(near(rotationOf(-45, 0, 0)[0], {kHalf, 0, kHalf}));
 }
 
 TEST(HeadPose, AHeadThatLooksUpSeesUp) {
-    // It looks along minus its third axis; its eyes stay level.
+    // The head looks along minus its third axis. Its eyes stay level.
     EXPECT_TRUE(near(-rotationOf(0, 30, 0)[2], {0, 0.5, -std::sqrt(0.75)}));
     EXPECT_TRUE(near(rotationOf(0, 30, 0)[0], {1, 0, 0}));
 }
@@ -30,7 +30,8 @@ TEST(HeadPose, AHeadThatTiltsLeftHasItsRightEyeHigher) {
 }
 
 TEST(HeadPose, RollComesBeforePitchBeforeYaw) {
-    // Rolled by 90 degrees the right eye is on top; looking up by 90 takes it backwards; turning left by 90, to +x.
+    // After a roll of 90 degrees the right eye is on top. Looking up by 90 degrees moves it backwards. Turning left by
+    // 90 degrees moves it to +x.
     EXPECT_TRUE(near(rotationOf(0, 0, 90)[0], {0, 1, 0}));
     EXPECT_TRUE(near(rotationOf(0, 90, 90)[0], {0, 0, 1}));
     EXPECT_TRUE(near(rotationOf(90, 90, 90)[0], {1, 0, 0}));
@@ -57,11 +58,11 @@ TEST(RoomMapping, PutsTheOriginWhereTheTrackerStands) {
 }
 
 TEST(RoomMapping, TurnsATrackerWhoseZIsUp) {
-    // Its y runs from the viewer into the wall.
+    // The tracker's y points from the viewer into the wall.
     RoomMapping mapping;
     mapping.axes = axesOf("x,z,-y").value();
     EXPECT_TRUE(near(mapping.pose({{1, 2, 3}}).position, {1, 3, -2}));
-    // A turn to the left is one about its z.
+    // A turn to the left is a turn about the tracker's z.
     const double angle = std::numbers::pi / 4;
     const glm::dmat3 left(std::cos(angle), std::sin(angle), 0, -std::sin(angle), std::cos(angle), 0, 0, 0, 1);
     EXPECT_TRUE(near(mapping.pose({{0, 0, 0}, left}).right, {kHalf, 0, -kHalf}));
@@ -76,7 +77,7 @@ TEST(RoomMapping, MirrorsPlaceAndTurnAlike) {
 }
 
 TEST(RoomMapping, FindsTheEyesBesideWhatIsTracked) {
-    // A target on the forehead: the eyes are 10 cm below it and 2 cm behind it, whichever way the head is turned.
+    // The target is on the forehead. The eyes are 10 cm below it and 2 cm behind it in every direction of the head.
     const RoomMapping mapping{{0, 0, 0}, glm::dmat3(1.0), {0, -0.10, 0.02}};
     EXPECT_TRUE(near(mapping.pose({{0, 2, 0}}).position, {0, 1.90, 0.02}));
     EXPECT_TRUE(near(mapping.pose({{0, 2, 0}, rotationOf(90, 0, 0)}).position, {0.02, 1.90, 0}));

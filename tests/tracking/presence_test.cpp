@@ -41,7 +41,7 @@ TEST_F(PresenceTest, IsSilentWhilePosesCome) {
 }
 
 TEST_F(PresenceTest, AStalledFrameIsNoLostTracker) {
-    // What arrived during a frame of three seconds is read before anything is said.
+    // Packets that arrived during a frame of three seconds are read before a report.
     presence.look(true, 0);
     presence.look(true, 3000 * kMs);
     EXPECT_TRUE(lines.empty());
@@ -56,7 +56,7 @@ TEST_F(PresenceTest, SaysThatATrackerWasNeverThere) {
     presence.look(true, 9010 * kMs);
     ASSERT_EQ(lines.size(), 2U);
     EXPECT_EQ(lines[1], "head tracking: dtrack:5000 is there");
-    EXPECT_EQ(presence.timesLost(), 0U) << "it was never had";
+    EXPECT_EQ(presence.timesLost(), 0U) << "no pose has ever come";
 }
 
 TEST_F(PresenceTest, CountsEveryLoss) {

@@ -10,7 +10,7 @@ using namespace tracking;
 
 Source parseSource(const std::string& text) { return Source::parse(text, "--track"); }
 
-/// The complaint about a text, which must be one line, begin with the option and quote the text.
+/// Checks the error about a text. It must be one line, begin with the option and quote the text.
 std::string complaint(const std::string& text) {
     std::string line = test::refusalOf([&] { (void)parseSource(text); });
     EXPECT_EQ(line.find("--track: '" + text), 0U) << line;

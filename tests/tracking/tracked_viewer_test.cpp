@@ -14,7 +14,7 @@ namespace {
 using namespace tracking;
 using test::near;
 
-/// One screen of 2 m x 1 m in the plane z = 0, seen from 2 m away.
+/// Returns a wall with one screen of 2 m x 1 m in the plane z = 0, seen from 2 m away.
 class TrackedViewerTest : public testing::Test {
 protected:
     TrackedViewerTest() {
@@ -62,7 +62,7 @@ TEST_F(TrackedViewerTest, HoldsAHeadThatWalksBehindAScreen) {
     TrackedViewer viewer = this->viewer("time,x,y,z\n0,0,1.5,1\n1,0,1.5,-1\n2,0,1.5,-1\n3,0,1.5,1\n9,0,1.5,1\n");
     for (int frame = 0; frame < 60 * 9; ++frame) {
         const walls::Viewer now = viewer.at(frame / 60.0);
-        // Whatever is said, every rank can make a picture of it.
+        // Every rank can draw a picture for each viewer that at() returns.
         EXPECT_NO_THROW((void)walls::viewOf(wall_.tiles[0].screen, now.eye, 0.1, 100));
         EXPECT_GE(now.eye.z, TrackedViewer::kNearestEye);
         if (frame == 120) {
@@ -73,12 +73,12 @@ TEST_F(TrackedViewerTest, HoldsAHeadThatWalksBehindAScreen) {
     EXPECT_EQ(lines_[0],
               "head tracking: the head at (0.00, 1.50, 0.00) is not in front of tile 'front'; the last place is held");
     EXPECT_EQ(lines_[1], "head tracking: the head is in front of every tile again");
-    // From z = 0 at 0.5 s to z = 0 at 2.5 s, both frames of them outside.
+    // The head is at z = 0 at 0.5 s and again at 2.5 s. Both frames are outside.
     EXPECT_EQ(viewer.counters().outside, 121U);
 }
 
 TEST_F(TrackedViewerTest, LooksAtEachEye) {
-    // The middle is in front of the screen; turned sideways, an eye is behind it.
+    // The midpoint is in front of the screen. If the head turns sideways, one eye is behind the screen.
     TrackedViewer viewer = this->viewer("time,x,y,z,yaw,pitch,roll\n0,0,1.5,0.02,90,0,0\n");
     EXPECT_EQ(viewer.at(0), wall_.viewer);
     EXPECT_EQ(viewer.counters().outside, 1U);

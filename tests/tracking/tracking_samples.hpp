@@ -14,7 +14,7 @@
 
 namespace test {
 
-/// Both vectors, printed when they are farther apart than `most`.
+/// Returns whether two vectors are at most `most` apart, and prints both if they are not.
 inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 want, double most = 1e-12) {
     if (glm::length(got - want) <= most) {
         return testing::AssertionSuccess();
@@ -25,7 +25,7 @@ inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 want, double mos
 
 inline base::Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// Six doubles as opentrack sends them: cm and degrees.
+/// Returns six doubles as opentrack sends them: cm and degrees.
 inline base::Bytes doubles(const std::vector<double>& values) {
     base::ByteWriter writer;
     for (const double value : values) {

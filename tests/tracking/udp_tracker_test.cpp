@@ -16,7 +16,7 @@ namespace {
 using namespace tracking;
 using test::near;
 
-/// A tracker on a free port of loopback, and somebody who sends to it. Its clock stands unless the test moves it.
+/// Tracker on a free port of loopback, and a sender to it. Its clock stops unless the test moves it.
 class UdpTrackerTest : public testing::Test {
 protected:
     void open(const std::string& source) {
@@ -25,7 +25,7 @@ protected:
             [this] { return now; });
         sender = std::make_unique<UdpSender>("127.0.0.1", tracker->port());
     }
-    /// Looks until so many packets have come; loopback loses none while the socket has room.
+    /// Reads the tracker until `packets` packets have come. Loopback loses no packet while the socket has room.
     std::optional<Pose> lookUntil(std::uint64_t packets) {
         const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
         std::optional<Pose> pose = tracker->newest(0);
@@ -77,7 +77,8 @@ TEST_F(UdpTrackerTest, ListensBeyondThisMachineToOneAddressAlone) {
     const std::string line = test::refusalOf([&] { open("opentrack:0.0.0.0:0"); });
     EXPECT_NE(line.find("from="), std::string::npos) << line;
     open("opentrack:0.0.0.0:0 from=127.0.0.2 origin=0,0,0");
-    constexpr std::uint64_t kMany = 5'000;  // far more than the kernel has room for: they take none
+    // Far more packets than the kernel has room for. Packets from the wrong address must take none of it.
+    constexpr std::uint64_t kMany = 5'000;
     for (std::uint64_t i = 0; i < kMany; ++i) {
         sender->send(test::doubles({0, 10, 0, 0, 0, 0}));
     }
@@ -116,7 +117,7 @@ TEST_F(UdpTrackerTest, HoldsTheLastPoseWhileLostAndTakesANewStart) {
     }
     ASSERT_EQ(lines.size(), 1U);
     EXPECT_NE(lines[0].find("no pose from dtrack:0 for 0.5 s"), std::string::npos) << lines[0];
-    // A tracker that was started anew counts from 1; of what comes at once, order holds again.
+    // A restarted tracker counts from 1. Among packets that arrive together, the order counts again.
     sender->send(dtrackPacket({{0.7, 1.6, 2}, {1, 0, 0}}, 2, 0));
     sender->send(dtrackPacket({{0.9, 1.6, 2}, {1, 0, 0}}, 1, 0));
     EXPECT_TRUE(near(lookUntil(3).value().position, {0.7, 1.6, 2}));
@@ -127,7 +128,7 @@ TEST_F(UdpTrackerTest, HoldsTheLastPoseWhileLostAndTakesANewStart) {
 
 TEST_F(UdpTrackerTest, AFloodDoesNotHoldTheFrameUp) {
     open("opentrack:0");
-    // More may have been sent than one look reads or the socket keeps: whatever is there, the look ends.
+    // The sender may send more than one read takes or the socket has room for. The read must end in any case.
     for (int i = 0; i < 3 * UdpTracker::kMostPackets; ++i) {
         sender->send(test::doubles({0, 0, 0, 0, 0, 0}));
     }
@@ -144,7 +145,7 @@ TEST_F(UdpTrackerTest, SaysThatAPortIsTaken) {
 }
 
 TEST_F(UdpTrackerTest, SaysThatAnAddressIsNotOurs) {
-    // Reserved for documentation: no machine has it.
+    // This address is reserved for documentation, so that no machine has it.
     EXPECT_NE(test::refusalOf([&] {
                   open("opentrack:192.0.2.1:4242 from=192.0.2.2");
               }).find("cannot listen on 192.0.2.1 port 4242"),
