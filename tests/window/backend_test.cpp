@@ -64,7 +64,7 @@ TEST_F(Backends, DrawTheSamePicture) {
                         difference.largestDifference);
         }
     }
-    // The bound tells pictures apart that are not the same.
+    // The bound distinguishes pictures that are not the same.
     EXPECT_GT(pictures::compare(drawn["osmesa"]["left"], drawn["osmesa"]["right"], 8).badShare, 0.01);
 }
 
@@ -72,7 +72,7 @@ TEST_F(Backends, NeedLittleMemoryBesideTheFrameBuffers) {
     for (const std::string gl : {"osmesa", "egl", "glfw"}) {
         std::vector<std::string> words = arguments(gl);
         words.insert(words.end(), {"--width", "1024", "--height", "768", "--cells", "512"});
-        (void)startAndShow(words, {"MESA_SHADER_CACHE_DISABLE=true"});  // it compiles its shaders as on the first day
+        (void)startAndShow(words, {"MESA_SHADER_CACHE_DISABLE=true"});  // compiles the shaders as in a first run
         for (int frame = 1; frame < 5; ++frame) {
             (void)ask("frame " + std::to_string(frame), "frame " + std::to_string(frame) + " shown");
         }
@@ -80,7 +80,7 @@ TEST_F(Backends, NeedLittleMemoryBesideTheFrameBuffers) {
         const double megabytes = std::stod(linesOf(output, "resident").at(0)) / 1e6;
         const double frameBuffers = std::stod(linesOf(output, "frame_buffers").at(0)) / 1e6;
         std::printf("%s: %.0f MB and %.0f MB of frame buffers\n", gl.c_str(), megabytes - frameBuffers, frameBuffers);
-        EXPECT_LE(megabytes - frameBuffers, 100) << gl << ": a rank has 120 MB, some of which MPI takes";
+        EXPECT_LE(megabytes - frameBuffers, 100) << gl << ": a rank has 120 MB, and MPI takes a part of it";
         EXPECT_GT(megabytes - frameBuffers, 10) << gl << ": the figure cannot be right";
         probe_.reset();
     }
@@ -105,7 +105,7 @@ TEST_F(Backends, AutoOpensWindowsOnlyWhereTheWallFileNamesAPlace) {
     window.outputs[1].window = glm::ivec2(0, 0);
     for (const walls::Tile& shown : {display, monitor, window}) {
         EXPECT_EQ(render_node::backendFor(Backend::automatic, shown), Backend::glfw);
-        EXPECT_EQ(render_node::backendFor(Backend::egl, shown), Backend::egl) << "a choice stands";
+        EXPECT_EQ(render_node::backendFor(Backend::egl, shown), Backend::egl) << "an explicit choice is kept";
     }
 }
 
@@ -120,7 +120,7 @@ TEST_F(Backends, NameThePackageOfAModuleThatIsNotThere) {
 }
 
 TEST_F(Backends, NameThePackageOfALibraryThatIsNotThere) {
-    // The loader finds no library in a file that is none; it would say the same of one whose libraries are missing.
+    // The loader refuses a file that is not a library. A library with missing dependencies gives the same error.
     std::ofstream(folder_ / "sandwall-gl-glfw.so") << "not a library";
     try {
         (void)render_node::loadPlatform(Backend::glfw, {}, {folder_});
@@ -136,7 +136,8 @@ TEST_F(Backends, NameThePackageOfALibraryThatIsNotThere) {
 TEST_F(Backends, EglTakesTheDeviceWithTheGivenNumber) {
     (void)startAndShow({"--gl", "egl"});
     const pictures::Image surfaceless = picture("left");
-    // Mesa's software renderer is always a device; on a machine with cards it is not the first, and they differ.
+    // Mesa's software renderer is always a device. On a machine with graphics cards it is not the first device, and the
+    // numbers differ.
     const std::string output = startAndShow({"--gl", "egl", "--device", "0"});
     EXPECT_EQ(linesOf(output, "context").at(0), "egl");
     EXPECT_LE(pictures::compare(surfaceless, picture("left"), 8).badShare, 0.01);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mouse as a hand, in a window on an X server of the test's own.
+// The mouse as a hand, in a window on the test's own X server.
 #include "haptic_bridge/devices/mouse.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace haptic_bridge;
 
-constexpr int kSide = 240;  // [pixel], the window
+constexpr int kSide = 240;  // [pixel], side of the window
 
 pictures::Image imageOf(const Picture& picture) {
     pictures::Image image(picture.width, picture.height);
@@ -31,7 +31,7 @@ pictures::Image imageOf(const Picture& picture) {
     return image;
 }
 
-/// Sand with a furrow from west to east, a little north of the middle.
+/// Returns sand with a furrow from west to east, a little north of the middle.
 sand::Replica furrowed(const scene::Scene& scene) {
     sand::Replica terrain(scene);
     sand::Step step;
@@ -100,7 +100,7 @@ TEST_F(Mouse, TouchesWhereItPointsAndAsDeepAsTheWheelSays) {
     ASSERT_TRUE(eventually([&] { return pose().engaged; }));
     EXPECT_NEAR(pose().z, 0.5, 1e-9);
     for (const bool down : {true, false}) {
-        screen_->button(window_, 5, down);  // a notch towards the person: deeper
+        screen_->button(window_, 5, down);  // one notch of the wheel towards the person: deeper
     }
     ASSERT_TRUE(eventually([&] { return std::abs(pose().z - 0.4) < 1e-9; })) << pose().z;
     screen_->button(window_, 1, false);

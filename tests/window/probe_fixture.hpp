@@ -15,16 +15,16 @@
 #include "tests/support/child_process.hpp"
 #include "tests/support/folder_test.hpp"
 
-/// window_probe in processes of its own, each with a folder for its pictures. Times are bounds, never measurements.
+/// Runs window_probe in separate processes, each with a folder for its pictures. Times are bounds, never measurements.
 class ProbeTest : public test::FolderTest {
 protected:
-    static constexpr double kLong = 120;  // [s], for what takes one or two on an idle machine
+    static constexpr double kLong = 120;  // [s], bound for actions that take one or two seconds on an idle machine
 
-    /// Starts it; `environment` holds words of env(1): NAME=value, or -u NAME.
+    /// Starts window_probe. `environment` has arguments of env(1): NAME=value, or -u NAME.
     void start(const std::vector<std::string>& arguments, const std::vector<std::string>& environment = {}) {
         std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY"};
         command.insert(command.end(), environment.begin(), environment.end());
-        // The rank draws in its own thread.
+        // With LP_NUM_THREADS=0 llvmpipe draws in the thread that calls GL.
         command.insert(command.end(), {"LP_NUM_THREADS=0", std::string(SANDWALL_BIN_DIR) + "/window_probe",
                                        "--pictures", folder_.string() + "/"});
         command.insert(command.end(), arguments.begin(), arguments.end());
@@ -33,24 +33,25 @@ protected:
         }
         probe_ = std::make_unique<support::ChildProcess>(command, folder_ / "probe.log");
     }
-    /// The same, and waits until frame 0 is shown; what it has printed.
+    /// Starts window_probe and waits until frame 0 is shown. Returns its output so far.
     std::string startAndShow(const std::vector<std::string>& arguments,
                              const std::vector<std::string>& environment = {}) {
         start(arguments, environment);
         EXPECT_TRUE(comesTo("frame 0 shown")) << probe_->output();
         return probe_->output();
     }
-    /// Types a command and waits for its answer; everything printed so far.
+    /// Types a command and waits for its answer. Returns the whole output so far.
     std::string ask(const std::string& command, const std::string& answer) {
         probe_->type(command);
         EXPECT_TRUE(comesTo(answer)) << command << ": " << probe_->output();
         return probe_->output();
     }
-    /// Waits for a line of window_probe.cpp's own, which stands beside this file.
+    /// Waits for a whole line of window_probe's output.
     bool comesTo(const std::string& line) {
         return probe_->waitUntil([&] { return probe_->output().find(line + "\n") != std::string::npos; }, kLong);
     }
-    /// The one line with which it ends by itself, after `from` characters of output; status as given.
+    /// Waits for the end of window_probe and returns its last output, which must be one line after `from` characters.
+    /// The exit status must be `status`.
     std::string lastLine(int status, std::size_t from = 0) {
         const auto ended = probe_->wait(kLong);
         std::string text = probe_->output().substr(from);
@@ -62,7 +63,7 @@ protected:
     [[nodiscard]] pictures::Image picture(const std::string& eye) const {
         return pictures::readPng(folder_ / (eye + ".png"));
     }
-    /// What follows a word at the begin of a line: all "library ..." lines, say.
+    /// Returns the rest of each line that begins with `word`, such as of all "library ..." lines.
     static std::vector<std::string> linesOf(const std::string& output, const std::string& word) {
         std::vector<std::string> found;
         std::istringstream lines(output);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hardware that is not here: a driver's extension tables and a counter of retraces made up.
+// Simulated hardware: a driver's extension tables and a counter of retraces.
 #include "render_node/gl/swap_sync.hpp"
 
 #include <gtest/gtest.h>
@@ -22,12 +22,12 @@ using render_node::hiddenPixels;
 using render_node::ScreenRect;
 using render_node::SwapGroup;
 
-/// A driver; its functions are plain pointers, so it is one for all tests, made anew by each.
+/// Simulated driver. Its functions are plain pointers, so that all tests share one driver. Each test resets it.
 struct FakeDriver {
     std::string extensions;
     unsigned groups = 1, barriers = 1;
-    GlxDrawable refused = 0;                // cannot join
-    std::map<GlxDrawable, unsigned> group;  // of each window that has joined
+    GlxDrawable refused = 0;                // window that cannot join
+    std::map<GlxDrawable, unsigned> group;  // group of each window that has joined
     unsigned barrier = 0;
     std::int64_t msc = 0;  // retraces so far
     bool counting = true;
@@ -56,7 +56,7 @@ int syncValues(void* /* display */, GlxDrawable /* window */, std::int64_t* ust,
     *msc = driver.msc;
     return driver.counting ? 1 : 0;
 }
-/// Waits, as the specification says, for the next retrace with the remainder.
+/// Waits for the next retrace with the remainder, as the specification requires.
 std::int64_t swapAt(void* /* display */, GlxDrawable /* window */, std::int64_t target, std::int64_t divisor,
                     std::int64_t remainder) {
     driver.wanted = {target, divisor, remainder};
@@ -141,7 +141,7 @@ TEST_F(SwapSync, KeepsEachEyeOnItsRetracesWhenSomeAreMissed) {
         ASSERT_TRUE(eyes.available());
         ASSERT_TRUE(eyes.swap(6));
         const std::int64_t leftParity = driver.msc % 2;
-        EXPECT_EQ(driver.msc, first + 1) << "the first frame waits for nothing but the next retrace";
+        EXPECT_EQ(driver.msc, first + 1) << "the first frame waits only for the next retrace";
         std::uint64_t frame = 6;
         for (const int missed : {0, 0, 1, 0, 2, 3, 0, 1, 1}) {
             driver.msc += missed;
@@ -170,7 +170,7 @@ TEST_F(SwapSync, LeavesTheSwapToOthersWhereNothingIsCounted) {
 }
 
 TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {
-    // Only their addresses are looked at.
+    // Only the addresses of the pictures are used.
     const auto* left = reinterpret_cast<const render_node::EyeTarget*>(&driver);
     const auto* right = reinterpret_cast<const render_node::EyeTarget*>(&driver.msc);
     for (const std::uint64_t frame : {0U, 1U}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a rank does with a backend, without a cluster: makes the context and the windows of a tile, draws the sample
-// scene for both eyes, shows frame 0, and then does what is typed: "frame N", "keys", "memory", "end".
+// Does without a cluster what a rank does with a backend. It makes the context and the windows of a tile, draws the
+// sample scene for both eyes, and shows frame 0. Then it runs typed commands: "frame N", "keys", "memory", "end".
 #include <unistd.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ struct Options {
     std::string gl = "glfw", pictures;
     int width = 320, height = 240, device = -1, cells = 200;
     bool active = false;
-    double refresh = 60;  // [Hz], of the wall
+    double refresh = 60;  // [Hz], refresh rate of the wall
     std::string display;
     std::vector<std::string> places;  // "40,30" or the name of a monitor, one for each window
 };
@@ -56,7 +56,7 @@ void writePicture(const EyeTarget& target, const std::string& file) {
     pictures::writePng(file, image);
 }
 
-/// The shared libraries in this process, each once: "libX11.so.6.4.0".
+/// Prints the shared libraries in this process, each once, such as "libX11.so.6.4.0".
 void printLibraries() {
     std::ifstream maps("/proc/self/maps");
     std::set<std::string> names;
@@ -120,7 +120,7 @@ int show(const Options& options) {
         writePicture(left, options.pictures + "left.png");
         writePicture(right, options.pictures + "right.png");
     }
-    // Several windows show the left and the right eye's picture by turns, as two projectors do.
+    // Several windows alternate between the left and the right eye's picture, as two projectors do.
     std::vector<render_node::OutputPicture> outputs;
     for (std::size_t i = 0; i < options.places.size(); ++i) {
         outputs.push_back({i % 2 == 0 ? &left : &right, options.active ? &right : nullptr});

@@ -11,7 +11,7 @@ namespace {
 
 using support::XScreen;
 
-constexpr int kAcross = 800;  // [pixel], the screen
+constexpr int kAcross = 800;  // [pixel], width of the screen
 constexpr int kDown = 600;
 
 class Window : public ProbeTest {
@@ -22,9 +22,9 @@ protected:
             std::vector<std::string>{std::to_string(kAcross) + "x" + std::to_string(kDown) + "x24", "640x480x24"});
     }
     void TearDown() override {
-        probe_.reset();  // before the server of its screens
+        probe_.reset();  // must end before the server of its screens
     }
-    /// Windows of 320 x 240 pixels at these places.
+    /// Shows windows of 320 x 240 pixels at these places.
     std::string show(const std::vector<std::string>& places, const std::vector<std::string>& more = {}) {
         return startAndShow(words(places, more));
     }
@@ -37,7 +37,7 @@ protected:
         all.insert(all.end(), more.begin(), more.end());
         return all;
     }
-    /// The only window there is.
+    /// Returns the only window.
     [[nodiscard]] unsigned long onlyWindow(const XScreen& screen) const {
         const std::vector<unsigned long> seen = screen.windows();
         EXPECT_EQ(seen.size(), 1U);
@@ -53,7 +53,7 @@ TEST_F(Window, ShowsThePicturePixelForPixelAtItsPlace) {
     const XScreen screen(server_->display());
     EXPECT_TRUE(screen.comesToShow(picture("left"), 40, 30));
     EXPECT_FALSE(screen.picture(41, 30, 320, 240).rgb == picture("left").rgb) << "the picture has no features";
-    // No frame, no title: black screen all around.
+    // The window has no frame and no title. The screen around it is black.
     const pictures::Image above = screen.picture(0, 0, kAcross, 30);
     EXPECT_TRUE(std::all_of(above.rgb.begin(), above.rgb.end(), [](int level) { return level == 0; }));
 }
@@ -91,7 +91,7 @@ TEST_F(Window, ShowsTheEyesInTurnByTheNumberOfTheFrame) {
     EXPECT_TRUE(lines[0].starts_with("output out1: no quad buffers; eyes in turn by frame")) << lines[0];
     const XScreen screen(server_->display());
     EXPECT_TRUE(screen.comesToShow(picture("left"), 40, 30));
-    // Also where frames are left out: what counts is the number.
+    // The number of the frame decides, also if frames are left out.
     for (const int frame : {1, 2, 3, 5, 7, 10}) {
         const std::string number = std::to_string(frame);
         (void)ask("frame " + number, "frame " + number + " shown");
@@ -163,7 +163,8 @@ TEST_F(Window, RefusesAMonitorOfAnotherSize) {
 }
 
 TEST_F(Window, NamesADisplayThatCannotBeOpened) {
-    // Not that of a server that has ended: the next test's may have it by now. Numbers are given from 0 up.
+    // Uses a display number that no test's server has. The number of a server that has ended may belong to the next
+    // test's server, because numbers are given from 0 up.
     start({"--at", "0,0", "--display", ":9876"});
     EXPECT_TRUE(lastLine(2).starts_with("window_probe: --gl glfw: cannot open X display :9876; is its server running"));
 }
@@ -176,7 +177,7 @@ TEST_F(Window, SaysWhenThereIsNoDisplayAtAll) {
 TEST_F(Window, EndsTheRankWhenItIsDestroyed) {
     const std::string before = show({"0,0", "400,100"});
     const XScreen screen(server_->display());
-    screen.destroy(screen.windows().back());  // the second one was opened last
+    screen.destroy(screen.windows().back());  // the second window was opened last
     probe_->type("frame 1");
     EXPECT_EQ(lastLine(1, before.size()),
               "window_probe: failed: output out2: its window on " + server_->display() + " is gone\n");
