@@ -4,7 +4,8 @@
 
 Reads Markdown, the comments and string literals of C++ and Python, and the comments of shell and CMake. Skips code, text
 in backquotes, fenced blocks and headings. The words to avoid are the phrases in backquotes in the table of docs/glossary.md
-below "Words that we avoid". Prints the share of flagged sentences per kind of text and the number of flags per rule.
+below "Words that we avoid". A semicolon ends a sentence of a message, because most messages have no full stops. Prints the
+share of flagged sentences per kind of text and the number of flags per rule.
 
 Exit status 1: more than 1 % of the documents' or the comments' sentences are flagged, or more than 0.5 % of the messages.
 Exit status 2: a path does not exist or cannot be checked.
@@ -39,7 +40,7 @@ BEFORE_CLAUSE = r"(?:[;:(–] ?|\b(?:by|for|to|of|with|from|than|as|in|on|at) )"
 
 RULES = {name: re.compile("|".join(patterns)) for name, patterns in {
     "clause without a noun": [  # except "where x is …", which explains a formula
-        r"^([Ww]ho|[Ww]hat|[Ww]hatever|Which|Where|How)\b(?!\(| to )(?!.*\?)(?!(?<=ere) \w(_\w+)? (is|are|=))",
+        r"^([Ww]ho|[Ww]hat|[Ww]hatever|Which|Where|How)\b(?!\(| to |$)(?!.*\?)(?!(?<=ere) \w(_\w+)? (is|are|=))",
         rf"(?:^|{BEFORE_CLAUSE}|\b(?:and|or|but|if|where|when) )([Ww]ho|[Ww]hom)\b(?!.*\?)",
         rf"\b[Ww]hat (lies|stands|goes|comes?|came|moves?|flows?|falls|remains)\b(?!.*\?)",
         rf"{BEFORE_CLAUSE}what (is|was|has|had)\b(?!.*\?)",
@@ -99,11 +100,12 @@ def flags(sentence, opens_comment, avoided):
     return found
 
 
-def sentences(text):
+def sentences(text, kind="comments"):
     """Returns the sentences of a paragraph, with Code in place of text in backquotes and without emphasis."""
     text = re.sub(r"!?\[([^]]*)\]\([^)]*\)|https?://\S+", r"\1", re.sub(r"`[^`]*`", "Code", text)).replace("**", "")
     text = re.sub(r"\b(e\.g|i\.e|[Ff]igs?|[Ee]qs?|vs|al|cf|etc|[A-Z])\.(?= )", r"\1", text)
-    return [part.strip(" *_") for part in re.split(r"(?<=[.?!])\s+(?=\w|\()|(?<=[:;])\s+(?=[A-Z(]|\w+:)", text)]
+    ends = r"(?<=[.?!])\s+(?=\w|\()|(?<=[:;])\s+(?=[A-Z(]|\w+:)" + r"|(?<=;)\s+" * (kind == "messages")
+    return [part.strip(" *_") for part in re.split(ends, text)]
 
 
 def judged(path, avoided):
@@ -113,7 +115,7 @@ def judged(path, avoided):
             text = re.sub(r"\{[^{}]*\}|%[.\d]*[a-z]\b", "Code", text).strip()
             if not prose_reader.for_a_person(text):
                 continue
-        for i, sentence in enumerate(sentences(text)):
+        for i, sentence in enumerate(sentences(text, kind)):
             words = len(sentence.split())
             judge = words > 3 or kind == "comments" and (words > 1 or i == 0)
             found = flags(sentence, kind == "comments" and i == 0, avoided) if judge else []

@@ -37,7 +37,7 @@ def paragraphs(comments):
     block, start, last = [], 0, (-1, 0, "", True)
     for number, column, text, alone in comments + [(0, 0, "", True)]:
         follows = alone and number == last[0] + 1 and (last[3] or column == last[1])
-        if block and not (follows and text and not re.match(r"[@\\-]|\d\. ", text)):
+        if block and not (follows and text and not re.match(r"[@\\-]|\d\. |\(\d\) ", text)):
             yield start, "comments", " ".join(block)
             block = []
         if text and "SPDX" not in text:

@@ -95,6 +95,11 @@ class Reading(unittest.TestCase):
         self.assertEqual([(line, text) for line, kind, text in found if kind == "messages"],
                          [(11, "the // first part"), (12, "no Code, sorry"), (13, "a fresh one")])
 
+    def test_a_numbered_equation_begins_a_paragraph(self):
+        source = "/// The law:\n///   (1) a = b\n///   (2) b = c\n/// It lies at\n/// (0, 0) of the field.\n"
+        self.assertEqual([(line, text) for line, _, text in prose_reader.cpp(source)],
+                         [(1, "The law:"), (2, "(1) a = b"), (3, "(2) b = c It lies at (0, 0) of the field.")])
+
     def test_a_python_file_has_comments_docstrings_and_messages(self):
         source = ('#!/usr/bin/env python3\n"""A script.\n\nusage: x.py\n"""\n# One line\n# and the next.\n'
                   'def f(name):\n    """Prints\n    a name."""\n    print(f"name {name!r}: " "found")  # trailing\n')
@@ -155,6 +160,11 @@ class Command(unittest.TestCase):
         self.assertTrue(printed.startswith(f"a.cpp:2: messages: [{flags_of(BAD[1])[0]}") or
                         printed.startswith(f"a.cpp:1: comments: [{flags_of(BAD[0])[0]}"), printed)
         self.assertIn(f"] {BAD[0]}\n", printed)
+
+    def test_a_semicolon_ends_a_sentence_of_a_message_alone(self):
+        half = "the file has a word in the place of a number and the scene cannot be loaded"
+        self.assertEqual(self.run_check(self.write("a.cpp", f'f("{half}; {half}");\n'))[0], 0)
+        self.assertEqual(self.run_check(self.write("a.cpp", f"// {half}; {half}\n"))[0], 1)
 
     def test_a_folder_is_read_as_far_as_git_tracks_it(self):
         self.write("a.md", "The master paces the frames.\n")
