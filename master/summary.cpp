@@ -189,7 +189,7 @@ std::string describeRefusals(const Summary& summary) {
     };
     add("refused", timesOf(summary.link.refusedHere));
     add("refused the server", timesOf(summary.link.refused));
-    add("the server refused guests",
+    add("the server refused connections",
         timesOf(summary.haptic ? summary.haptic->refused : haptic_bridge::RefusalCounts{}));
     if (text.empty()) {
         return {};

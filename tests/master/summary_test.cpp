@@ -98,7 +98,7 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "there were no refusals";
     summary.link.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
     summary.haptic->refused[index(haptic_bridge::RefusalCode::secret)] = 7;
-    saysHaptics(summary, "beside links: refused 1 time (busy); the server refused guests 7 times (secret)");
+    saysHaptics(summary, "beside links: refused 1 time (busy); the server refused connections 7 times (secret)");
 }
 
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {
