@@ -264,7 +264,8 @@ void describeResume(host::CommandLine& line, Options& options) {
         .range(0.0, 86400.0);
     line.option("--journal-part", options.partMegabytes, "MiB after which the journal continues in another file")
         .range(1, 1 << 20);
-    line.option("--failure", failure.what, "what failed; written to the journal and to recoveries.jsonl").needs(resume);
+    line.option("--failure", failure.what, "text about the failure; written to the journal and to recoveries.jsonl")
+        .needs(resume);
     line.option("--failed-rank", failure.rank, "rank that failed; leave it out if no rank failed").needs(resume);
     line.option("--failed-how", failure.how, "how it failed: a signal's name, 'status N', hung, broken or disk")
         .needs(resume);
@@ -280,7 +281,7 @@ void describeReplay(host::CommandLine& line, Options& options) {
     const host::Option film =
         line.flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
     film.needs(replay);
-    line.option("--eye", options.filmEye, "what a film shows of two eyes: left, right or anaglyph").needs(film);
+    line.option("--eye", options.filmEye, "eye that a film shows, of two: left, right or anaglyph").needs(film);
 }
 
 }  // namespace

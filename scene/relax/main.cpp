@@ -103,8 +103,8 @@ int main(int argc, char** argv) {
                 "an ESRI ASCII grid of heights, a GeoTIFF or another raster; for a mesh also points, .csv or .xyz")
         .required();
     line.option("OUT", options.out,
-                "the sand at rest: a grid, which may be IN, a GeoTIFF when it ends in .tif; or a TIN as a mesh, "
-                ".ply or .obj")
+                "file for the sand at rest; for a grid, a GeoTIFF (.tif) or else an ESRI ASCII grid, which may be IN; "
+                "for a TIN, a mesh (.ply or .obj)")
         .required();
     line.option("--talus", options.talus, "steepest angle at which sand rests, in degrees, from 0 to below 90")
         .required();
