@@ -134,7 +134,7 @@ TEST_F(Desk, RemembersTheMaterialThatWasAskedFor) {
     EXPECT_EQ(await(answer)["ok"], true);
     const json status = ask("status");
     EXPECT_EQ(status["material"]["talus"], 30);
-    EXPECT_EQ(status["frame"], 42) << "what the session knows";
+    EXPECT_EQ(status["frame"], 42) << "the frame comes from the session";
     EXPECT_EQ(status["edits_waiting"], 0);
 }
 

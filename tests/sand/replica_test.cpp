@@ -215,7 +215,7 @@ TEST(Replica, AFlippedBitShowsInTheRightTile) {
     const std::uint64_t before = terrain.stateHash();
     const auto tiles = terrain.hashTiles().tileHashes();
     terrain.corrupt(70, 40);
-    EXPECT_EQ(terrain.stateHash(), before) << "nobody has looked yet";
+    EXPECT_EQ(terrain.stateHash(), before) << "no audit has run yet";
     terrain.audit(terrain.hashTiles().tileCount());
     EXPECT_NE(terrain.stateHash(), before);
     for (int tile = 0; tile < terrain.hashTiles().tileCount(); ++tile) {

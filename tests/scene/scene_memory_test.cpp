@@ -65,7 +65,7 @@ TEST_F(SceneMemory, OfATinIsThatOfItsVertices) {
               "machine with more memory");
 }
 
-// A word stands in place of a pixel. Reading it would be refused with another message.
+// The file has a word where a pixel should be. Reading the word would be refused with another message.
 TEST_F(SceneMemory, OfARasterIsAskedBeforeItsPixelsAreRead) {
     const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
     const std::string text = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n" + kRest;

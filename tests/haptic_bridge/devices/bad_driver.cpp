@@ -13,8 +13,8 @@ namespace {
 using haptic_bridge::ArmReading;
 using sand::force::Vec3;
 
-/// A faulty arm. It presses into the sand, and after half a second does what `what` names. "press:FILE" keeps pressing
-/// and writes the greatest force that it was pushed with.
+/// A faulty arm. It presses into the sand, and after half a second has the fault `what`. With "press:FILE" it keeps
+/// pressing. Its destructor writes the greatest force that it was pushed with.
 class BadArm : public haptic_bridge::Arm {
 public:
     explicit BadArm(std::string what) : what_(std::move(what)) {

@@ -47,8 +47,8 @@ TEST(SimulatedArm, DecaysFreelyAsItsEquationDoes) {
 }
 
 TEST(SimulatedArm, MovesTheSameHoweverTimeIsCut) {
-    // Under held forces, with a hand, friction and a delay, the arm moves the same if it is read every tick or at odd
-    // times in between.
+    // The arm has held forces, a hand, friction and a delay. It moves the same if it is read every tick or at odd times
+    // in between.
     ArmPhysics physics = touchPreset();
     physics.resolution = 0;
     const auto path = [](double time) { return SimulatedArm::Target{{0.02 * time, 0.01, -0.005}, true}; };
@@ -161,8 +161,8 @@ TEST(SampledLoop, DamperBearsTwiceTheMassOverTheTickAndASixthOfThatWithAWindow) 
     EXPECT_GT(growth(textbookArm(0.5, 1), damper(44, 1)), 1);
 }
 
-/// Returns the largest speed after about three seconds of an arm that is pressed into the sand of Dorjgotov et al.
-/// 2007, with the force of a depth of one radius.
+/// Returns the largest speed of an arm after about three seconds. It is pressed into the sand of Dorjgotov et al. 2007
+/// with the force of a depth of one radius.
 double lastSpeedInSeedSand(double damping) {
     SimulatedArm arm(textbookArm(damping));
     arm.start({0, 0, -0.01 / kPapersScale}, {0, 0, 0.05});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a server gets the sand of its master.
+// Tests that a server gets the sand of its master.
 #include <utility>
 
 #include "haptic_bridge/link/step_ring.hpp"

@@ -17,8 +17,8 @@
 
 namespace test {
 
-inline const std::string kMove = "the secret of those who move";
-inline const std::string kWatch = "the secret of those who watch";
+inline const std::string kMove = "the secret of links that move";
+inline const std::string kWatch = "the secret of links that watch";
 
 /// A folder with a scene and a file with both secrets, as servers and clients need them.
 class LinkSecurityTest : public testing::Test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which secret files are accepted, and the messages about the others.
+// Tests of accepted secret files, and of the messages about all others.
 #include "haptic_bridge/link/secret_file.hpp"
 
 #include "base/input_error.hpp"

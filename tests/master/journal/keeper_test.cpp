@@ -86,7 +86,7 @@ TEST_F(Keeper, ARequiredJournalThatCannotBeWrittenEndsTheSession) {
     ASSERT_TRUE(showFrame());
     const FileLimit limit(std::filesystem::file_size(journal()) + 9);
     EXPECT_THROW(showFrame(), master::DiskFailure);
-    EXPECT_EQ(terrain_.stepNumber(), 1U) << "what is not on disk is not applied";
+    EXPECT_EQ(terrain_.stepNumber(), 1U) << "a step that is not on disk is not applied";
     expectWhole(1);
 }
 

@@ -212,7 +212,7 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
         if (guest.await<haptic_bridge::Start>()) {
             guest.send(haptic_bridge::Ready{});
-            (void)guest.await<haptic_bridge::EditRequest>();  // and then closes the link
+            (void)guest.await<haptic_bridge::EditRequest>();  // the server then closes the link
         }
     }));
     master::LiveSteps live = stepsFrom(server.address());

@@ -68,8 +68,8 @@ VertexSand layerWithAHole() {
 
 sand::tin::SurfaceView viewOf(const VertexSand& layer) { return {layer.triangles(), layer.heights()}; }
 
-/// Lowest and highest height at a place, over the planes of all triangles that contain it [cell], and the steepest of
-/// their slopes, summed over both axes.
+/// Lowest and highest height at a place, over the planes of all triangles that contain it [cell]. `slope` is the
+/// steepest of their slopes, summed over both axes.
 struct Found {
     double lowest = 1e30, highest = -1e30, slope = 0;
 };

@@ -64,8 +64,8 @@ struct Agreement {
     double cells, fine, coarse;  // on cells, and on TINs whose points are one and two cells apart
 };
 // A ring far outside the outline contains the same sand on both. Control points of an upright tool are in the side of
-// its cut, which is a slope as wide as the distance of cells or points. A height there depends on the exact position. A
-// sphere has no such cut.
+// its cut. This side is a slope as wide as the distance of cells or points. A height there depends on the exact
+// position. A sphere has no such cut.
 constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.43, 16.33},
                                  Agreement{sand::ForceLaw::repulse, "circle", 20.23, 20.00, 19.01},
                                  Agreement{sand::ForceLaw::repulse, "ellipse", 16.16, 16.59, 17.07},

@@ -99,7 +99,7 @@ TEST(RepulseOnPaper, ShrinksWithTheShareOfTheRingOverTheField) {
     EXPECT_NEAR(half.stiffness, kSteep / 2, kPieces * kSteep);
     // The drag is ten times the push.
     EXPECT_NEAR(half.drag, 10 * half.push.z, 1e-9);
-    // Beyond a chord at distance R lies a segment of (4π/3 - √3) R², which is 0.26067 of the ring.
+    // The segment beyond a chord at distance R has an area of (4π/3 - √3) R², which is 0.26067 of the ring.
     expectVec(figureOf(level, {kRadius, kMiddle, 0}).push, {0, 0, 0.73933 * kWhole}, kPieces * kWhole);
     expectVec(figureOf(level, {-kRadius, kMiddle, 0}).push, {0, 0, 0.26067 * kWhole}, kPieces * kWhole);
     expectVec(figureOf(atTheRim(0, 0), {0, 0, 0}).push, {0, 0, kWhole / 4}, kPieces * kWhole);

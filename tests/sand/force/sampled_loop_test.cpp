@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device with the force model in a loop of a thousand ticks per second: which loops are stable, and how much energy
-// the sand gives and takes.
+// Tests of a device with the force model in a loop of a thousand ticks per second. They find which loops are stable,
+// and how much energy the sand gives and takes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,8 +43,9 @@ bool settles(Between between, double stiffness) {
     return fastest < 1e-3;
 }
 
-// The interpolation of Purchart et al. 2012 is a delay of a frame of the sand, and holding one of half: a device of
-// b = 0.5 bears 2 b / T of either's T, or of the local model's, which is the tick.
+// A device of damping b bears a spring of b / D if the force has a delay of D [s]. The interpolation of Purchart et al.
+// 2012 is a delay of a frame of the sand. Holding is a delay of half a frame, and the local model of half a tick. A
+// device of b = 0.5 therefore bears 30, 60 and 1000 N/m.
 TEST(SampledLoop, BearsAsMuchAsWhatLiesBetweenSurfacesAllows) {
     EXPECT_TRUE(settles(Between::interpolate, 28));
     EXPECT_FALSE(settles(Between::interpolate, 35));

@@ -79,8 +79,8 @@ std::uint64_t hashOf(const Variant& variant) {
     return terrain.stateHash();
 }
 
-// Each variant has a kernel of its own, or uses doubles that plain sand does not have: for the band, the limits of a
-// layer, or the two lengths of a cell. They were accepted in the same way as the session hashes.
+// Each variant has a kernel of its own, or uses doubles that plain sand does not have. These are doubles for the band,
+// the limits of a layer, or the two lengths of a cell. The hashes were accepted in the same way as the session hashes.
 TEST(Golden, BandRockWallsAndLongCellsAreTheSameEverywhere) {
     using enum sand::Rim;
     constexpr std::int32_t kOne = sand::kUnitsPerCell;

@@ -216,7 +216,7 @@ std::int64_t raisedWhere(const sand::HeightField& field, const auto& side) {
 TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
     for (const ToolKind kind : {rectangle, ellipse, footprint}) {
         sand::HeightField field(90, 90, 1.0);
-        const Displacement tool(shapeOf(kind, 16), heading(90));  // its long side to the east
+        const Displacement tool(shapeOf(kind, 16), heading(90));  // the long side points east
         const ProbePoint from{probes(30), probes(45), probes(14)}, to{probes(50), probes(45), probes(14)};
         tool.drag(field, Rim::closed, nullptr, from, from);
         const std::int64_t imprint = raisedWhere(field, [](double, double) { return true; });

@@ -77,7 +77,7 @@ TEST(TinErosion, EverySweepKeepsVolumeAndExtremesAndLowersTheEnergy) {
 
 TEST(TinErosion, TwoVerticesDoNotSwapForEver) {
     // Large stars lie on both sides of a small one, or small stars on both sides of a large one. With one step for all
-    // edges, the sand would take for ever to rest.
+    // edges, the sand would never come to rest.
     for (const std::int32_t apart : {1, 16, 400, 1900}) {
         sand::tin::Mesh mesh(4000, 4000);
         const Vertex one = mesh.insert({2000, 2000});
@@ -164,7 +164,7 @@ void restoreWhileTheMeshChanges(Rim rim) {
     std::mt19937 random(17);
     std::vector<Vertex> moved;
     for (int step = 0; step < 60; ++step) {
-        VertexSand other = restored(layer);  // its slots differ, and all its sand is awake
+        VertexSand other = restored(layer);  // the slots of `other` differ, and all its sand is awake
         Erosion fresh(other, kSlide, kStart, rim);
         std::mt19937 same = random;
         const auto edit = [](VertexSand& edited, std::mt19937& chances) {
@@ -221,7 +221,7 @@ TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
     Erosion erosion(layer, kTalus, kTalus);
     std::vector<Vertex> moved;
     erosion.sweep(layer, 100'000, &held, moved);
-    EXPECT_TRUE(erosion.settled()) << "a tool that is held still pumps sand for ever";
+    EXPECT_TRUE(erosion.settled()) << "a tool that is held still pumps sand without end";
     EXPECT_LE(highestUnder(), most);
     EXPECT_GT(highestUnder(), 0.9 * underside) << "no sand was held back";
     moved.clear();

@@ -126,8 +126,8 @@ TEST(TinOpenRim, NoSandComesInFromBeyond) {
 
 TEST(TinOpenRim, LevelSandThatLiesBelowEveryTalusFallsFromTheRim) {
     VertexSand layer = layerOf(Kind::jittered, 16);
-    // The sand is so low that it is flatter than the talus from the rim to the next vertex, at least a quarter of a
-    // cell away.
+    // The next vertex is at least a quarter of a cell from the rim. The sand is so low that the slope between them is
+    // flatter than the talus.
     tin_piles::fill(layer, [](double, double) { return 0.01; });
     Erosion erosion(layer, kTalus, kTalus, Rim::open);
     std::vector<Vertex> moved;

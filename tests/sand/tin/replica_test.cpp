@@ -223,7 +223,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     }
     ASSERT_LT(number, 4000U);
     const int rested = verticesOf(terrain);
-    Replica joined(scene());  // its coarsening has not examined any vertex yet
+    Replica joined(scene());  // the coarsening of `joined` has not examined any vertex yet
     joined.decodeState(terrain.encodeState());
     sand::Tuning softer = terrain.rules().tuning();
     softer.threshold /= 4;
@@ -302,7 +302,7 @@ TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
     while (number < 4000 && !terrain.settled()) {
         terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     }
-    ASSERT_TRUE(terrain.settled()) << "a tool that is held still must not pump sand for ever";
+    ASSERT_TRUE(terrain.settled()) << "a tool that is held still must not pump sand without end";
     (void)terrain.takeChange();
     const auto held = terrain.copySand()->encode();
     terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});

@@ -58,7 +58,7 @@ TEST_F(Import, PixelsWithoutDataAreWalls) {
     EXPECT_EQ(scene.georeference.west, 1010);
     ASSERT_NE(scene.ground, nullptr);
     EXPECT_TRUE(scene.ground->isWall(1, 1));
-    EXPECT_TRUE(scene.ground->isWall(2, 0)) << "not a number is no data";
+    EXPECT_TRUE(scene.ground->isWall(2, 0)) << "NaN means no data";
     EXPECT_FALSE(scene.ground->isWall(0, 0));
 }
 

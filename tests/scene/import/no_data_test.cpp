@@ -51,7 +51,7 @@ TEST_F(NoData, EitherKindRefusesAnEsriGridWithTheSameLine) {
         EXPECT_TRUE(load(terrainOf(kind, "t.asc")).ground->isWall(1, 0)) << kind;
     }
     EXPECT_EQ(refusedAs("dem", "1 2 3\n4 abc 6\n", "", "t.dat"), "t.dat:7: a height must be a finite number, got 'abc'")
-        << "whatever the file's name";
+        << "the file's name does not matter";
 }
 
 TEST_F(NoData, TextsInWhichAWordWouldBeZeroAreNotOpened) {

@@ -56,7 +56,7 @@ protected:
     }
 
     /// Makes a TIN of a terrain at each of several distances `widest` [cell]. Expects that no cell of the raster is
-    /// farther from its height than max_error. `heights` are row by row from the north; NaN is no data.
+    /// farther from its height than max_error. `heights` are row by row from the north; NaN means no data.
     void expectWithin(const std::string& terrain, const std::vector<double>& heights, double maxError) {
         for (const double widest : {0.0, 1.0, 3.0, 7.0, 16.0, 500.0}) {
             const scene::Scene plain = load(terrain);
