@@ -83,8 +83,8 @@ void wakePunctually() {
         return;  // the user has chosen another scheduling policy
     }
     // Since Linux 6.12, a waking thread with a shorter slice runs before threads with longer slices. Older kernels
-    // ignore the slice. Measured with twelve ranks beside compilers that kept two cores busy: the p50 of the swap skew
-    // is 170 us with the short slice and 3200 us without it.
+    // ignore the slice. This was measured with twelve ranks beside compilers that kept two cores busy. The p50 of the
+    // swap skew is 170 us with the short slice and 3200 us without it.
     SliceOfTime slice;
     slice.nice = getpriority(PRIO_PROCESS, 0);
     slice.runtime = 100'000;

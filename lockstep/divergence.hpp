@@ -23,7 +23,7 @@ struct Divergence {
         sand::CellRect cells;    // cells of that tile
         int cellsDiffering = 0;  // in that tile; counted for the first odd rank and for others with the same tile
     };
-    /// How the right sand was found.
+    /// The source of the right sand.
     enum class Judge : std::uint8_t {
         majority,  // more than half of all ranks have the right hash
         journal,   // no majority; the journal gave the right sand

@@ -13,7 +13,7 @@ namespace lockstep {
 /// A number in shared memory by which threads wake each other, also across processes. Each ring adds 1 to the number.
 ///
 /// Any number of processes and threads may ring and sleep. No ring is lost if a thread first reads the number and then
-/// looks for a message: sleep() returns at once if the bell has rung in between. Uses a futex of Linux.
+/// looks for a message. If the bell has rung in between, sleep() returns at once. Uses a futex of Linux.
 class Doorbell {
 public:
     /// `rings` must outlive the doorbell.
@@ -32,8 +32,8 @@ private:
 /// Doorbells of the ranks on this host.
 ///
 /// MPI can only be polled for a message, and a dozen ranks that poll on two cores take a fifth of both cores. Between
-/// ranks of one host, the sender therefore rings after its message, and the receiver sleeps until the ring. A rank has
-/// no bell here if it runs on another host, if it is alone on its host, or if there is no room in memory.
+/// ranks of one host, the sender therefore rings after its message, and the receiver sleeps until the ring. A rank on
+/// another host has no bell here. A rank that is alone on its host, or finds no room in memory, has no bell either.
 ///
 /// The bells are in the system's shared memory and not in an MPI window. Open MPI 4.1 crashes with a window if the
 /// ranks of a host communicate over TCP.

@@ -28,8 +28,8 @@ enum class Verdict : std::uint8_t {
 /// Beginning and end of every frame, on every rank.
 ///
 /// A frame begins with one message from the master to all ranks. It ends at the barrier, before the swap. The barrier
-/// also proves that all replicas are equal: each rank sends its Arrival with its hashes, the master compares them, and
-/// every rank gets the verdict.
+/// also proves that all replicas are equal. Each rank sends its Arrival with its hashes, the master compares the
+/// hashes, and every rank gets the verdict.
 ///
 /// All messages are point-to-point, and the master polls for them. Inside a broadcast or an allreduce of MPI, a rank
 /// that has stopped looks the same as the ranks that wait for it. The master would hang there, too.
@@ -88,7 +88,7 @@ public:
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// Sets what the watchdog names while the master waits for no rank, such as "its journal". `what` must stay valid.
     void busyWith(const char* what) { busyWith_ = what; }
-    static constexpr const char* kPictures = "pictures";  // what the watchdog names at first
+    static constexpr const char* kPictures = "pictures";  // named by the watchdog before the first call
 
     /// Returns the watchdog. It also watches waits outside this class, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }

@@ -12,7 +12,7 @@ constexpr std::size_t kFewestFrames = 30;  // a rank is judged by at least this 
 constexpr double kLeastShare = 0.25;
 constexpr double kByFar = 2;  // times as often as the next rank
 
-/// How often and how long the wall waited for one rank.
+/// Number and total time of the wall's waits for one rank.
 struct Waits {
     double count = 0, ms = 0;
 };

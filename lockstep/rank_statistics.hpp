@@ -45,8 +45,8 @@ public:
         Rank();
         std::uint64_t agreed = 0, differed = 0;  // frames
         std::uint64_t healed = 0;                // times that the rank was healed
-        Statistics keptMs;  // [ms] that the wall waited for this rank, for each frame in which it came last
-        Statistics swapUs;  // [us] after the first swap of the frame
+        Statistics keptMs;                       // [ms], the wall's wait in each frame in which this rank came last
+        Statistics swapUs;                       // [us] after the first swap of the frame
     };
     [[nodiscard]] const std::vector<Rank>& ranks() const { return ranks_; }
     [[nodiscard]] std::uint64_t frames() const { return frames_; }

@@ -28,7 +28,7 @@ struct DeskOptions {
     bool readInput = false;  // reads commands from standard input; its end stops the session
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
     lockstep::Overlays layers;                            // shown from the start
-    tracking::Source tracker;                             // where the head's pose comes from
+    tracking::Source tracker;                             // source of the head's pose
 };
 
 /// Carries out and answers the commands that operators give a running session, on standard input or through its control

@@ -45,8 +45,8 @@ struct SessionOptions {
 
 /// Returns `options` adapted to their recording, if there is one.
 [[nodiscard]] SessionOptions completed(SessionOptions options);
-/// Create the parts of a session that its options choose: the steps of a hand or of a recording, and the sand of the
-/// scene or of the resumed session.
+/// Create the parts of a session that its options choose. stepsOf() returns the steps of a hand or of a recording, and
+/// sandOf() the sand of the scene or of the resumed session.
 [[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene);
 [[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene);
 

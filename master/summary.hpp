@@ -59,7 +59,7 @@ struct Summary {
     struct Journal {
         std::string policy = "off", state = "off";
         std::uint64_t parts = 0;            // written so far
-        lockstep::Statistics checkpointMs;  // [ms] that each checkpoint delayed the frame loop
+        lockstep::Statistics checkpointMs;  // [ms], delay of the frame loop by each checkpoint
         std::uint64_t checkpointsFailed = 0;
         std::uint64_t checkpointsBeyond = 0;  // of later steps than the journal's end, which has lost steps
         std::uint64_t stands = 0;             // times that the sand was stopped because the disk was full

@@ -12,8 +12,8 @@
 
 namespace master {
 
-/// Source of each frame's view: the eyes of the wall file's viewer or of a tracked head, the place of the sand in the
-/// room, and the test pattern or overlays that are shown.
+/// Source of each frame's view. A view has the eyes of the wall file's viewer or of a tracked head, and the place of
+/// the sand in the room. It also has the test pattern or the overlays.
 class ViewSource {
 public:
     /// Throws base::InputError if the tracker cannot be opened.

@@ -20,7 +20,7 @@ struct Material {
     double dryTalus = 34;            // [deg]
     std::optional<double> wetTalus;  // [deg]; nullopt: 45, or dryTalus if that is steeper
     double humidity = 0;             // w, from 0 (dry) to 1
-    double cohesionLength = 0;       // [scene unit], how high a bank stands at w = 1
+    double cohesionLength = 0;       // [scene unit], height of the step that sand bears at w = 1
     double band = 0.001;             // share of the threshold beyond which sand at rest starts to slide
     double settlingSeconds = 0.1;    // until sand beside the tool rests
     double toolRadius = 0.01;        // [scene unit], half of its length; default: the sphere of Dorjgotov et al. 2007

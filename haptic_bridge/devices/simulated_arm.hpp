@@ -11,8 +11,8 @@
 
 namespace haptic_bridge {
 
-/// A simulated arm, for tests and for users without an arm. It has mass, damping and Coulomb friction on each axis, an
-/// encoder, a delay, a motor with a greatest force, end stops, and a hand that follows a path.
+/// A simulated arm, for tests and for users without an arm. Each axis has mass, damping and Coulomb friction. The arm
+/// also has an encoder, a delay, a motor with a greatest force, end stops, and a hand that follows a path.
 ///
 /// The caller passes the time, so the arm works with a virtual clock and with the host's clock. Between two calls it
 /// moves exactly as its equation says under the held forces. Used by one thread.

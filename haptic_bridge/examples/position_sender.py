@@ -92,7 +92,7 @@ def hand(seconds):
     """Replace this by a reading of your device.
 
     x runs east and y north from the centre of the field; 1 is half of its shorter side. z is the height of the tool's
-    centre above the sand as the session began, in tool radii: at 1 the tool touches the sand, at 0 half of it is below.
+    centre above the sand as the session began, in tool radii. At 1 the tool touches the sand; at 0 half of it is below.
     This example draws circles at z = 0, and lifts the tool for the last quarter of each.
     """
     turn = seconds / 2

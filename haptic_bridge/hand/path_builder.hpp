@@ -22,7 +22,7 @@ struct HandSample {
 ///
 /// A step is engaged or hovering as a whole. A path therefore ends where the samples change between the two, and the
 /// next step takes the rest. Points at which the hand rests are left out. A path that is too long for a step keeps its
-/// first and its last point, and points at even distances in between, in the order of time.
+/// first and its last point, and evenly chosen points in between. The points stay in the order of time.
 ///
 /// A server that is late catches up with steps that hold up to kMostPeriods periods of the hand. They hold no more
 /// because a path costs time by its length: one path of all waiting samples would make the wall later still. If the

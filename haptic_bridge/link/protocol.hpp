@@ -168,7 +168,7 @@ struct NeedState {
     std::uint64_t stepNumber = 0, stateHash = 0;  // of the server's replica; 0 and 0 ask for a State
     friend bool operator==(const NeedState&, const NeedState&) = default;
 };
-/// One step of the sand. The master gets all steps; watchers get those that load no sand.
+/// One step of the sand. The master gets all steps. Watchers get only the steps that load no sand.
 struct StepMessage {
     std::int64_t serverTimeNs = 0;  // server's clock at the step's last hand sample, or when it made the step
     std::uint64_t stateHash = 0;    // of the server's replica after the step

@@ -12,8 +12,8 @@
 
 namespace haptic_bridge {
 
-/// Returns the address by which unauthenticated connections are counted: an IPv4 address, also if it is mapped into
-/// IPv6, or the /64 network of an IPv6 address. One machine may have as many addresses of such a network as it likes.
+/// Returns the address by which unauthenticated connections are counted. This is an IPv4 address, also if it is mapped
+/// into IPv6, or the /64 network of an IPv6 address. One machine may use every address of such a network.
 [[nodiscard]] boost::asio::ip::address guestOf(const boost::asio::ip::address& address);
 
 /// Limits how often connections may come from one address, as guestOf() returns it: kBurst at once, then kPerSecond. An

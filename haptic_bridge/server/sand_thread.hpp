@@ -17,9 +17,9 @@ enum class Pace : std::uint8_t { realtime, fast };
 
 /// The sand thread. Its StepMaker makes steps when they are due, and it carries out commands between them.
 ///
-/// In real time the StepClock decides when a step is due. The step takes the samples that the force thread has queued;
-/// if the hand is far ahead of the wall, only a part of them (PathBuilder). Under the fast pace there is no clock:
-/// steps come as fast as the wall's window allows, with the samples of a VirtualFeed.
+/// In real time the StepClock decides when a step is due. The step takes the samples that the force thread has queued.
+/// If the hand is far ahead of the wall, the step takes only a part of them (PathBuilder). Under the fast pace there is
+/// no clock: steps come as fast as the wall's window allows, with the samples of a VirtualFeed.
 class SandThread {
 public:
     using Output = StepMaker::Output;  // callbacks, called on the sand thread

@@ -102,8 +102,8 @@ void StepMaker::collect() {
     dropped_ = path_.dropped() + hand_.overflow();
 }
 
-/// Returns when the last sample of the step was read [ns, the host's clock]; 0 if the step has no sample, or if the
-/// samples have another clock.
+/// Returns the time at which the last sample of the step was read [ns, the host's clock]. Returns 0 if the step has no
+/// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
     if (std::exchange(liftFirst_, false)) {
         return 0;

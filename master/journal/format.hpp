@@ -37,7 +37,7 @@ struct JournalResumed {
     std::uint64_t frame = 0;  // last frame in the journal before
     JournalEnd sand;
     std::int64_t cutBytes = 0;  // [byte], length of the torn record that was cut off before this one
-    std::string failure;        // what had failed; empty if unknown
+    std::string failure;        // text that says what had failed; empty if unknown
 };
 
 /// A piece of the haptic server's tick track.

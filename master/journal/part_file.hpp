@@ -26,7 +26,7 @@ public:
     /// when it was read [byte]. Waits kPatience for another process that writes the file.
     ///
     /// Throws std::runtime_error if the other process continues, if the file has changed since it was read, or if the
-    /// disk refuses. These errors are no base::InputError, because a later try may succeed.
+    /// disk refuses. It does not throw base::InputError, because a later try may succeed.
     static PartFile open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen,
                          const Pause& pause = sleepFor);
     /// Waits kPatience for another process that writes the file. Throws std::runtime_error if the other process

@@ -34,7 +34,7 @@ struct RestoredSand {
 struct ResumedSession {
     scene::Scene scene;
     scene::Material material;  // with the operator's changes
-    JournalPlace place;        // where its journal continues
+    JournalPlace place;        // place at which the journal continues
     std::uint64_t frame = 0;   // last frame in the journal
     std::uint32_t epoch = 0;   // last epoch in the journal
     std::uint64_t edits = 0;

@@ -54,7 +54,7 @@ private:
         int descriptor = -1;
         std::chrono::steady_clock::time_point until;  // the connection is closed then, unless it waits for an answer
         std::string in, out;
-        bool waiting = false;  // its line has been taken
+        bool waiting = false;  // whether the client's line has been read
     };
 
     [[nodiscard]] std::string open();

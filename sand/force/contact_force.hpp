@@ -13,7 +13,7 @@ namespace sand::force {
 /// Depth and slope of the sand in the ring from one to two reaches around the tool, for the law of Dorjgotov et al.
 /// 2007. The tool has pushed aside the sand under it.
 struct Contact {
-    Dual depth;  // how far the tool's lowest point is below the ring's mean height [scene unit]; negative above it
+    Dual depth;  // depth of the tool's lowest point below the ring's mean height [scene unit]; negative above it
     Dual slopeX, slopeY;  // slope of the ring's plane
     double share = 0;     // share of the ring that lies over the field, 0 to 1
 

@@ -17,6 +17,7 @@
 ///   (2) F = (1/N) Σ (F_ri + F_pi) + F_G                                                        [reconstructed]
 ///   (7, 8) F_G = (v_x, v_y, 0) F_M, v = P_old − P_act per frame: the gel effect                [as printed]
 ///   (1) F_s = −mu F_n (v_x, v_y, 0)/v_mu, with F_n = (1/N) Σ |F_pi|                            [an option]
+///
 /// The text also lets friction grow with the speed, and with a coefficient mu of the material, but gives no formula.
 /// F_s is this project's choice: Coulomb's friction mu F_n at the speed v_mu, proportional to the speed below and
 /// above.

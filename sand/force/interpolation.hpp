@@ -9,11 +9,13 @@ namespace sand::force {
 
 /// Equation 9 of Purchart et al. 2012, reconstructed from its prose: F_out = F_old + (F − F_old) min(it/itp, 1).
 ///
-/// F is the law's at the last surface's arrival, F_old the one before. `it` counts the haptic frames since, this
-/// one included, `itp` those between the two surfaces before: 16 or 17 at 60 and 1000 a second, the rates of both
-/// papers. It is a delay of a whole frame of the sand. Printed, F_old is F before the update; where the last frame was
-/// short that jumps by what it had left to go, so that only `literal` starts there and otherwise F_old is what was sent
-/// last.
+/// F is the law's response when the last surface arrived, and F_old its response when the surface before arrived. `it`
+/// is the number of haptic frames since then, including this one. `itp` is the number of haptic frames between the
+/// arrivals of the last two surfaces. At 60 and 1000 per second, the rates of both papers, it is 16 or 17. The
+/// interpolation is a delay of a whole frame of the sand.
+///
+/// As printed, F_old is F before the update. After a short frame, the output has not yet reached this F, and jumps to
+/// it. Only `literal` does that. Otherwise F_old is the response that was sent last.
 class Interpolation {
 public:
     /// Returns the response of this tick. Call it once per tick. `next` is read only if `replaced` or `forget` is true.

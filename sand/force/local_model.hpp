@@ -18,8 +18,8 @@ namespace sand::force {
 /// slowly. The force therefore does not jump.
 ///
 /// Sand that a press has raised answers a frame late. It acts as a spring with a delay, which gives energy to the hand
-/// because it pushes back late. A change of the force along the tool's motion therefore waits until it is no longer
-/// along the motion, or takes ten times as long (docs/figures.md has the energies).
+/// because it pushes back late. A change of the force along the tool's motion therefore takes up to ten times as
+/// long (docs/figures.md has the energies).
 class LocalModel {
 public:
     /// Returns the gauges at `place` at `time` [s]. `replaced` says that the surface is not that of the last call.

@@ -108,7 +108,7 @@ void Erosion::markAroundMoved(const CellRect& blocks) {
                 ++x;
             }
             if (x > first) {
-                // Their fluxes also change the blocks beyond their eastern and northern faces.
+                // The fluxes of a block also change the blocks beyond its eastern and northern faces.
                 moved_.add(CellRect{first, y, x + 1, y + 1}.clippedTo(all));
                 moved_.add(CellRect{first, y, x, y + 2}.clippedTo(all));
             }

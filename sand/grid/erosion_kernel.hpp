@@ -11,11 +11,11 @@ namespace sand::grid {
 
 inline constexpr int kMaxBlock = 128;    // [cell], side of the largest block
 inline constexpr int kMaxPatch = 512;    // [cell], longest row that a kernel handles at once
-inline constexpr int kKernelMargin = 8;  // [cell], how far beyond its cells a kernel may read heights
+inline constexpr int kKernelMargin = 8;  // [cell], width of the margin that a kernel may read around its cells
 
 /// Mask of ones if sand slid in a cell, or 0 if it did not. Sand slid in a cell if some flowed through one of its faces
-/// in the last sweep. The mask is as wide as a height, because g++ compiles a loop with numbers of both widths for 32
-/// cells at once, and patches are often 8 cells wide.
+/// in the last sweep. The mask is as wide as a height. With narrower masks, g++ compiles the loop for 32 cells at once,
+/// and patches are often 8 cells wide.
 using Sliding = std::int32_t;
 
 /// Constants of the isotropic law for the faces across one axis. sand/grid/erosion.hpp states the law.
@@ -44,7 +44,7 @@ struct FluxPatch {
     const Sliding* sliding;        // at cell (0,0) of the field, with ghost cells around; null without a band
     std::ptrdiff_t slidingStride;  // [cell]
     // Limits over `cells` and one more cell on every side, row by row; null without limits.
-    const std::int32_t* room;  // what each cell may receive through one face [unit]
+    const std::int32_t* room;  // most that each cell may receive through one face [unit]
     const std::int32_t* sand;  // thickness of the sand in each cell [unit]; a face gives at most a quarter
 };
 

@@ -16,7 +16,7 @@ class FluxLimits {
 public:
     std::vector<std::int32_t> heights;  // [unit], with walls raised above everything; only with a ground
     std::vector<std::int32_t> sand;     // thickness of the sand [unit]; only with a ground
-    std::vector<std::int32_t> room;     // what a cell may receive through one face [unit]
+    std::vector<std::int32_t> room;     // most that a cell may receive through one face [unit]
 
     FluxLimits(const HeightField& field, const CellRect& cells, const Ground* ground, const Obstacle* obstacle);
 

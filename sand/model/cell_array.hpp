@@ -48,9 +48,9 @@ public:
     [[nodiscard]] std::size_t bytes() const { return cells_.size() * sizeof cells_[0]; }
 
 private:
-    // A row has three parts: a vector of padding whose last cell is the western ghost cell, the cells rounded up to
-    // whole vectors, and another vector of padding. The eastern ghost cell follows the last cell. It lies in that
-    // padding if the cells fill whole vectors.
+    // A row has three parts: a vector of padding, the cells rounded up to whole vectors, and another vector of padding.
+    // The western ghost cell is the last cell of the first padding. The eastern ghost cell follows the last cell. It
+    // lies in the second padding if the cells fill whole vectors.
     static constexpr int kPadding = 16;  // [cell], one cache line
 
     [[nodiscard]] std::ptrdiff_t offset(int row) const { return (row + std::ptrdiff_t{1}) * stride() + kPadding; }

@@ -115,9 +115,9 @@ public:
         // The product stays below 2^32: `ahead` is at most two cells long, and the ring is at most 2^20 away.
         return isRound(shape_.kind) ? offset.x * ahead.x + offset.y * ahead.y : longShare(offset, ahead);
     }
-    /// Returns whether place `a` comes before place `b` in an order that turns with the tool: from back to front along
-    /// the heading, then from right to left. A mirrored tool reverses right and left. Call it only if hasHeading();
-    /// places around a round tool are ordered by rows instead.
+    /// Returns whether place `a` comes before place `b` in an order that turns with the tool. The order is from back to
+    /// front along the heading, then from right to left. A mirrored tool reverses right and left. Call it only if
+    /// hasHeading(); places around a round tool are ordered by rows instead.
     [[nodiscard]] bool before(const Offset& a, const Offset& b) const;
     [[nodiscard]] bool hasHeading() const { return !isRound(shape_.kind); }
 

@@ -13,11 +13,12 @@ using Points = std::vector<std::array<double, 3>>;
 /// Reads lines of x, y and z, separated by a comma, a semicolon, or blanks. # begins a comment. The first line may be a
 /// title, which holds no number. A point that the file repeats is returned once.
 ///
-/// Throws base::InputError with file, line and value for: a value that is not a finite number, a title with degrees, a
-/// line without exactly three values, two heights at one place, fewer than three points, points that all lie on one
-/// line, and more than kMostPoints points.
+/// Throws base::InputError with file, line and value for:
+/// - a value that is not a finite number, a title with degrees, a line without exactly three values,
+/// - two heights at one place, fewer than three points, points that all lie on one line,
+/// - more than kMostPoints points.
 [[nodiscard]] Points readPoints(const std::filesystem::path& file);
 
-inline constexpr std::size_t kMostPoints = 50'000'000;  // they take 2.4 GB while they are read
+inline constexpr std::size_t kMostPoints = 50'000'000;  // reading so many points takes 2.4 GB
 
 }  // namespace scene

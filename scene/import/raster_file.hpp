@@ -16,8 +16,9 @@ class Importer;
 /// an ending, names in .txt, and files that are not regular files are ESRI ASCII grids, as for readRaster().
 void checkRasterName(const std::filesystem::path& file);
 
-/// Reads heights in any format. readEsriGrid() reads a file if it holds an ESRI ASCII grid, if its name ends in .asc,
-/// .txt or has no ending, or if it is not a regular file. Importer::readDem() reads all other files.
+/// Reads heights in any format. readEsriGrid() reads a file if it holds an ESRI ASCII grid, or if it is not a regular
+/// file. It also reads a file if its name ends in .asc or .txt, or has no ending. Importer::readDem() reads all other
+/// files.
 ///
 /// A text file loads GDAL only if `withReference` is true and a .prj file beside it has a reference system. The grid
 /// then has units, and degrees are refused. `check` may be empty. Throws base::InputError.
@@ -33,9 +34,9 @@ void checkRasterName(const std::filesystem::path& file);
                                          const RasterCheck& check = {});
 
 /// Writes a raster in the format that its name stands for. A GeoTIFF gets units, reference system, and heights in its
-/// own unit. Any other name gets an ESRI ASCII grid with heights in the unit of lengths; its reference system, if it
-/// has one, goes into a .prj file beside it. An existing file is replaced when everything is written. Throws
-/// base::InputError.
+/// own unit. Any other name gets an ESRI ASCII grid with heights in the unit of lengths. If such a grid has a
+/// reference system, it goes into a .prj file beside the grid. An existing file is replaced when everything is written.
+/// Throws base::InputError.
 void writeRaster(const EsriGrid& grid, const std::filesystem::path& file);
 
 }  // namespace scene

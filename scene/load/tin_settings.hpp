@@ -27,9 +27,9 @@ struct TinCells {
 /// start if that is larger.
 void keepUsual(const host::TomlTable& tin, sand::tin::TinStart& start);
 
-/// Throws base::InputError if the squares with which a tool refines the mesh are smaller than a cell, and there are
-/// more of them than the scene may have vertices. Each of them costs time in every step, whether or not it gets a
-/// vertex. Tool and material must have been read.
+/// Throws base::InputError if the squares with which a tool refines the mesh are too many. This is so if they are
+/// smaller than a cell, and if there are more of them than the scene may have vertices. Each of them costs time in
+/// every step, whether or not it gets a vertex. Tool and material must have been read.
 void requireSpacing(const host::TomlTable& file, const Scene& scene);
 
 }  // namespace scene

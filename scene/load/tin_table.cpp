@@ -203,7 +203,7 @@ void readTin(const host::TomlTable& file, Scene& scene) {
     }
     requireRange(file, highest, field.columns(), field.rows(), field.unit());
     sand::tin::TinStart start = followed(*tin, scene);
-    scene.ground = nullptr;  // its walls are holes of the TIN
+    scene.ground = nullptr;  // the ground's walls are holes of the TIN
     scene.rules.ground = 0;
     scene.beginAs(std::move(start));
 }

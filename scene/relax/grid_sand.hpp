@@ -42,9 +42,10 @@ struct GridSand {
     [[nodiscard]] EsriGrid toGrid(const EsriGrid& before) const;
 };
 
-/// Makes sand of a grid. Throws base::InputError with file, line, value and range for: a grid without any data, cells
-/// more oblong than 1 to 1000, heights that do not fit, a talus of fewer than kLeastThreshold units, and bedrock that
-/// does not match or is above the surface.
+/// Makes sand of a grid. Throws base::InputError with file, line, value and range for:
+/// - a grid without any data, cells more oblong than 1 to 1000, heights that do not fit,
+/// - a talus of fewer than kLeastThreshold units,
+/// - bedrock that does not match or is above the surface.
 [[nodiscard]] GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSettings& material);
 
 }  // namespace scene::relax

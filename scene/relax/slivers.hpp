@@ -17,7 +17,7 @@ inline constexpr std::int64_t kFlat = 64;            // ratio of a triangle's lo
 /// Returns the slots of the slivers along the sides of a field, each once.
 ///
 /// A survey's points along a straight rim lie a few lattice steps off the rim and off each other. The triangles between
-/// them and the field's side are so flat that sand on them does not slide as elsewhere, and does not come to rest. Such
+/// them and the field's side are very flat. Sand on them does not slide as elsewhere, and does not come to rest. Such
 /// a triangle has its longest edge at the boundary. All its corners are within kNearRim steps of one side, and it is
 /// flatter than 1 : kFlat. The triangle beyond a sliver is then at the boundary, and is inspected too.
 [[nodiscard]] std::vector<std::int32_t> sliversAtRim(const sand::tin::Triangles& mesh);

@@ -59,14 +59,15 @@ struct Thinned {
     std::vector<std::pair<sand::tin::Vertex, sand::tin::Vertex>> outline;  // outline of the holes: edges between points
 };
 
-/// Chooses the points of a raster until `goal` is met. Throws base::InputError for: a single row or column, cells more
-/// oblong than 1 : 1000, cells without data that are not square, and fewer vertices than the outline of the cells
-/// without data has.
+/// Chooses the points of a raster until `goal` is met. Throws base::InputError for:
+/// - a single row or column, cells more oblong than 1 : 1000, cells without data that are not square,
+/// - fewer vertices than the outline of the cells without data has.
 [[nodiscard]] Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal);
 
 /// Makes a TIN of sand. `file` is for messages. The lattice of points has a step of 2^-19 of the longer side, rounded
-/// up by at most 1/32. Throws base::InputError for: more than kMostVertices points, a strip too thin for the lattice,
-/// heights that do not fit, and a talus of fewer than kLeastThreshold units.
+/// up by at most 1/32. Throws base::InputError for:
+/// - more than kMostVertices points, a strip too thin for the lattice, heights that do not fit,
+/// - a talus of fewer than kLeastThreshold units.
 [[nodiscard]] TinSand toTin(const Points& points, const std::string& file, const TalusSettings& material);
 [[nodiscard]] TinSand toTin(const Thinned& thinned, const std::string& file, const TalusSettings& material);
 

@@ -119,7 +119,7 @@ private:
     std::vector<Held> heldBack_;
     std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
     std::uint32_t turn_ = 0;                             // number of begin() calls; marks what wake() has examined
-    std::int64_t inVain_ = 0;      // vertices at rest, summed over the sweeps, less those that always are at rest
+    std::int64_t inVain_ = 0;      // vertices at rest, summed over the sweeps, less the usual number at rest
     std::int64_t restAround_ = 0;  // vertices at rest that the last forgetResting() since begin() left
     std::int64_t outflow_ = 0;     // since takeOutflow()
     bool band_ = false;

@@ -7,8 +7,8 @@
 namespace sand::tin {
 namespace {
 
-// Duality gap at the end, as a share of the squared change. With a third of it, piles are no nearer to the exact ones.
-// With three times as much, a cone on 65,000 vertices was a quarter further away.
+// Duality gap at the end, as a share of the squared change. A third of it does not bring piles nearer to the exact
+// ones. With three times as much, a cone on 65,000 vertices was a quarter further away.
 constexpr double kRelativeGap = 3e-4;
 // Sand that falls over an open rim never comes back. With the gap above, a table of 64 x 64 cells on a jittered mesh
 // had lost 0.15 % too much at rest. With this gap it keeps as much sand as with sweeps, and is at rest sooner.

@@ -34,8 +34,8 @@ using Underside = ActiveEdges::Underside;
 ///   u). For the same reason, no vertex rises above the underside.
 /// - It ends: Σ V²/star falls in every sweep that moves sand. It changes by −2 Σ_e Q (u_i − u_j) + Σ_i (Σ Q)²/star_i.
 ///   Here (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e. Over both ends of an edge, that is less than 2 Q (u_i −
-///   u_j). With a bound on Σ c k_e instead of Σ k_e, or with one step for all edges, two vertices can swap for ever,
-///   or wait as long.
+///   u_j). With a bound on Σ c k_e instead of Σ k_e, or with one step for all edges, two vertices can swap, or
+///   wait, without end.
 ///
 /// sweep() has momentum: a part of the last sweep's flux continues, and triangles flatter than g brake it. Each call
 /// begins without momentum. The flux is cut to less than k_e (u_i − u_j) and never flows uphill. The proofs require
@@ -69,9 +69,9 @@ public:
     /// Runs at most `sweeps` sweeps, fewer if all sand is at rest before. Returns their number.
     ///
     /// No flux raises a vertex above `held`, the underside of an obstacle, or null. A caller that places or moves the
-    /// obstacle must wake the vertices higher than a unit below it, because sand beside them may now lean on it. When
-    /// the tool leaves, no such call is needed: a call in which the underside at a vertex has changed examines the
-    /// sand there again.
+    /// obstacle must wake the vertices higher than a unit below it. Sand beside them may now lean on it. When the tool
+    /// leaves, no such call is needed: a call in which the underside at a vertex has changed examines the sand there
+    /// again.
     ///
     /// Adds the vertices that moved to `moved`, in ascending order, each once. The cost grows with the amount of moving
     /// sand. It is negligible when all sand is at rest.

@@ -135,7 +135,7 @@ struct Beside {
 
 /// Returns the flux over an edge with momentum. A part of the last sweep's flux continues, unless the slope has
 /// turned. Triangles flatter than the talus brake that part. They never brake the push of the triangle beside them,
-/// because sand would then creep along kinks for ever.
+/// because sand would then creep along kinks without end.
 double withMomentum(const Beside& beside, double difference, double goesOn) {
     const double most = kMostOfBound * beside.bound() * difference;
     const double forth = std::max(most, 0.0), back = std::min(most, 0.0);

@@ -74,7 +74,7 @@ struct SweepSand {
 
 /// Returns the height of a corner that counts for its triangle's slope. Sand that fills the room below an obstacle
 /// leans on it. If both other corners are higher, such a corner counts as high as the lower of them. Otherwise the
-/// sand beside the obstacle would flow along it for ever.
+/// sand beside the obstacle would flow along it without end.
 inline double leaning(double height, double underside, double one, double other) {
     const double beside = one < other ? one : other;
     return height > underside - 1 && beside > height ? beside : height;

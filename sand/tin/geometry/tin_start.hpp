@@ -21,7 +21,8 @@ namespace sand::tin {
 
 inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // most vertices of a start
 
-/// How finely a TIN follows its terrain and its tools. The state of the sand depends on these settings.
+/// Settings that decide how finely a TIN follows its terrain and its tools. The state of the sand depends on these
+/// settings.
 struct Settings {
     std::int32_t spacing = kLatticePerCell;  // distance of the points that a tool puts into the sand [probe unit]
     std::int32_t widest = 0;                 // largest distance of points at the start [probe unit]; 0: no limit
@@ -45,8 +46,8 @@ struct TinStart {
 
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError if the bytes are not a TinStart. Examples are a place outside the field, two vertices
-    /// in one place, a constraint between vertices out of order, holes out of order, and holes in a field of cells that
-    /// are not whole.
+    /// in one place, and a constraint between vertices out of order. Other examples are holes out of order, and holes
+    /// in a field of cells that are not whole.
     static TinStart decode(base::ByteReader& reader);
     /// Returns a number that is never 0. Equal digests mean that equal steps lead to equal sand.
     [[nodiscard]] std::uint64_t digest() const;

@@ -79,8 +79,8 @@ Located locate(const Triangles& mesh, Place place, std::int32_t from) {
     place = {std::clamp(place.x, 0, mesh.width), std::clamp(place.y, 0, mesh.depth)};
     const bool known = from >= 0 && at(from) < mesh.triangles.size() && mesh.triangles[at(from)].alive();
     std::int32_t slot = nearer(mesh, known ? from : mesh.triangleAt[0], place);
-    // A walk could always leave by the first side beyond which the place lies, but it could then circle around
-    // constraints for ever. A random side avoids that. The end of the walk does not depend on its way.
+    // A walk that always leaves by the first side beyond which the place lies could circle around constraints without
+    // end. A random side avoids that. The end of the walk does not depend on its way.
     std::uint32_t chance = 1;
     Located here = weigh(mesh, slot, place);
     for (;;) {

@@ -58,10 +58,10 @@ public:
     /// Constrains the straight line between two vertices, and returns its path. Vertices on the line split the
     /// constraint.
     ///
-    /// At a crossing with another constraint, both get a common vertex. This is an end of one of them if that end is
-    /// within a unit of the other, or else the lattice place nearest to the crossing. Both constraints bend to this
-    /// vertex. Further constraints that they then cross bend in the same way. Returns an empty path if `from` equals
-    /// `to`.
+    /// At a crossing with another constraint, both get a common vertex. If an end of one constraint is within a unit of
+    /// the other, the vertex is this end. Otherwise the vertex is at the lattice place nearest to the crossing. Both
+    /// constraints bend to this vertex. Further constraints that they then cross bend in the same way. Returns an empty
+    /// path if `from` equals `to`.
     Path constrain(Vertex from, Vertex to);
     /// Makes the edge between two vertices an ordinary one again. Edges of the rim and of a hole's outline stay
     /// constrained. Two vertices without a common edge change nothing.

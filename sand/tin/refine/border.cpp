@@ -77,7 +77,7 @@ private:
     }
 
     /// Both ends of a straight part and the places beside the cell centres between them, in order. `wanted` marks
-    /// those that the border gets.
+    /// the places that the border gets.
     struct Chain {
         std::vector<Place> places;
         std::vector<double> heights;

@@ -15,8 +15,8 @@ namespace sand::tin {
 /// Returns the cells whose samples are not a number as holes, or null if all cells have data.
 [[nodiscard]] std::shared_ptr<const Holes> holesOf(std::span<const double> heights, const Cells& cells);
 
-/// The border of a raster's ground: points on the field's rim and on the outline of holes, and the edges between the
-/// points of an outline. The field's four corners are not among the points.
+/// The border of a raster's ground. It has points on the field's rim and on the outline of holes, and the edges between
+/// the points of an outline. The field's four corners are not among the points.
 struct Border {
     std::vector<Place> places;                     // all different
     std::vector<double> heights;                   // [the raster's unit]

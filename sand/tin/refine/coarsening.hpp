@@ -24,8 +24,8 @@ int coarsen(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box
 /// Does the work of coarsen() in steps, and skips a vertex whose removal has failed until something around it changes.
 /// Most sand that a tool has dug stays too rough for removals.
 ///
-/// Its memory is not part of the state, because a step has the same result without it. This holds if touch() is called
-/// for every change, and if layer and maxError stay the same until forget(). Not thread-safe.
+/// The object's memory is not part of the state, because a step has the same result without it. This holds if touch()
+/// is called for every change, and if layer and maxError stay the same until forget(). Not thread-safe.
 class Coarsening {
 public:
     /// Reserves memory for `vertices` vertices in all.
@@ -45,7 +45,7 @@ private:
     // Bits by vertex; a vertex beyond the end has none. If a vertex within the field has kNoneInVain, neither it nor a
     // vertex around it has kInVain. On the rim this may be false, but no vertex is removed there. The bits outlast
     // their vertex. This does no harm, because a vertex that comes back has only new triangles.
-    static constexpr std::uint8_t kInVain = 1;  // its removal has failed, and nothing around it has changed since
+    static constexpr std::uint8_t kInVain = 1;  // removal failed, and nothing around the vertex has changed since
     static constexpr std::uint8_t kNoneInVain = 2;
     std::vector<std::uint8_t> known_;
 };

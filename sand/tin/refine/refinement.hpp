@@ -13,8 +13,8 @@
 
 namespace sand::tin {
 
-/// How fine a TIN is while the session runs. The rules follow from the Settings of the TinStart. With all rules 0,
-/// only the tool's outline changes the mesh.
+/// Rules that decide how fine a TIN is while the session runs. They follow from the Settings of the TinStart. With all
+/// rules 0, only the tool's outline changes the mesh.
 struct DetailRules {
     std::int32_t spacing = 0;            // lattice of vertices that is added at the tool [probe unit]; 0: no lattice
     double maxError = 0;                 // largest change of the surface by one removal [unit]; 0: no removals

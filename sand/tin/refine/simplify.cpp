@@ -179,7 +179,7 @@ void check(std::int32_t width, std::int32_t depth, const Raster& raster) {
     }
 }
 
-/// Returns the height of the nearest sample with data. Of equally near samples, the first counts.
+/// Returns the height of the nearest sample with data. If two are equally near, the first counts.
 double nearestHeight(const Raster& raster, const Place& place) {
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
     double height = 0;

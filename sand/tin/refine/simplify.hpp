@@ -41,7 +41,7 @@ struct Simplified {
 
 /// Chooses samples by greedy insertion (Garland and Heckbert 1995). The Delaunay triangulation of a `width` × `depth`
 /// field starts with its corners. They take the height of the nearest sample with data. Then the sample with the
-/// largest vertical error is inserted, again and again. Of equal errors, the first in the raster counts. Samples
+/// largest vertical error is inserted, again and again. If errors are equal, the first in the raster counts. Samples
 /// without data are never inserted and have no error; the surface spans them.
 ///
 /// Memory: one bit per sample, and 8 bytes per sample if errors are reported.

@@ -39,9 +39,9 @@ public:
     /// Moves the tool along `path`, which begins where the tool is, and displaces the sand. A path of one point
     /// presses there.
     ///
-    /// Moves in sub-steps of at most one cell. Skips a sub-step that is less than a quarter of a cell farther and less
-    /// than a quarter of a cell deeper than the one before, except the last. Refines the mesh along the path, on an
-    /// open rim too. Removes the previous imprint, and puts the outline in at the end of the path.
+    /// Moves in sub-steps of at most one cell. Skips a sub-step that brings the tool less than a quarter of a cell
+    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path, on
+    /// an open rim too. Removes the previous imprint, and puts the outline in at the end of the path.
     ///
     /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
     /// ahead. If no vertex is ahead, the sand goes to all vertices around. If the mesh is too coarse for that, it goes
