@@ -29,8 +29,8 @@ BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
             "sandwall-latency-floor")
 SCENE = ROOT / "scenes" / "sandbox.toml"
-FLOOR_SECONDS = 3  # at most
-START_SECONDS = 120  # of a session, on a machine that is busy
+FLOOR_SECONDS = 3  # longest measurement of a floor
+START_SECONDS = 120  # longest start of a session, on a busy machine
 TESTS_PER_SECOND = 20
 REFRESH = 60  # Hz, on every wall
 # Replaces a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
@@ -49,7 +49,7 @@ class Wall:
 @dataclass
 class Load:
     name: str
-    divisor: int  # of the wall file's pixels
+    divisor: int  # divides width and height in pixels of the wall file's tiles
     stereo: bool
     digs: bool
 
@@ -62,11 +62,11 @@ LINKS = {"direct": "wired", "impaired": "wireless"}  # link here: link of the pa
 
 
 class Failed(Exception):
-    """One line for a person."""
+    """The reason, in one line, why a measurement failed."""
 
 
 class Helper:
-    """A program that runs beside the sessions, and emits the event `listening`. Ended by its process id."""
+    """A program that runs beside the sessions and emits the event `listening`. It is ended by its process id."""
 
     def __init__(self, *command):
         self.log = tempfile.NamedTemporaryFile(prefix="sandwall-latency-")
@@ -102,7 +102,7 @@ def impaired(address, seed):
 
 
 class Through:
-    """An address, or that of an impaired link to it."""
+    """The address of a program, or of an impaired link to it if `link` is "impaired"."""
 
     def __init__(self, link, address, seed):
         self.helper = impaired(address, seed) if link == "impaired" else None
@@ -117,7 +117,7 @@ class Through:
 
 
 def circles(seconds):
-    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step."""
+    """Returns a stroke list that lasts at least `seconds`: rings of all sizes, at 2 cells per step on 512² cells."""
     lines, lasts, ring = ["speed 0.5", "depth 0.5", "stroke", "point 0.6 0"], 0.0, 0
     while lasts < seconds:
         radius = 0.6 - 0.04 * (ring % 13)
@@ -128,7 +128,7 @@ def circles(seconds):
 
 
 def smaller(folder, wall, load):
-    """The wall's file with fewer pixels, and what one eye of its first tile has."""
+    """Writes the wall file with fewer pixels. Returns the file and (width, height) of its largest tile [pixel]."""
     text = (ROOT / "walls" / "configs" / wall.file).read_text()
     sizes = []
 
@@ -148,7 +148,7 @@ def die_with_parent():
 
 
 def session(folder, wall_file, load, haptic, args, scene=SCENE):
-    """Runs a wall for so long, and returns its summary."""
+    """Runs a wall for `args.warm_up` + `args.seconds` seconds and returns its summary."""
     log, out = folder / "log.txt", folder / "out"
     command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", wall_file, "--scene", scene, "--haptic", haptic, "--out", out,
                "--no-pictures", "--gl", "osmesa", "--refresh", REFRESH, "--frame-timeout", START_SECONDS]
@@ -168,7 +168,7 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
         raise Failed("the session did not end") from None
     finally:
         if run.poll() is None:
-            run.terminate()  # it ends its ranks in order
+            run.terminate()  # the launcher ends its ranks in order
             try:
                 run.wait(timeout=START_SECONDS)
             except subprocess.TimeoutExpired:
@@ -197,11 +197,11 @@ def frame_floor(ranks, size, args):
 
 
 def measure(wall, link, load, args):
-    """One row: a session, and right after it the floor with messages and frames as long as the session's."""
+    """Returns one row of the table: a session, then the floor with messages and frames as long as the session's."""
     with tempfile.TemporaryDirectory(prefix="sandwall-latency-") as name:
         folder = pathlib.Path(name)
         strokes = folder / "hand.strokes"
-        # Without end; or one prick, and then a hand that hovers.
+        # Strokes without end; or a single point, after which the hand hovers.
         strokes.write_text(circles(args.warm_up + args.seconds + START_SECONDS) if load.digs else "stroke\npoint 0 0\n")
         wall_file, pixels = smaller(folder, wall, load)
         with Helper(BIN / "sandwall-haptic-server", "--scene", SCENE, "--device", f"script:{strokes}", "--listen", "127.0.0.1:0",
@@ -272,7 +272,7 @@ def write_csv(file, rows, said, command):
 
 
 class Parser(argparse.ArgumentParser):
-    """Says in one line what is wrong."""
+    """Reports an error in one line."""
 
     def error(self, message):
         self.exit(BAD_INPUT, f"{self.prog}: {message}; try --help\n")
@@ -287,28 +287,28 @@ class Parser(argparse.ArgumentParser):
 
 def parse():
     parser = Parser(prog="sandwall-bench latency", description=__doc__)
-    parser.add_argument("--seconds", type=float, default=20, help="of each of the sessions, warm-up apart (default: 20)")
-    parser.add_argument("--seed", type=int, default=7, help="of the random times and of the impaired link (default: 7)")
-    parser.add_argument("--warm-up", type=float, default=5, help="seconds of each in which shaders are compiled and ranks fall into step (default: 5)")
-    parser.add_argument("--walls", default="portable,FLEX,tiled wall", help="some of these, separated by commas (default: all)")
-    parser.add_argument("--links", default="direct,impaired", help="the same (default: both)")
-    parser.add_argument("--loads", default="digging,still", help="the same (default: both)")
-    parser.add_argument("--out", type=pathlib.Path, help="the same as CSV")
+    parser.add_argument("--seconds", type=float, default=20, help="seconds of each session after its warm-up (default: 20)")
+    parser.add_argument("--seed", type=int, default=7, help="seed of the random times and of the impaired link (default: 7)")
+    parser.add_argument("--warm-up", type=float, default=5, help="seconds at the start of each session that do not count (default: 5)")
+    parser.add_argument("--walls", default="portable,FLEX,tiled wall", help="names of walls, separated by commas (default: portable,FLEX,tiled wall)")
+    parser.add_argument("--links", default="direct,impaired", help="names of links, separated by commas (default: direct,impaired)")
+    parser.add_argument("--loads", default="digging,still", help="names of loads, separated by commas (default: digging,still)")
+    parser.add_argument("--out", type=pathlib.Path, help="CSV file to write with the same table")
     args = parser.parse_args()
     for option, least in (("seconds", 1), ("warm_up", 0)):
         value = getattr(args, option)
         if not least <= value <= 3600:
-            parser.error(f"--{option.replace('_', '-')} {value:g}: {least} to 3600")
+            parser.error(f"--{option.replace('_', '-')} {value:g}: must be from {least} to 3600")
     if not 0 <= args.seed < 2**32:
-        parser.error(f"--seed {args.seed}: 0 to 4294967295")
+        parser.error(f"--seed {args.seed}: must be from 0 to 4294967295")
     args.walls = parser.chosen("--walls", args.walls, {wall.name: wall for wall in WALLS})
     args.links = parser.chosen("--links", args.links, {link: link for link in LINKS})
     args.loads = parser.chosen("--loads", args.loads, {load.name: load for load in LOADS})
     if args.out and not args.out.parent.is_dir():
-        parser.error(f"--out {args.out}: there is no such folder")
+        parser.error(f"--out {args.out}: its folder does not exist; create it first")
     for program in PROGRAMS:
         if not (BIN / program).is_file():
-            parser.error(f"{BIN / program}: not built yet; cmake --build build/release")
+            parser.error(f"{BIN / program}: not built yet; run cmake --build build/release")
     return args
 
 

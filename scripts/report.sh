@@ -20,7 +20,7 @@ while [[ $# -gt 0 ]]; do
 done
 # Debian's own interpreter, because another python3 may come first in PATH, without Debian's matplotlib.
 /usr/bin/python3 -c 'import matplotlib' 2>/dev/null ||
-    { echo "report.sh: Debian's python3-matplotlib is missing; scripts/install_dependencies.sh --with-report installs it" >&2; exit 2; }
+    { echo "report.sh: Debian's python3-matplotlib is missing; run scripts/install_dependencies.sh --with-report" >&2; exit 2; }
 data=$out/data
 mkdir -p "$data"
 jobs=$(nproc)
@@ -83,7 +83,7 @@ latency_table() {
     "$bench" latency --out "$data/latency.csv" >"$out/progress.txt" 2>&1 || { cat "$out/progress.txt" >&2; exit 1; }
 }
 
-# Pictures of a large field at each level of detail.
+# Measures pictures of a large field with each bound of the level of detail.
 detail_curve() {
     local options=(--sizes 1024,2048 --runs 5 --frames 12)
     [[ $quick == no ]] || options=(--sizes 2048 --runs 3 --frames 4)

@@ -12,7 +12,7 @@ import report_figures as figures
 from report_text import SECTIONS
 from report_data import Table
 
-HEAD = """# Report: what the sand costs, and how right it is
+HEAD = """# Report: run time and error of the sand
 
 After reading this page you know the error and the run time of every scheme, and you can measure them again.
 
