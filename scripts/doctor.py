@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Looks at every machine of a wall before a show: one line per check, and what to do about the red ones."""
+"""Checks every machine of a wall before a show. Prints one line per check; a red line says what to do."""
 
 import concurrent.futures
 import json
@@ -17,13 +17,13 @@ import rank_hosts
 from rank_hosts import HERE, BadInput
 
 ANSWER_SECONDS = 20
-PROBE_SECONDS = 60  # shaders of a first driver start take their time
+PROBE_SECONDS = 60  # a driver that starts for the first time compiles shaders for long
 CLOCK_ROUNDS = 5
-MOST_CLOCK_SECONDS = 1.0  # sessions measure the rest away; a day wrong makes logs unreadable
+MOST_CLOCK_SECONDS = 1.0  # a session subtracts the difference; a larger one makes logs unreadable
 RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds about 140
 OUT_MEGABYTES = 256
 MOST_HOSTS_AT_ONCE = 32
-# What a host says of itself, one answer a line; {node} is the program there.
+# Commands for a host, which prints one answer per line. {node} is the path of the render rank's program there.
 QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
              'echo "mpi $(mpirun --version 2>&1 | head -n 1)"; '
              'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; '
@@ -31,7 +31,7 @@ QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
 
 
 def build_of(answer):
-    """The build id in what a program prints for --version --json, or None."""
+    """Returns the build id in the output of --version --json, or None if the output has none."""
     try:
         return json.loads(answer)["build"]
     except (ValueError, KeyError, TypeError):
@@ -39,7 +39,7 @@ def build_of(answer):
 
 
 class Ask:
-    """How to run a line of shell on a host."""
+    """Runs lines of shell on one host."""
 
     def __init__(self, host):
         self.host = host
@@ -49,11 +49,11 @@ class Ask:
         self.words = ["sh", "-c"] if host == HERE else [*agent, host]
 
     def command(self, line):
-        # By sh, whatever shell the user has there.
+        # sh runs the line, because the user's own shell on the host may be another one.
         return [*self.words, line if self.host == HERE else "sh -c " + shlex.quote(line)]
 
     def run(self, line, text=None, seconds=ANSWER_SECONDS):
-        """(exit status, what it printed, what it complained of); the status is None when there was no answer in time."""
+        """Returns (exit status, standard output, standard error). The status is None after `seconds` without an answer."""
         given = {"stdin": subprocess.DEVNULL} if text is None else {"input": text}
         try:
             ended = subprocess.run(self.command(line), capture_output=True, text=True, errors="replace",
@@ -61,12 +61,15 @@ class Ask:
         except subprocess.TimeoutExpired:
             return None, "", f"no answer within {seconds} s"
         except OSError as error:
-            raise BadInput(f"{self.words[0]}: cannot be run; install openssh-client, or name another in "
+            raise BadInput(f"{self.words[0]}: cannot be run; install openssh-client, or name another program in "
                            "OMPI_MCA_plm_rsh_agent") from error
         return ended.returncode, ended.stdout, ended.stderr
 
     def clock(self):
-        """(seconds ahead of this machine, uncertainty), from the quickest of a few questions over one connection."""
+        """Returns (clock of the host minus clock of this machine, uncertainty) [s], or None if the host prints no time.
+
+        Asks several times over one connection and takes the quickest answer.
+        """
         command = "while read -r line; do date +%s.%N; done"
         with subprocess.Popen(self.command(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL, text=True, bufsize=1) as process:
@@ -90,12 +93,12 @@ class Ask:
 
 
 class Host:
-    """One machine, its ranks, and what was found: (good, check, words, details for programs)."""
+    """One machine with its ranks and findings: (good, check, words, details for programs)."""
 
     def __init__(self, name):
         self.name = name
-        self.slots = 0  # how many ranks it takes
-        self.probes = []  # of the wall, its ranks; of a mere list of hosts, 0
+        self.slots = 0  # number of its ranks
+        self.probes = []  # ranks to probe for OpenGL: those of a wall file; [0] for a file of hosts
         self.ask = Ask(name)
         self.findings = []
 
@@ -112,7 +115,7 @@ def last_line(text):
 
 
 def probed(said):
-    """What a render rank's program prints for --probe --json, or None."""
+    """Returns the fields that a render rank's program printed for --probe --json, or None if `said` is not such output."""
     try:
         found = json.loads(said)
         return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
@@ -121,7 +124,7 @@ def probed(said):
 
 
 def spans(ranks):
-    """"rank 3", or "ranks 1-4, 7"."""
+    """Returns `ranks` as text, such as "rank 3" or "ranks 1-4, 7"."""
     pieces = []
     for rank in ranks:
         if pieces and pieces[-1][1] == rank - 1:
@@ -133,7 +136,7 @@ def spans(ranks):
 
 
 class Doctor:
-    """Examines hosts; `node` is the render rank's program, at the same path everywhere."""
+    """Examines hosts. `node` is the path of the render rank's program, which is the same on every host."""
 
     def __init__(self, node, build, wall_text, gl):
         self.node = node
@@ -153,11 +156,11 @@ class Doctor:
             self.check_gl(host)
 
     def reach(self, host):
-        """What the host answers to all questions, by their first words; None when it does not answer."""
+        """Returns the host's answers by their first words, or None if the host cannot be reached."""
         status, said, complaint = host.ask.run(QUESTIONS.format(node=shlex.quote(self.node)))
         if status != 0:
             host.add(False, "ssh", f"cannot be reached: {last_line(complaint) or f'exit status {status}'}; "
-                     f"`ssh -o BatchMode=yes {host.name} true` must end without a word (docs/hosts.md)")
+                     f"`ssh -o BatchMode=yes {host.name} true` must end without output (docs/hosts.md)")
             return None
         if host.name != HERE:
             host.add(True, "ssh", "answers")
@@ -200,10 +203,10 @@ class Doctor:
         host.add(good, "clock", line if good else line + "; set it, with chrony or systemd-timesyncd")
 
     def check_way_back(self, host, answers):
-        """Daemons and ranks connect to this machine on any port: one is opened, and the host asked to come to it."""
+        """Opens a port on this machine and has the host connect to it, as daemons and ranks do on any port."""
         client = answers.get("client", "").split()
         if not client:
-            host.add(True, "ports", "not tried: the agent in the place of ssh does not say where this machine is")
+            host.add(True, "ports", "not tried: the program that replaces ssh does not set SSH_CONNECTION")
             return
         family = socket.AF_INET6 if ":" in client[0] else socket.AF_INET
         with socket.socket(family, socket.SOCK_STREAM) as listener:
@@ -213,13 +216,13 @@ class Doctor:
             line = f"exec 3<>/dev/tcp/{client[0]}/{port}"
             status, _, _ = host.ask.run(f"timeout 8 bash -c {shlex.quote(line)}")
         if status == 0:
-            host.add(True, "ports", f"comes to this machine at {client[0]}, port {port}")
+            host.add(True, "ports", f"connects to this machine at {client[0]}, port {port}")
         else:
-            host.add(False, "ports", f"does not come to this machine at {client[0]}, port {port}; open the firewalls "
+            host.add(False, "ports", f"cannot connect to this machine at {client[0]}, port {port}; open the firewalls "
                      "between the hosts for all TCP ports")
 
     def check_gl(self, host):
-        """What every rank would draw with; ranks that answer alike share a line."""
+        """Adds the OpenGL renderer of every rank. Ranks with the same answer share a line."""
         answers = {}
         for rank in host.probes:
             status, said, complaint = host.ask.run(f"{shlex.quote(self.node)} --probe {rank} --gl {self.gl} --json",
@@ -237,7 +240,7 @@ class Doctor:
 
 
 def check_out(host, out):
-    """Room for journal and pictures, on this machine alone."""
+    """Adds whether `out` on this machine can be written and has room for journal and pictures."""
     place = pathlib.Path(out).absolute()
     while not place.exists():
         place = place.parent
@@ -251,7 +254,7 @@ def check_out(host, out):
 
 
 def check_master(host, master, build):
-    """The master's program, on this machine alone."""
+    """Adds whether the master's program on this machine is of the build `build`."""
     ended = subprocess.run([master, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                            errors="replace", timeout=ANSWER_SECONDS, check=False)
     said = build_of(ended.stdout)
@@ -260,7 +263,7 @@ def check_master(host, master, build):
 
 
 def machines(hosts, of_wall):
-    """A Host per machine, this one first, each with what it has to draw."""
+    """Returns one Host per machine, this machine first. `of_wall`: `hosts` are the hosts of the ranks of a wall file."""
     found = {HERE: Host(HERE)}
     for rank, name in enumerate(hosts, start=1):
         host = found.setdefault(name, Host(name))
@@ -270,7 +273,7 @@ def machines(hosts, of_wall):
 
 
 def report(hosts, colours):
-    """Prints all that was found and returns how many were red."""
+    """Prints all findings and returns the number of red ones."""
     red = 0
     width = max(len(host.shown_name()) for host in hosts)
     for host in hosts:
@@ -284,7 +287,7 @@ def report(hosts, colours):
 
 
 def report_json(hosts):
-    """Prints all that was found as one JSON object and returns how many were red."""
+    """Prints all findings as one JSON object and returns the number of red ones."""
     findings = [{"host": host.shown_name(), "check": check, "good": bool(good), "message": words, **details}
                 for host in hosts for good, check, words, details in host.findings]
     red = sum(not finding["good"] for finding in findings)
@@ -293,8 +296,10 @@ def report_json(hosts):
 
 
 def examine(hosts, wall_text, node, master, out, gl, as_json=False):
-    """Looks at the host of every rank and at this machine. `wall_text` is None where only hosts are known. Returns the
-    exit status: 0 when nothing is red, else 1."""
+    """Checks this machine and the host of every rank. `wall_text` is None if the hosts come from a file of hosts.
+
+    Returns the exit status: 0 if no check is red, else 1.
+    """
     said = subprocess.run([node, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                            errors="replace", timeout=ANSWER_SECONDS, check=False).stdout
     here, *others = machines(hosts, wall_text is not None)
@@ -302,11 +307,11 @@ def examine(hosts, wall_text, node, master, out, gl, as_json=False):
     doctor = Doctor(node, build, wall_text, gl)
     check_master(here, master, build)
     check_out(here, out)
-    doctor.examine(here)  # first: the others are compared with it
+    doctor.examine(here)  # first, because the other hosts are compared with this machine
     with concurrent.futures.ThreadPoolExecutor(MOST_HOSTS_AT_ONCE) as pool:
         list(pool.map(doctor.examine, others))
     if as_json:
         return 1 if report_json([here, *others]) else 0
     red = report([here, *others], sys.stdout.isatty() and "NO_COLOR" not in os.environ)
-    print(f"{red} to put right" if red else "nothing to put right")
+    print(f"{red} red" if red else "all green")
     return 1 if red else 0

@@ -13,12 +13,12 @@ TAG = "@sandwall "
 
 
 def wanted():
-    """Whether the user asks for events."""
+    """Returns whether the user asks for events."""
     return os.environ.get(VARIABLE) == "1"
 
 
 def parse(line):
-    """The event in a line of output, str or bytes, or None."""
+    """Returns the event in `line`, a str or bytes, or None if the line is not an event."""
     text = line.decode(errors="replace") if isinstance(line, bytes) else line
     if not text.startswith(TAG):
         return None
@@ -30,13 +30,13 @@ def parse(line):
 
 
 def emit(name, **fields):
-    """Writes an event to standard error, if the user asks for events."""
+    """Writes an event to standard error if the user asks for events."""
     if wanted():
         print(TAG + json.dumps({"event": name, **fields}), file=sys.stderr, flush=True)
 
 
 def read(path):
-    """The events in a file of output, in order; none while there is no such file."""
+    """Returns the events in a file of output, in order. Returns an empty list while the file does not exist."""
     try:
         with open(path, "rb") as stream:
             return [event for line in stream if line.endswith(b"\n") and (event := parse(line))]
@@ -45,9 +45,9 @@ def read(path):
 
 
 def wait_for(path, name, seconds, alive=lambda: True, **fields):
-    """The first event of this name and with these fields in a growing file of output.
+    """Returns the first event with this name and these fields in a growing file of output.
 
-    None when it does not come within `seconds`, or when `alive()` turns false before it comes.
+    Returns None if the event does not come within `seconds`, or if `alive()` becomes false before it comes.
     """
     deadline = time.monotonic() + seconds
     while True:
@@ -61,7 +61,7 @@ def wait_for(path, name, seconds, alive=lambda: True, **fields):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Waits for an event in a growing file of output, and prints a field of it.")
+    parser = argparse.ArgumentParser(description="Waits for an event in a growing file of output, and prints one field of the event.")
     parser.add_argument("file")
     parser.add_argument("event")
     parser.add_argument("field")
@@ -69,7 +69,7 @@ def main():
     args = parser.parse_args()
     event = wait_for(args.file, args.event, args.seconds)
     if event is None or args.field not in event:
-        print(f"{args.file}: no event {args.event} with {args.field} within {args.seconds:g} s", file=sys.stderr)
+        print(f"{args.file}: no event {args.event} with the field {args.field} within {args.seconds:g} s", file=sys.stderr)
         return 1
     print(event[args.field])
     return 0

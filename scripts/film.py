@@ -14,12 +14,12 @@ FRAMES = "frame_[0-9]*.png"
 def encode(folder, frames_per_second):
     """Writes FOLDER/film.mp4 from the pictures in FOLDER if ffmpeg is installed, and prints what FOLDER holds.
 
-    Raises BadInput if ffmpeg fails; the pictures are then left as they are.
+    Raises BadInput if ffmpeg fails; the pictures then stay unchanged.
     """
     folder = pathlib.Path(folder)
     frames = sum(1 for _ in folder.glob(FRAMES))
     if shutil.which("ffmpeg") is None:
-        print(f"{frames} pictures in {folder}; for a film.mp4 of them: apt-get install ffmpeg, then film it again")
+        print(f"{frames} pictures in {folder}; for film.mp4 run apt-get install ffmpeg, then this command again")
         return
     # Every player reads H.264 with colours at half the resolution, which needs even sizes. ffmpeg runs in the folder,
     # because a per cent sign in its path would be read as a number.

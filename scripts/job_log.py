@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The output of a job: kept in files, shown as it comes, and read for what failed.
+"""Keeps the output of a job in files, shows it as it comes, and finds in it which process failed.
 
-Our programs are read through their events (docs/events.md). mpirun has no such contract: its own lines are parsed.
+The programs of Sandwall report through events (docs/events.md). mpirun has no events, so its lines of text are parsed.
 """
 
 import collections
@@ -17,42 +17,42 @@ import events
 KEPT_TRIES = 8
 LAST_LINES = 16  # of each rank, for a report
 LONGEST_LINE = 1 << 16  # bytes that are held back for the rest of a line
-RESERVE = 1 << 18  # bytes of disk for what is said when the disk is full
+RESERVE = 1 << 18  # bytes of disk that are kept free for messages about a full disk
 FALLOC_FL_KEEP_SIZE = 1
 
-LIBC = ctypes.CDLL(None)  # loaded before there are threads: a child between fork and exec must not wait for a lock
-TAG = re.compile(rb"\[\d+,(\d+)\]<std(?:out|err)>:")  # of mpirun --tag-output, before every piece of a rank's output
+LIBC = ctypes.CDLL(None)  # loaded before any thread starts: a child between fork and exec must not wait for a lock
+TAG = re.compile(rb"\[\d+,(\d+)\]<std(?:out|err)>:")  # mpirun --tag-output writes it before every piece of a rank's output
 BANNER = re.compile(rb"-{60,}")
-# What mpirun -q would have kept to itself.
+# Lines that mpirun -q would not have printed.
 MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
 SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
 EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
-BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # of Open MPI, for a process that a signal ends
+BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # Open MPI prints it for a process that a signal ends
 
 
 class Stream:
-    """One file of a job's output, followed as it grows."""
+    """One file of a job's output, which is read while it grows."""
 
     def __init__(self, path, shown):
         self.file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND | os.O_CLOEXEC, 0o644)
         self.shown = shown
         self.offset = 0
         self.reserved = 0
-        self.rank = None  # of the piece at hand; None: mpirun itself
-        self.held = collections.defaultdict(bytes)  # the begun line of each rank
-        self.carried = b""  # what may be the beginning of a tag
+        self.rank = None  # rank of the current piece; mpirun's own output has None
+        self.held = collections.defaultdict(bytes)  # the unfinished line of each rank
+        self.carried = b""  # the end of the last piece, if it may be the beginning of a tag
         self.in_banner = False
         self.reserve()
 
     def reserve(self):
-        """Keeps room on the disk: what is said of a full disk must find some."""
+        """Reserves room on the disk, so that messages about a full disk can still be written."""
         if self.reserved - self.offset < RESERVE // 2:
             length = ctypes.c_long(RESERVE)
             LIBC.fallocate(self.file, FALLOC_FL_KEEP_SIZE, ctypes.c_long(self.offset), length)
             self.reserved = self.offset + RESERVE
 
     def lines(self, ended):
-        """(rank, line) of every line that has become whole since; at the end also those that never will."""
+        """Yields (rank, line) of every line completed since the last call. If `ended`, yields the unfinished lines too."""
         while piece := os.pread(self.file, 1 << 16, self.offset):
             self.offset += len(piece)
             yield from self.split(self.carried + piece)
@@ -62,7 +62,7 @@ class Stream:
             yield from ((rank, line) for rank, line in self.held.items() if line)
 
     def split(self, text, last=False):
-        """Tags stand at the beginning of lines, and wherever mpirun happened to read a piece of one."""
+        """Yields (rank, line) of `text`. mpirun writes a tag at the beginning of each line and of each piece that it reads."""
         self.carried = b""
         if not last and (cut := re.search(rb"\[[\d,]{0,12}\]?(?:<[a-z]{0,6}>?)?$", text)):
             text, self.carried = text[:cut.start()], text[cut.start():]
@@ -85,7 +85,7 @@ class Stream:
                 self.rank = None  # a line without a tag is mpirun's own
 
     def hides(self, rank, line):
-        """Whether a line is mpirun's explanation of what a line of ours says already."""
+        """Returns whether a line is mpirun's explanation of a failure that a line of Sandwall already reports."""
         if rank is not None or self.shown is not sys.stderr:
             return False
         if BANNER.fullmatch(line):
@@ -98,30 +98,31 @@ class Stream:
             self.shown.buffer.write(line + b"\n")
             self.shown.buffer.flush()
         except (BrokenPipeError, ValueError):
-            pass  # nobody looks; the file has it
+            pass  # the reader of our output has gone; the file has the line
 
 
 class JobLog:
     """The output of one try of a session, OUT/log/try_N.out and .err.
 
-    A file and not a pipe: the death of this launcher would kill the job with SIGPIPE before its journal is whole.
+    The output goes to files because a pipe would break if this launcher ended: SIGPIPE would kill the job before its
+    journal is whole.
     """
 
     def __init__(self, folder, number):
         self.path = pathlib.Path(folder) / f"try_{number}"
         self.out = Stream(f"{self.path}.out", sys.stdout)
         self.err = Stream(f"{self.path}.err", sys.stderr)
-        self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # by rank; None: mpirun
-        self.mpiruns = b""  # everything that mpirun itself said
+        self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
+        self.mpiruns = b""  # the last lines of mpirun itself on standard error
         self.ending = None  # the first event `waiting` that ends the job
         self.failure = None  # the content of the event `failure`
-        self.frame = self.step = None  # shown last, as far as was said
-        self.told = 0.0  # when, by the monotonic clock
-        self.hand = None  # when a hand was linked last; before the first link, when the server was first missed
-        self.refused = False  # whether the last answer of the server was a refusal, its own or the master's
+        self.frame = self.step = None  # the last frame and step that an event reported as shown
+        self.told = 0.0  # time of that event by the monotonic clock [s]
+        self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
+        self.refused = False  # whether the last attempt to link ended with a refusal by server or master
 
     def follow(self, ended=False):
-        """Shows and reads what has been said since."""
+        """Shows and reads the output since the last call."""
         for stream in (self.out, self.err):
             for rank, line in stream.lines(ended):
                 if event := events.parse(line):
@@ -142,7 +143,7 @@ class JobLog:
                 self.hand = time.monotonic()
                 self.refused = False
         elif name == "link" and event["state"] == "refused":
-            self.hand, self.refused = None, True  # it answers, so it does not hang; a restarted one would answer the same
+            self.hand, self.refused = None, True  # the server answers, so it does not hang, and a restart would not help
         elif name == "without_hand" and event["reason"] == "no_server":
             self.miss_hand()
         elif name == "waiting" and event["ends_job"] and self.ending is None:
@@ -156,18 +157,18 @@ class JobLog:
             self.hand = time.monotonic()
 
     def read(self, rank, line, stream):
-        if not BACKTRACE.match(line):  # a deep one would leave no room for what was said before
+        if not BACKTRACE.match(line):  # a deep backtrace would leave no room for the lines before it
             self.said[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
 
     def signalled(self):
-        """(rank, signal) of the process that a signal ended first, as mpirun has it."""
+        """Returns (rank, signal) of the first process that a signal ended, from mpirun's lines, or None."""
         found = SIGNALLED.search(self.mpiruns)
         return (int(found[1]), int(found[3])) if found else None
 
     def exited(self):
-        """(rank, status) of the process that ended first, not in order but by itself."""
+        """Returns (rank, exit status) of the first process that ended with an error, from mpirun's lines, or None."""
         found = EXITED.search(self.mpiruns)
         return (int(found[1]), int(found[2])) if found else None
 
@@ -177,13 +178,13 @@ class JobLog:
 
 
 def earlier_tries(folder):
-    """Numbers of the tries whose output is still there, in order."""
+    """Returns the numbers of the tries whose output still exists, in order."""
     return sorted({int(found[1]) for path in pathlib.Path(folder).glob("try_*")
                    if (found := re.fullmatch(r"try_(\d+)\.(?:out|err)", path.name))})
 
 
 def forget_tries(folder, kept):
-    """Removes all but the newest `kept`."""
+    """Removes the output of all tries except the newest `kept`."""
     tries = earlier_tries(folder)
     for number in tries[:max(0, len(tries) - kept)]:
         for ending in ("out", "err"):

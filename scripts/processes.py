@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The processes of a session: mpirun with its ranks, the haptic server, and who wants them to end."""
+"""The processes of a session, mpirun with its ranks and the haptic server, and the signals that end them."""
 
 import os
 import pathlib
@@ -16,20 +16,20 @@ from rank_hosts import BadInput
 SERVER_START_SECONDS = 20
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
 KILL_SECONDS = 5
-GONE_SECONDS = 2  # that mpirun may take when a process has said that it ends the job
+GONE_SECONDS = 2  # the time that mpirun may take after a process has reported that it ends the job
 LOOK_SECONDS = 0.05
-LONGEST_LINE = 1024  # of what is typed; the master reads no longer ones
-MARK = "SANDWALL_JOB"  # in the environment of a job's processes
+LONGEST_LINE = 1024  # bytes of a typed line; the master reads no longer lines
+MARK = "SANDWALL_JOB"  # name of a variable in the environment of a job's processes
 
 
 def die_with_parent():
-    """In a child, before exec: the kernel kills it when the launcher dies, however that happens."""
+    """Runs in a child process before exec. The kernel kills the child when the launcher ends for any reason."""
     PR_SET_PDEATHSIG = 1
     LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 class StopSignals:
-    """Counts how often somebody wants the session to end, from before its first process is started."""
+    """Counts the signals that ask the session to end. Create it before the first process is started."""
 
     def __init__(self):
         self.count = 0
@@ -41,10 +41,10 @@ class StopSignals:
 
 
 class HapticServer:
-    """The haptic server of a session on this machine, on one port from its first start on.
+    """The haptic server of a session on this machine. All its starts listen on the same port.
 
-    `command_at` gives its command for an address to listen at and the number of the start. Only the main thread may
-    start it: it dies with the thread that did.
+    `command_at(address, start)` returns the command for an address to listen at and the number of the start. Only the main
+    thread may start the server, because the kernel kills the server when the thread that started it ends.
     """
 
     def __init__(self, command_at, folder):
@@ -62,15 +62,15 @@ class HapticServer:
                                         start_new_session=True, preexec_fn=die_with_parent)
 
     def listens(self):
-        """Whether the server listens since it was started last."""
+        """Returns whether the server listens since its last start."""
         return self.port_file.exists()
 
     def address(self):
-        """HOST:PORT, once it listens."""
+        """Waits until the server listens, and returns HOST:PORT. Throws BadInput after SERVER_START_SECONDS."""
         deadline = time.monotonic() + SERVER_START_SECONDS
         while time.monotonic() < deadline:
             if self.process.poll() is not None:
-                raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # it has said why
+                raise SystemExit(self.process.returncode if self.process.returncode > 0 else 1)  # the server has printed the reason
             if self.listens():
                 self.port = int(self.port_file.read_text())
                 return f"127.0.0.1:{self.port}"
@@ -78,7 +78,7 @@ class HapticServer:
         raise BadInput(f"the haptic server did not listen within {SERVER_START_SECONDS} s")
 
     def stop(self):
-        """Asks it to end, and does not take no for an answer."""
+        """Asks the server to end, and kills it after 5 s."""
         if self.process is None:
             return
         self.process.terminate()
@@ -91,10 +91,10 @@ class HapticServer:
 
 
 class Job:
-    """The mpirun of a session, in a process group of its own, asked to stop over its standard input.
+    """The mpirun of a session, in its own process group. It is asked to stop over its standard input.
 
-    With a log its output goes there, else where ours goes. Never into a pipe: the death of this launcher would kill the
-    job with SIGPIPE before the journal is whole. The end of its input is enough to end it.
+    The output of the job goes to the log if there is one, else to the launcher's output. It never goes to a pipe: if the launcher
+    ended, SIGPIPE would kill the job before the journal is whole. The job ends when its input ends.
     """
 
     started = 0
@@ -110,11 +110,11 @@ class Job:
         self.asked = self.terminated = False
 
     def ask(self, command):
-        """Hands a line to the master: what `ctl` can say, too."""
+        """Sends a line to the master: a command as of `sandwall ctl`."""
         try:
             self.process.stdin.write(command.encode() + b"\n")
         except (BrokenPipeError, ValueError):
-            pass  # already over
+            pass  # the job has ended
 
     def signal(self, number):
         try:
@@ -123,14 +123,14 @@ class Job:
             pass
 
     def stop(self):
-        """Asks it to end in order; at once when order takes too long."""
+        """Asks the job to end in order. look() ends it by signals after ORDERLY_END_SECONDS."""
         if not self.asked:
             self.asked = True
             self.deadline = time.monotonic() + ORDERLY_END_SECONDS
             self.ask("stop")
 
     def look(self, stop):
-        """Its exit status, or None while it runs. Ends it in order when `stop` asks once, at once when it asks twice."""
+        """Returns the exit status, or None while the job runs. Ends the job in order after one signal, at once after two."""
         try:
             status = self.process.wait(timeout=LOOK_SECONDS)
         except subprocess.TimeoutExpired:
@@ -141,7 +141,7 @@ class Job:
             return status
         now = time.monotonic()
         if stop.count > 0 and not self.asked:
-            print("sandwall: stopping; journal and pictures are being finished, once more to kill",
+            print("sandwall: stopping; finishing journal and pictures; press Ctrl-C again to kill",
                   file=sys.stderr, flush=True)
             events.emit("stopping")
             self.stop()
@@ -161,7 +161,7 @@ class Job:
         return status
 
     def clear(self):
-        """Waits until no process of it is left on this machine; the next master needs the journal for itself."""
+        """Waits until no process of the job is left on this machine, because the next master needs the journal alone."""
         mark = f"{MARK}={self.mark}".encode()
         deadline = time.monotonic() + KILL_SECONDS
         while left := marked(mark):
@@ -175,7 +175,7 @@ class Job:
 
 
 def marked(mark):
-    """The processes that were started with this in their environment."""
+    """Returns the ids of the processes that have `mark` in their environment."""
     found = []
     for entry in os.listdir("/proc"):
         if entry.isdigit():
@@ -183,18 +183,18 @@ def marked(mark):
                 if mark in pathlib.Path("/proc", entry, "environ").read_bytes().split(b"\0"):
                     found.append(int(entry))
             except OSError:
-                pass  # gone, or somebody else's
+                pass  # it has ended, or belongs to another user
     return found
 
 
 class Input:
-    """Hands on what is typed to the job that runs; the end of our own input means nothing."""
+    """Sends typed lines to the running job. The end of the launcher's own input has no effect."""
 
     def __init__(self, stop):
         self.job = None
         self.stop = stop
         self.thread = None
-        # In the background of a terminal a read would stop us; this way it fails, and nobody types there anyway.
+        # A read from the background of a terminal would stop this process. With the signal ignored the read fails.
         signal.signal(signal.SIGTTIN, signal.SIG_IGN)
 
     def listen(self):
@@ -203,7 +203,7 @@ class Input:
             self.thread.start()
 
     def read(self):
-        # Not by sys.stdin: Python ends with a fatal error when a thread still waits in there.
+        # os.read, because Python ends with a fatal error if a thread still waits in sys.stdin.
         text = b""
         while True:
             try:
@@ -223,4 +223,4 @@ class Input:
         elif line == "stop":
             self.stop.add()
         else:
-            print(f"sandwall: '{line}' comes to nobody: the session is being started again", file=sys.stderr, flush=True)
+            print(f"sandwall: '{line}' is ignored, because the session is being started again", file=sys.stderr, flush=True)

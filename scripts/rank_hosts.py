@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Which rank of a session runs on which machine, and how mpirun is told."""
+"""Chooses the machine of each rank of a session, and mpirun's options for it."""
 
 import ipaddress
 import itertools
@@ -10,37 +10,40 @@ import socket
 import subprocess
 import time
 
-HERE = "localhost"  # mpirun's name for the machine it runs on; the master is always there
-NO_HOST = "-"  # sandwall-check's word for a tile that may be drawn anywhere
+HERE = "localhost"  # mpirun's name for its own machine, on which the master always runs
+NO_HOST = "-"  # sandwall-check prints it for a tile without a host
 MOST_SLOTS = 1024
 REACH_SECONDS = 20
-# A word that ssh could take for an option, or mpirun for a list, names no machine.
+# Refuses names that ssh could take for an option, or mpirun for a list.
 HOST_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,252}")
 
 
 class BadInput(Exception):
-    """One line for the user."""
+    """An error in the user's input: one line for the user."""
 
 
 def is_here(host):
-    """Whether a name is this machine's own."""
+    """Returns whether `host` is a name of this machine."""
     name = socket.gethostname()
     return host in (HERE, "127.0.0.1", name, name.split(".")[0])
 
 
 def checked_host(host, where):
     if not HOST_NAME.fullmatch(host):
-        raise BadInput(f"{where}: '{host[:80]}' is no host name; write one as ssh knows it, such as node01")
+        raise BadInput(f"{where}: '{host[:80]}' is not a host name; write one as ssh knows it, such as node01")
     return HERE if is_here(host) else host
 
 
 def hosts_of_wall(lines, wall):
-    """The host of every render rank, from what `sandwall-check WALL --hosts` printed."""
+    """Returns the host of every render rank, from the output of `sandwall-check WALL --hosts`."""
     return [HERE if line == NO_HOST else checked_host(line, wall) for line in lines.split()]
 
 
 def hosts_of_file(path, ranks):
-    """The same from a file: `HOST [slots=N] [spare]` a line, filled in the order of ranks; the master takes no slot."""
+    """Returns the host of every render rank, from a file of lines `HOST [slots=N] [spare]`.
+
+    The slots are filled in the order of ranks. The master takes no slot.
+    """
     hosts = [host for host, slots, spare in entries_of_file(path) if not spare for _ in range(slots)]
     if len(hosts) < ranks:
         raise BadInput(f"{path}: {len(hosts)} slots are too few for the wall's {ranks} render ranks; add hosts, or slots=N")
@@ -48,17 +51,17 @@ def hosts_of_file(path, ranks):
 
 
 def spares_of_file(path):
-    """(host, slots) of every host in a file that draws only when another cannot."""
+    """Returns (host, slots) of every spare in a file of hosts."""
     return [(host, slots) for host, slots, spare in entries_of_file(path) if spare]
 
 
 def slots_of_file(path):
-    """The host of every slot in a file of hosts, spares too."""
+    """Returns the host of every slot in a file of hosts, with the spares."""
     return [host for host, slots, _ in entries_of_file(path) for _ in range(slots)]
 
 
 def entries_of_file(path):
-    """(host, slots, whether it is a spare) of every line of a file of hosts."""
+    """Returns (host, slots, whether it is a spare) of every line of a file of hosts."""
     entries = []
     try:
         with open(path, encoding="utf-8") as file:
@@ -77,7 +80,7 @@ def entries_of_file(path):
 
 
 def slots_of(words, where):
-    """How many ranks a host takes: 1 without a word."""
+    """Returns the number of ranks that a host takes, from `words` behind its name. It is 1 without words."""
     if not words:
         return 1
     match = re.fullmatch(r"slots=([0-9]{1,6})", words[0])
@@ -90,32 +93,32 @@ def slots_of(words, where):
 
 
 def checked_network(text):
-    """A network as mpirun takes it, such as 10.0.0.0/24."""
+    """Returns `text` as a network for mpirun, such as 10.0.0.0/24. Throws BadInput if it is not a network."""
     try:
         if "/" not in text:
             raise ValueError
         return str(ipaddress.IPv4Network(text, strict=False))
     except ValueError as error:
-        raise BadInput(f"--network: '{text}' is no network; write one such as 10.0.0.0/24") from error
+        raise BadInput(f"--network: '{text}' is not a network; write one such as 10.0.0.0/24") from error
 
 
 def transport(hosts, network):
-    """mpirun's options for how ranks talk: shared memory where they can, TCP where they must."""
+    """Returns mpirun's options for communication: shared memory within a host, TCP between hosts."""
     if all(host == HERE for host in hosts):
         if network is not None:
-            raise BadInput("--network: every rank runs on this machine; there is no network to choose")
-        # The ranks listen to nothing; mpirun itself still listens on all addresses (docs/how_it_works.md).
+            raise BadInput("--network: every rank runs on this machine; leave --network out")
+        # The ranks do not listen for connections. mpirun itself still listens on all addresses (docs/how_it_works.md).
         return ["--mca", "btl", "self,vader", "--mca", "oob_tcp_if_include", "lo"]
     options = ["--mca", "btl", "self,vader,tcp"]
     if network is not None:
         network = checked_network(network)
         options += ["--mca", "btl_tcp_if_include", network, "--mca", "oob_tcp_if_include", network]
-    # What is only in this machine's environment does not reach the others.
+    # Open MPI sends a variable of this machine's environment to the other hosts only with -x.
     return options + ["--mca", "mpi_yield_when_idle", "1", "-x", "LP_NUM_THREADS", "-x", "HWLOC_COMPONENTS"]
 
 
 def programs(hosts, master, node):
-    """mpirun's programs, one after the other: the master here, then a run of render ranks for every change of host."""
+    """Returns mpirun's programs: the master here, then one group of render ranks for each change of host."""
     runs = [(host, len(list(run))) for host, run in itertools.groupby(hosts)]
     if all(host == HERE for host in hosts):
         return ["-n", "1", *master, ":", "-n", str(len(hosts)), *node]
@@ -130,18 +133,24 @@ def most_on_one_host(hosts):
 
 
 def remote_shell():
-    """What mpirun starts its daemons with, as a list of words; of several, divided by colons, the first."""
+    """Returns the command that mpirun starts its daemons with, as a list of words.
+
+    OMPI_MCA_plm_rsh_agent may name several commands, separated by colons; this is the first.
+    """
     return shlex.split(os.environ.get("OMPI_MCA_plm_rsh_agent", "").split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
 
 
 def require_reachable(hosts, node):
-    """Refuses a host that cannot run a rank: what mpirun says of one fills a screen."""
+    """Throws BadInput for the first host that cannot run a rank, because mpirun's own message fills a screen."""
     for complaint in complaints(hosts, node).values():
         raise BadInput(complaint)
 
 
 def complaints(hosts, node):
-    """Asks every other host for the program, all at once; why it cannot run a rank, for each that cannot."""
+    """Checks on all other hosts at once whether they have the program `node`.
+
+    Returns {host: reason} for every host that cannot run a rank.
+    """
     agent = remote_shell()
     others = sorted(set(hosts) - {HERE}, key=hosts.index)
     asked = []
@@ -156,7 +165,7 @@ def complaints(hosts, node):
             if complaint:
                 found[host] = f"{host} (rank {hosts.index(host) + 1}): {complaint}"
     except OSError as error:
-        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another in OMPI_MCA_plm_rsh_agent") from error
+        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another program in OMPI_MCA_plm_rsh_agent") from error
     finally:
         for process in asked:
             if process.poll() is None:
@@ -167,7 +176,7 @@ def complaints(hosts, node):
 
 
 def complaint_of(process, node, deadline, agent):
-    """What is wrong with the host that this process asks, or None."""
+    """Returns the reason why the host that `process` asks cannot run a rank, or None if it can."""
     try:
         said = process.communicate(timeout=max(0, deadline - time.monotonic()))[1].strip().split("\n")[-1]
     except subprocess.TimeoutExpired:

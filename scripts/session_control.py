@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The operator's side of a session's control socket: `sandwall ctl` (docs/operator.md)."""
+"""`sandwall ctl`: sends an operator's command to a session's control socket (docs/operator.md)."""
 
 import json
 import os
@@ -8,12 +8,12 @@ import socket
 from rank_hosts import BadInput
 
 SOCKET = "control"
-PATIENCE_SECONDS = 120  # a capture of a large wall takes its time
+PATIENCE_SECONDS = 120  # a capture of a large wall takes long
 LONGEST_ANSWER = 1 << 16
 
 
 def connect(session, patience=PATIENCE_SECONDS):
-    """A connection to the master of the session in this folder."""
+    """Returns a connection to the master of the session in the folder `session`."""
     try:
         folder = os.open(session, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError as error:
@@ -21,12 +21,12 @@ def connect(session, patience=PATIENCE_SECONDS):
     peer = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     peer.settimeout(patience)
     try:
-        # By its folder's descriptor: a socket's own path holds 107 bytes.
+        # The path goes through the folder's descriptor, because the path of a socket has at most 107 bytes.
         peer.connect(f"/proc/self/fd/{folder}/{SOCKET}")
     except PermissionError:
-        raise BadInput(f"{session}: belongs to another user, who alone may command the session") from None
+        raise BadInput(f"{session}: belongs to another user; only that user may command the session") from None
     except (FileNotFoundError, ConnectionRefusedError):
-        raise BadInput(f"{session}: no session is running there") from None
+        raise BadInput(f"{session}: no session is running in this folder") from None
     except OSError as error:
         raise BadInput(f"{session}: cannot be reached ({error})") from None
     finally:
@@ -35,7 +35,7 @@ def connect(session, patience=PATIENCE_SECONDS):
 
 
 def ask(session, line, patience=PATIENCE_SECONDS):
-    """The master's answer to a line, as text."""
+    """Returns the master's answer to a line as text."""
     with connect(session, patience) as peer:
         answer = b""
         try:
@@ -45,14 +45,14 @@ def ask(session, line, patience=PATIENCE_SECONDS):
         except socket.timeout:
             raise BadInput(f"{session}: no answer within {patience} s") from None
         except (ConnectionResetError, BrokenPipeError):
-            pass  # what it has said before counts
+            pass  # the answer before the end of the connection is still valid
     return answer.decode(errors="replace").strip()
 
 
 def ctl(args):
     line = " ".join(args.words)
     if "\n" in line:
-        raise BadInput("a command is one line")
+        raise BadInput("a command must be one line")
     answer = ask(args.session, line)
     if not answer:
         raise BadInput(f"{args.session}: the session ended before it answered")
@@ -60,7 +60,7 @@ def ctl(args):
         reply = json.loads(answer)
         good, complaint = reply["ok"], reply.get("error")
     except (ValueError, KeyError, TypeError, AttributeError):
-        raise BadInput(f"{args.session}: what answers there is no session") from None
+        raise BadInput(f"{args.session}: the program that answers there is not a session") from None
     if not good:
         raise BadInput(f"{args.session}: {complaint}")
     print(answer)
@@ -68,12 +68,12 @@ def ctl(args):
 
 
 def add_parser(commands, remainder):
-    """Adds `ctl` to the launcher's commands; `remainder` is argparse's word for all that is left."""
+    """Adds `ctl` to the launcher's commands. `remainder` is argparse.REMAINDER."""
     parser = commands.add_parser("ctl", help="command a running session",
-                                 description="Commands a session that runs on this machine: status, pause, resume, reset, undo, settle, "
+                                 description="Commands a session that runs on this machine; docs/operator.md. Commands: status, pause, resume, reset, undo, settle, "
                                              "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right], tool RADIUS, material KEY VALUE, "
                                              "save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
-                                             "show LAYER, hide LAYER, eye-separation METRES, capture, force on|off|scale SHARE, stop; docs/operator.md.")
+                                             "show LAYER, hide LAYER, eye-separation METRES, capture, force on|off|scale SHARE, stop.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
-    parser.add_argument("words", metavar="VERB", nargs=remainder, help="what to do, and with what")
+    parser.add_argument("words", metavar="VERB", nargs=remainder, help="command and its arguments")

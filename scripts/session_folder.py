@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A session's folder, which one launcher has at a time."""
+"""Locks a session's folder, so that one launcher uses it at a time."""
 
 import contextlib
 import fcntl
@@ -9,19 +9,19 @@ import time
 
 from rank_hosts import BadInput
 
-PATIENCE = 5  # seconds, for a session that is just ending
+PATIENCE = 5  # seconds to wait for a session that is ending
 
 
 class InUse(Exception):
-    """Another launcher has the folder."""
+    """Another launcher uses the folder."""
 
 
 @contextlib.contextmanager
 def held(out, resume=False):
-    """Holds OUT; the lock is the kernel's and goes with the process, however that ends.
+    """Holds a lock on the folder `out`. The kernel releases the lock when the process ends for any reason.
 
-    A folder that cannot be made or written is the master's to complain of, but where a session goes on in it: that
-    would be tried again and again.
+    If the folder cannot be made or written, the master reports it. With `resume` this function throws BadInput, because
+    the launcher would otherwise restart the master again and again. Throws InUse if another launcher holds the lock.
     """
     path = pathlib.Path(out)
     try:
@@ -33,7 +33,7 @@ def held(out, resume=False):
     try:
         lock(descriptor, out)
         if resume and not os.access(path, os.W_OK | os.X_OK):
-            raise BadInput(f"{out}: cannot be written, and a session that goes on writes its journal there; make it writable")
+            raise BadInput(f"{out}: cannot be written, but a resumed session writes its journal there; make it writable")
         yield
     finally:
         os.close(descriptor)

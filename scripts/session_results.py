@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a session has left in its folder: summary.json (docs/summary.md)."""
+"""Reads the summary.json of a session (docs/summary.md)."""
 
 import json
 import pathlib
@@ -7,12 +7,15 @@ import sys
 
 from rank_hosts import BadInput
 
-VERSION = 1  # of summary.json, as in docs/schemas/summary.schema.json
+VERSION = 1  # version of summary.json, as in docs/schemas/summary.schema.json
 BAD_INPUT = 2
 
 
 def summary_of(path):
-    """The content of a summary file, or of the one in a session's folder. Raises BadInput if it has another version."""
+    """Returns the content of a summary file, or of the one in a session's folder.
+
+    Raises BadInput if the file cannot be read or has another version.
+    """
     path = pathlib.Path(path)
     path = path / "summary.json" if path.is_dir() else path
     try:
@@ -23,13 +26,13 @@ def summary_of(path):
         raise BadInput(f"{path}: is not JSON ({error}); name the summary.json of a session") from None
     version = found.get("version", 0) if isinstance(found, dict) else 0
     if version != VERSION:
-        raise BadInput(f"{path}: version {version} of the summary, these scripts read version {VERSION}; "
+        raise BadInput(f"{path}: the summary has version {version}, but these scripts read version {VERSION}; "
                        "use the scripts of the build that wrote it")
     return found
 
 
 def read_summary(path):
-    """The same for a script: a summary that cannot be used ends it with one line and exit status 2."""
+    """Returns summary_of(path). If it raises BadInput, prints one line and ends the script with exit status 2."""
     try:
         return summary_of(path)
     except BadInput as complaint:

@@ -8,42 +8,48 @@ import events
 import rank_hosts
 from rank_hosts import BadInput
 
-STRIKES = 2  # so often may a host's ranks fail before a spare takes its place
+STRIKES = 2  # number of failures of a host's ranks after which a spare takes its place
 
 
 class SessionHosts:
-    """`names` is the host of every render rank, in their order; `spares` are (host, slots) in the order they are taken."""
+    """The hosts of all render ranks, and the spares.
+
+    `names` has the host of every render rank in their order. `spares` has (host, slots) in the order of use.
+    """
 
     def __init__(self, names, spares, node):
         self.names, self.spares, self.node = list(names), list(spares), node
         self.strikes = collections.Counter()
 
     def host_of(self, rank):
-        """Where a render rank runs, for a person."""
-        host = self.names[rank - 1] if 1 <= rank <= len(self.names) else "a host unknown"
+        """Returns the name of a render rank's host for messages."""
+        host = self.names[rank - 1] if 1 <= rank <= len(self.names) else "an unknown host"
         return socket.gethostname() if host == rank_hosts.HERE else host
 
     def struck(self, failure):
-        """Counts a failure against the host it happened on."""
+        """Counts a failure for the host on which it happened."""
         if failure.rank and failure.rank <= len(self.names):
             host = self.names[failure.rank - 1]
             self.strikes[host] += STRIKES if failure.host_is_lost else 1
 
     def require_reachable(self, say):
-        """Puts spares in the place of hosts that cannot be reached or have failed too often, and says so.
+        """Replaces hosts that cannot be reached or have failed too often by spares, and prints each replacement.
 
-        Throws BadInput for a host that cannot be reached and that no spare can replace.
+        Throws BadInput if a host cannot be reached and no spare can replace it.
         """
         complaints = rank_hosts.complaints(self.names, self.node)
         for host in [host for host, strikes in self.strikes.items() if strikes >= STRIKES and host in self.names]:
             if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), say):
-                self.strikes[host] = 0  # there is no better one
+                self.strikes[host] = 0  # no spare can replace the host, so its count begins again
         for host, complaint in complaints.items():
             if host in self.names and not self.replace(host, complaint, say):
                 raise BadInput(complaint)
 
     def replace(self, host, why, say):
-        """Whether a spare that can be reached, with slots for all its ranks, has taken the place of a host."""
+        """Replaces a host by the first spare that can be reached and has slots for all ranks of the host.
+
+        Returns whether there was such a spare.
+        """
         ranks = [rank for rank, name in enumerate(self.names, start=1) if name == host]
         for spare, slots in list(self.spares):
             if slots < len(ranks):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Keeps a session going: what dies is named and started again where the journal ends (docs/recovery.md)."""
+"""Supervises a session: reports a failed process and restarts it from the end of the journal (docs/recovery.md)."""
 
 import collections
 import dataclasses
@@ -19,8 +19,8 @@ from rank_hosts import BadInput
 
 BAD_INPUT = 2
 FAILED = 1
-FIRST_WAIT, LONGEST_WAIT = 1, 8  # seconds before the second restart in a row, and at most
-SERVER_HUNG_SECONDS = 10  # without a link, while the wall goes on
+FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
+SERVER_HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
 JOURNAL = "session.journal"
 
 
@@ -36,25 +36,25 @@ def signal_name(number):
 
 
 def ending_of(status):
-    """How a process of ours ended, for programs: SIGKILL, or "status 3"."""
+    """Returns the end of a process as a word for programs: "SIGKILL", or "status 3"."""
     return signal_name(-status) if status < 0 else f"status {status}"
 
 
 def how_ended(status):
-    """The same for people."""
-    return f"died of {ending_of(status)}" if status < 0 else f"ended with {ending_of(status)}"
+    """Returns the end of a process as words for messages: "was killed by SIGKILL", or "ended with status 3"."""
+    return f"was killed by {ending_of(status)}" if status < 0 else f"ended with {ending_of(status)}"
 
 
 @dataclasses.dataclass
 class Failure:
-    """Who failed, and of what."""
+    """A failure of a process: which process, how and when."""
 
-    text: str  # for a person: "rank 3 on node02 died of SIGSEGV"
-    rank: int = None  # None: no rank of the job
+    text: str  # for messages: "rank 3 on node02 was killed by SIGSEGV"
+    rank: int = None  # the haptic server and mpirun have None
     how: str = ""  # for programs: SIGKILL, "status 3", "hung", "broken" or "disk"
-    host_is_lost: bool = False  # it must not draw any more
+    host_is_lost: bool = False  # the host must not draw any more
     when: float = dataclasses.field(default_factory=time.time)
-    frame: int = None  # the last one that is known to be shown
+    frame: int = None  # the last frame that was reported as shown
     step: int = None
     last_lines: list = dataclasses.field(default_factory=list)
 
@@ -62,13 +62,13 @@ class Failure:
         return f"frame {self.frame}, step {self.step}" if self.frame is not None else "no frame yet"
 
     def words(self):
-        """For the master that continues the session: its record of the failure."""
+        """Returns the options that give this failure to the master that continues the session."""
         rank = [] if self.rank is None else ["--failed-rank", str(self.rank)]
         return ["--failed-at", f"{self.when:.3f}", "--failure", self.text, *rank, "--failed-how", self.how]
 
 
 def taken(path):
-    """What the master has left in failure.json, which is removed: it must not be found again."""
+    """Returns the content of the master's failure.json, or {} if the file does not exist. Removes it, so that it is read once."""
     try:
         found = json.loads(path.read_text(encoding="utf-8"))
         path.unlink()
@@ -78,7 +78,7 @@ def taken(path):
 
 
 def told_name(told, hosts):
-    """The name of the rank that failure.json or its event is about."""
+    """Returns the name of the rank in `told`, the content of failure.json or of the event `failure`."""
     if told["rank"] == 0:
         return "the master"
     tile = f" (tile {told['tile']})" if told.get("tile") else ""
@@ -86,7 +86,10 @@ def told_name(told, hosts):
 
 
 def failure_of_job(status, log, hosts, written):
-    """What ended a job: from the master's failure.json or event, then mpirun's lines, then a rank's event."""
+    """Returns the failure that ended a job.
+
+    Takes it from the master's failure.json or event, else from mpirun's lines, else from a rank's event.
+    """
     told = written or log.failure or {}
 
     def name(rank):
@@ -103,7 +106,7 @@ def failure_of_job(status, log, hosts, written):
         text = f"{told_name(told, hosts)} hung" if how == "hung" and rank is not None else message
     elif signalled:
         rank, how = signalled[0], signal_name(signalled[1])
-        text = f"{name(rank)} died of {how}"
+        text = f"{name(rank)} was killed by {how}"
     elif log.ending:
         how = "hung"
         rank = next(iter(log.ending["ranks"]), None)
@@ -120,7 +123,7 @@ def failure_of_job(status, log, hosts, written):
 
 
 class Allowance:
-    """How often may be started again: so often in so many seconds, and so often in a row without a frame."""
+    """The limit of restarts: at most `restarts` in `window` seconds, and at most `restarts` in a row without a frame."""
 
     def __init__(self, restarts, window):
         self.restarts, self.window = restarts, window
@@ -128,7 +131,7 @@ class Allowance:
         self.in_vain = 0
 
     def take(self, showed_a_frame):
-        """Whether another restart is allowed; counts it."""
+        """Counts a restart. Returns whether it is allowed."""
         now = time.monotonic()
         while self.times and now - self.times[0] > self.window:
             self.times.popleft()
@@ -137,7 +140,7 @@ class Allowance:
         return max(len(self.times), self.in_vain) <= self.restarts
 
     def wait(self):
-        """Seconds to leave before the restart that was just taken: none for the first."""
+        """Returns the wait before the restart that take() has counted last [s]: 0 before the first."""
         row = max(len(self.times), self.in_vain)
         return 0 if row <= 1 else min(LONGEST_WAIT, FIRST_WAIT * 2 ** (row - 2))
 
@@ -145,8 +148,8 @@ class Allowance:
 class Supervisor:
     """Runs a session to its end, through failures.
 
-    `job_of(hosts, haptic, words)` gives command and environment of the job, with more words for the master;
-    `server_at(address, start)` the haptic server's command, or is None.
+    `job_of(hosts, haptic, words, tagged)` returns command and environment of the job; `words` are more options for the
+    master. `server_at(address, start)` returns the haptic server's command; it is None for a session without a device.
     """
 
     def __init__(self, out, hosts, job_of, server_at, haptic, options, stop):
@@ -160,9 +163,9 @@ class Supervisor:
         self.input = Input(stop)
         self.failures = []
         self.server = self.job = None
-        self.server_due = None  # when it is started again
+        self.server_due = None  # time at which the server is started again [s]
         self.server_hung = False
-        self.server_loads = False  # it was restarted and does not listen yet
+        self.server_loads = False  # whether the server was restarted and does not listen yet
         self.gave_up = False
 
     def run(self):
@@ -179,7 +182,7 @@ class Supervisor:
                     self.server.stop()
 
     def prepare_logs(self, otherwise):
-        """OUT/log, or where nothing can be written a folder that goes; the master says what it thinks of that."""
+        """Returns OUT/log, or the temporary folder `otherwise` if OUT/log cannot be written. The master reports the latter."""
         folder = self.out / "log"
         try:
             if not self.resume:
@@ -192,7 +195,7 @@ class Supervisor:
     def tries(self):
         before = self.journal_identity()
         if self.supervised:
-            taken(self.out / "failure.json")  # what another session has left
+            taken(self.out / "failure.json")  # removes the file of another session
         words = ["--resume"] if self.resume else []
         number = (job_log.earlier_tries(self.logs) or [0])[-1] if self.logs else 0
         while True:
@@ -208,7 +211,7 @@ class Supervisor:
             log.close()
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):
                 return FAILED
-            # A journal that lay there before is of another session, and not to be gone on with.
+            # A journal that was there before belongs to another session, which must not be continued.
             ours = self.resume or self.journal_identity() not in (None, before)
             words = ["--resume", *failure.words()] if ours else []
             if not self.ready_again(failure):
@@ -221,7 +224,7 @@ class Supervisor:
             return None
 
     def one_try(self, words, log):
-        """Runs the job until it ends, and the haptic server beside it."""
+        """Runs the job until it ends, and supervises the haptic server meanwhile. Returns the exit status of the job."""
         command, environment = self.job_of(self.hosts.names, self.haptic, words, log is not None)
         self.job = Job(command, environment, log)
         self.input.job = self.job
@@ -235,7 +238,7 @@ class Supervisor:
         return status
 
     def look_after_server(self):
-        """Starts the haptic server again, on its port, when it has died; the master links to it by itself."""
+        """Starts the haptic server again on its port if it has ended. The master connects to it again by itself."""
         status = self.server.process.poll()
         if status is None:
             self.end_hung_server()
@@ -244,7 +247,7 @@ class Supervisor:
                 self.server_due = None
                 self.server.start()
                 self.server_loads = True
-                self.job.log.hand, self.job.log.refused = None, False  # they are the old server's
+                self.job.log.hand, self.job.log.refused = None, False  # the values belong to the previous server
         else:
             hung = "was hung" if self.server_hung else how_ended(status)
             failure = Failure(f"the haptic server {hung}", how="hung" if self.server_hung else ending_of(status))
@@ -257,7 +260,7 @@ class Supervisor:
                 self.job.stop()
 
     def end_hung_server(self):
-        """Kills a server that runs and has had no link for long, because it will not recover by itself."""
+        """Kills a running server without a link for SERVER_HUNG_SECONDS, because it will not recover by itself."""
         log = self.job.log
         if self.server_loads and self.server.listens():
             self.server_loads = False
@@ -268,7 +271,7 @@ class Supervisor:
             self.server.process.kill()
 
     def may_go_on(self, failure, showed_a_frame):
-        """Says who failed, and whether what failed is started again; else reports."""
+        """Prints the failure and returns whether the process is started again. If not, prints the report."""
         self.failures.append(failure)
         if self.allowance.take(showed_a_frame):
             say(f"{failure.text}; starting again ({len(self.allowance.times)} of {self.limits})")
@@ -279,13 +282,13 @@ class Supervisor:
         return False
 
     def pause(self):
-        """Waits a little before it is started again, longer each time; less when somebody wants the end."""
+        """Waits before a restart, longer each time. Returns at once when a signal asks the session to end."""
         until = time.monotonic() + self.allowance.wait()
         while time.monotonic() < until and self.stop.count == 0:
             time.sleep(0.05)
 
     def ready_again(self, failure):
-        """Puts a spare in the place of a host that is lost; False when the session cannot go on, and it has been said."""
+        """Waits, and replaces a lost host by a spare. Prints why and returns False if the session cannot continue."""
         self.pause()
         try:
             self.hosts.struck(failure)
@@ -294,22 +297,22 @@ class Supervisor:
             self.report(str(complaint))
             return False
         if self.stop.count > 0:
-            say(f"stopped between two tries; what was shown is in {self.out / JOURNAL}, and `run --resume` goes on")
+            say(f"stopped between two tries; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
             return False
         return True
 
     def report(self, why):
-        """Ends a session that nobody can help with who died, of what, where and when."""
+        """Prints the report of a session that is given up: each failed process, how, where and when it failed."""
         lines = [f"sandwall: the session is given up: {why}"]
         for failure in self.failures[-job_log.KEPT_TRIES:]:
             when = time.strftime("%H:%M:%S", time.localtime(failure.when))
             lines.append(f"  {when}  {failure.text}; shown: {failure.shown()}")
             lines += [f"            | {line}" for line in failure.last_lines]
-        lines.append(f"  all that was said: {self.logs}; what was shown is in {self.out / JOURNAL}, and `run --resume` goes on")
+        lines.append(f"  output of all tries: {self.logs}; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
         print("\n".join(lines), file=sys.stderr, flush=True)
         events.emit("given_up", why=why, failures=[{"what": failure.text, "rank": failure.rank, "how": failure.how, "frame": failure.frame,
                                                     "step": failure.step} for failure in self.failures])
         try:
             (self.logs / "report.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
         except OSError:
-            pass  # it has been said
+            pass  # the report is on standard error already

@@ -75,7 +75,7 @@ class Doctor(LauncherTest):
             host, mark, check, words = re.fullmatch(r"(\S+) +(ok|RED) +(\S+) +(.*)", line).groups()
             self.assertNotIn((host, check), found)
             found[host, check] = (mark, words.replace(str(self.folder) + "/", ""))
-        self.assertEqual(last, f"{self.reds(found)} to put right" if self.reds(found) else "nothing to put right")
+        self.assertEqual(last, f"{self.reds(found)} red" if self.reds(found) else "all green")
         return ended.returncode, found
 
     @staticmethod
@@ -100,7 +100,7 @@ class Doctor(LauncherTest):
         self.assertEqual(found["sound1", "memory"][1], "8192 MiB free, 3 ranks may take 768")
         self.assertEqual(found["sound1", "gl"][1], "ranks 1, 3-4: auto: made-up renderer")
         self.assertEqual(found[self.name, "gl"][1], "rank 2: auto: made-up renderer")
-        self.assertRegex(found["sound1", "ports"][1], r"comes to this machine at 127\.0\.0\.1, port \d+")
+        self.assertRegex(found["sound1", "ports"][1], r"connects to this machine at 127\.0\.0\.1, port \d+")
 
     def test_one_machine_needs_no_ssh(self):
         self.environment["OMPI_MCA_plm_rsh_agent"] = "/nowhere/ssh"
@@ -109,7 +109,7 @@ class Doctor(LauncherTest):
     def test_a_host_that_does_not_answer_is_asked_nothing_more(self):
         self.assertEqual(self.only_red("away1", "ssh"),
                          "cannot be reached: ssh: connect to host away1 port 22: No route to host; "
-                         "`ssh -o BatchMode=yes away1 true` must end without a word (docs/hosts.md)")
+                         "`ssh -o BatchMode=yes away1 true` must end without output (docs/hosts.md)")
 
     def test_another_build_is_named_with_ours(self):
         self.assertEqual(self.only_red("old1", "build"), "00000000000000ff, here it is 0123456789abcdef; "
@@ -124,7 +124,7 @@ class Doctor(LauncherTest):
         self.assertRegex(words, r"^3[56]\d{5}\.\d ms ahead of this machine's, give or take .* ms; set it")
 
     def test_a_host_behind_a_firewall_is_red(self):
-        self.assertRegex(self.only_red("walled1", "ports"), "^does not come to this machine at 127.0.0.1, port .*; "
+        self.assertRegex(self.only_red("walled1", "ports"), "^cannot connect to this machine at 127.0.0.1, port .*; "
                          "open the firewalls between the hosts for all TCP ports$")
 
     def test_a_display_that_cannot_be_opened_is_red(self):
@@ -187,9 +187,9 @@ class Refusals(LauncherTest):
     def test_bad_input_is_one_line(self):
         self.assertIn("no-file: cannot be read; check the path", self.refusal(str(self.folder / "no-file")))
         self.assertEqual(self.refusal(self.write("empty", "# nobody\n")),
-                         "sandwall: empty: names no host; write one a line, as ssh knows it\n")
+                         "sandwall: empty: names no host; write one per line, as ssh knows it\n")
         self.assertEqual(self.refusal(self.write("hosts", "a\n-oX\n")),
-                         "sandwall: hosts:2: '-oX' is no host name; write one as ssh knows it, such as node01\n")
+                         "sandwall: hosts:2: '-oX' is not a host name; write one as ssh knows it, such as node01\n")
         self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")
         self.assertEqual(self.refusal(self.write("wall.toml", "")), "sandwall: wall.toml:3: no\n")
 

@@ -129,7 +129,7 @@ class Refusals(LauncherTest):
         self.assertIn("--network: every rank runs on this machine", self.refused(["-"], "--network", "10.0.0.0/24"))
 
     def test_a_network_that_is_none_is_refused(self):
-        self.assertIn("--network: 'eth0' is no network", self.refused(["node1"], "--print-command", "--network", "eth0"))
+        self.assertIn("--network: 'eth0' is not a network", self.refused(["node1"], "--print-command", "--network", "eth0"))
 
     def test_a_variable_without_a_value_is_refused(self):
         self.assertEqual(self.refused(["-"], "--env", "XAUTHORITY"), "sandwall: --env XAUTHORITY: write NAME=VALUE\n")
@@ -150,7 +150,7 @@ class Refusals(LauncherTest):
                              f"sandwall run: argument {option}: {value} must be 0 or more; try --help\n")
 
     def test_a_secret_without_a_link_is_refused(self):
-        self.assertIn("--secret-file: there is no haptic link to secure", self.refused(["-"], "--secret-file", "none"))
+        self.assertIn("--secret-file: needs a haptic link", self.refused(["-"], "--secret-file", "none"))
 
 
     def test_what_only_a_device_can_do_needs_one(self):
@@ -158,7 +158,7 @@ class Refusals(LauncherTest):
                               ("--map", "scale=1")):
             for hand in ((), ("--haptic", "127.0.0.1:7750")):
                 self.assertEqual(self.refused(["-"], option, value, *hand),
-                                 f"sandwall: {option}: there is no --device; give it to the haptic server itself\n")
+                                 f"sandwall: {option}: needs --device; with --haptic, give it to the haptic server itself\n")
         self.assertIn("--guards: invalid choice: 'off'", self.refused(["-"], "--device", "mouse", "--guards", "off"))
 
 

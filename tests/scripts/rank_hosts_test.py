@@ -21,7 +21,7 @@ class HostsOfWall(unittest.TestCase):
 
     def test_a_name_that_ssh_or_mpirun_would_misread_is_refused(self):
         for name in ("-oProxyCommand=x", "a,b", "a:2", "a/b", "a;b", "x" * 300):
-            with self.assertRaisesRegex(rank_hosts.BadInput, "wall.toml: '.*' is no host name"):
+            with self.assertRaisesRegex(rank_hosts.BadInput, "wall.toml: '.*' is not a host name"):
                 rank_hosts.hosts_of_wall(name, "wall.toml")
 
 
@@ -52,7 +52,7 @@ class HostsOfFile(unittest.TestCase):
         self.assertEqual(self.hosts("a slots=-1\n", 2), "FILE:1: 'slots=-1' is neither slots=N nor spare")
         self.assertEqual(self.hosts("a slots=0\n", 2), "FILE:1: slots must be from 1 to 1024, got 0")
         self.assertEqual(self.hosts("a slots=9999\n", 2), "FILE:1: slots must be from 1 to 1024, got 9999")
-        self.assertIn("FILE:3: 'a,b' is no host name", self.hosts("\n\na,b\n", 2))
+        self.assertIn("FILE:3: 'a,b' is not a host name", self.hosts("\n\na,b\n", 2))
 
     def test_a_file_that_is_not_there_is_named(self):
         with self.assertRaisesRegex(rank_hosts.BadInput, "--hosts /nowhere: cannot be read"):
@@ -65,7 +65,7 @@ class Network(unittest.TestCase):
 
     def test_anything_else_is_refused(self):
         for text in ("", "10.0.0.1", "eth0", "10.0.0.0/33", "10.0.0/24", "10.0.0.0/24,lo"):
-            with self.assertRaisesRegex(rank_hosts.BadInput, f"--network: '{text}' is no network"):
+            with self.assertRaisesRegex(rank_hosts.BadInput, f"--network: '{text}' is not a network"):
                 rank_hosts.checked_network(text)
 
 

@@ -19,16 +19,16 @@ class Restarts(Supervised):
         before = time.time()
         status, printed, error = self.ended(["-", "-"])
         self.assertEqual((status, printed), (0, "a line of progress\n" * 2))
-        self.assertEqual(error, f"last words\nsandwall: rank 2 on {HOST} died of SIGSEGV; "
+        self.assertEqual(error, f"last words\nsandwall: rank 2 on {HOST} was killed by SIGSEGV; "
                          "starting again (1 of --restarts 3 in --restart-window 60)\n")
         first, second = self.commands()
         self.assertNotIn("--resume", first)
-        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} died of SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
+        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} was killed by SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
         self.assertTrue(before <= float(found[1]) <= time.time(), second)
 
     def test_the_master_is_called_so(self):
         self.tries("progress 7 6; dies 0 host 9", "exit 0")
-        self.assertIn("sandwall: the master died of SIGKILL; starting again", self.ended(["-"])[2])
+        self.assertIn("sandwall: the master was killed by SIGKILL; starting again", self.ended(["-"])[2])
 
     def test_a_rank_that_ends_by_itself_is_named_with_its_status(self):
         self.tries("progress 7 6; ends 1 3", "exit 0")
@@ -67,7 +67,7 @@ class Restarts(Supervised):
 
     def test_a_killed_mpirun_is_named(self):
         self.tries("progress 7 6; kill -KILL $$", "exit 0")
-        self.assertIn("sandwall: mpirun died of SIGKILL; starting again", self.ended(["-"])[2])
+        self.assertIn("sandwall: mpirun was killed by SIGKILL; starting again", self.ended(["-"])[2])
 
     def test_an_orderly_end_and_bad_input_are_ends(self):
         for status in (0, 2):
@@ -118,7 +118,7 @@ class GivenUp(Supervised):
         report = error[error.index("sandwall: the session is given up"):]
         self.assertIn("more failures than --restarts 2 in --restart-window 600 allows", report)
         for number in (1, 2, 3):
-            self.assertRegex(report, rf"\d\d:\d\d:\d\d  rank 1 on {HOST} died of SIGABRT; shown: frame {number}7, step {number}6\n"
+            self.assertRegex(report, rf"\d\d:\d\d:\d\d  rank 1 on {HOST} was killed by SIGABRT; shown: frame {number}7, step {number}6\n"
                              rf" +\| words of try {number}\n")
         self.assertEqual(report, (self.folder / "out/log/report.txt").read_text().replace(str(self.folder) + "/", ""))
         self.assertIn("words of try 2", (self.folder / "out/log/try_2.err").read_text())

@@ -42,7 +42,7 @@ until [ $(wc -l < "$folder/servers") = 2 ]; do sleep 0.05; done; exit 0""")
         self.assertIn("--listen 127.0.0.1:4711 ", second)
         self.assertIn("/ticks.csv ", first)
         self.assertIn("/ticks_2.csv ", second)
-        self.assertIn("sandwall: the haptic server died of SIGSEGV; starting again (1 of ", error)
+        self.assertIn("sandwall: the haptic server was killed by SIGSEGV; starting again (1 of ", error)
 
     def test_a_job_that_is_started_again_finds_the_same_server(self):
         self.tries("progress 1 1; dies 1 host 9", "exit 0")
@@ -58,7 +58,7 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         status, printed, error = self.ended(["-"], "--device", "script:gis", "--restarts", "2", "--restart-window", "600")
         self.assertEqual((status, len(self.servers()), printed.splitlines()[-1]), (1, 3, "told: stop"), error)
         self.assertIn("sandwall: the session is given up", error)
-        self.assertEqual(error.count("the haptic server died of SIGKILL; shown: frame 5, step 4"), 3, error)
+        self.assertEqual(error.count("the haptic server was killed by SIGKILL; shown: frame 5, step 4"), 3, error)
 
 
 class HungServer(unittest.TestCase):

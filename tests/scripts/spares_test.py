@@ -53,7 +53,7 @@ class Spares(Supervised):
         status, _, error = self.ended(["-"] * 2, *self.hosts("node1", "node2"))
         self.assertEqual(status, 1)
         self.assertIn("sandwall: the session is given up: node2 (rank 2): cannot be reached", error)
-        self.assertIn("rank 2 on node2 died of SIGKILL", error)
+        self.assertIn("rank 2 on node2 was killed by SIGKILL", error)
 
     def test_spares_draw_nothing_while_all_is_well(self):
         self.assertEqual(self.printed(["-"] * 2, *self.hosts("node1 spare", "node2 slots=2")),
