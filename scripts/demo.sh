@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# The main job, headless: a recorded hand writes GIS into sand on a 3x4 passive-stereo wall of 12 render ranks.
+# Runs the demo without a display: a recorded hand writes "GIS" into sand on a passive-stereo wall of 3x4 tiles, which 12
+# render ranks draw.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -21,7 +22,8 @@ cmake --build build/release
 
 mkdir -p "$out"
 scripts/make_hand_trace.py "$out/hand.csv"
-# The hand takes 12 seconds of 60 steps; a wall that cannot keep up gets fewer and longer ones, and shows the rest at rest.
+# The hand writes for 12 s at 60 steps per second. A wall that cannot keep up gets fewer and longer steps; the last of the
+# 720 steps then show sand at rest.
 scripts/sandwall run --wall walls/configs/tiled_3x4.toml --scene "$scene" \
     --device "trace:$out/hand.csv" --steps 720 --out "$out"
-echo "pictures and summary: $out (begin with wall_anaglyph.png and summary.json)"
+echo "pictures and summary: $out (see wall_anaglyph.png and summary.json first)"

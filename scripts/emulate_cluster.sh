@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# A cluster on one machine: every host is a network namespace with a name, an address and a link of 1 Gbit/s of its own, and
-# a session runs over TCP between them, a render rank a host. Needs root, or a kernel that allows unprivileged user
-# namespaces. Leaves nothing behind; docs/cluster.md.
+# Runs a session on an emulated cluster on this machine. Every host is a network namespace with its own name, its own
+# address and its own link of 1 Gbit/s. Each host has one render rank, and the ranks communicate over TCP. Needs root, or a
+# kernel that allows unprivileged user namespaces. Removes the namespaces at its end. docs/cluster.md
 set -euo pipefail
 
 usage() {
     cat >&2 <<'END'
 usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
-       scripts/emulate_cluster.sh --check          # whether this machine can: exit status 0 or 1
-       scripts/emulate_cluster.sh --tear-down      # removes what a killed run has left behind
+       scripts/emulate_cluster.sh --check          # exit status 0 if this machine can emulate hosts, else 1
+       scripts/emulate_cluster.sh --tear-down      # removes the namespaces of a killed run
   --wall, --scene   default: walls/configs/tiled_3x4.toml, scenes/writing.toml
-  --spares N        hosts that draw only when another cannot (default: 0)
-  --cut node03@10   takes that host's link down, so many seconds after the first frame; repeatable
-  --rate RATE       of every link, both ways (default: 1gbit)
+  --spares N        number of spare hosts, which draw only when another host cannot (default: 0)
+  --cut node03@10   takes the link of node03 down 10 seconds after the first frame; can be repeated
+  --rate RATE       rate of every link in both directions (default: 1gbit)
   OPTION            more options of sandwall run, such as --steps 600
 END
     exit 2
@@ -26,7 +26,8 @@ out='' spares=0 rate=1gbit cuts=() more=()
 network=10.77.0
 prefix=sandwall-emulated-
 
-# remove PREFIX: ends what runs in the namespaces of that name, and removes them; their links go with them.
+# remove PREFIX: kills the processes in all namespaces whose name begins with PREFIX, and removes the namespaces with their
+# links.
 remove() {
     local name
     for name in $(ip netns list | awk -v prefix="$1" 'index($1, prefix) == 1 { print $1 }'); do
@@ -35,9 +36,9 @@ remove() {
     done
 }
 
-need() { command -v "$1" >/dev/null || { echo "emulate_cluster.sh: no $1; scripts/install_dependencies.sh" >&2; exit 2; }; }
+need() { command -v "$1" >/dev/null || { echo "emulate_cluster.sh: $1 is missing; run scripts/install_dependencies.sh" >&2; exit 2; }; }
 
-# What add_host() below needs of the kernel, tried.
+# Succeeds if the kernel allows all that add_host() below needs.
 can_make_hosts() {
     local name=${prefix}probe-$$ status=0
     ip netns add "$name" 2>/dev/null || return 1
@@ -48,7 +49,7 @@ can_make_hosts() {
     return $status
 }
 
-# Runs a command as root of a user namespace of its own, with a /run of its own for the names of network namespaces.
+# Runs a command as root of its own user namespace, with its own /run for the names of network namespaces.
 # shellcheck disable=SC2016  # the inner shell expands it
 in_user_namespace=(unshare --user --map-root-user --net --mount
     sh -c 'mount -t tmpfs none /run && mkdir /run/netns && exec "$@"' sh env SANDWALL_IN_USER_NAMESPACE=1)
@@ -76,7 +77,7 @@ done
 need ip; need tc; need unshare
 if ! can_make_hosts; then
     if [[ -n ${SANDWALL_IN_USER_NAMESPACE:-} ]] || ! "${in_user_namespace[@]}" "$0" --check 2>/dev/null; then
-        echo "emulate_cluster.sh: this machine makes no network namespaces; run it with sudo, or allow user namespaces" >&2
+        echo "emulate_cluster.sh: this machine does not allow network namespaces; run it with sudo, or allow user namespaces" >&2
         exit 2
     fi
     exec "${in_user_namespace[@]}" "$0" "${arguments[@]}"
@@ -101,7 +102,7 @@ ip -n "${mine}head" link add switch type bridge
 ip -n "${mine}head" address add "$network.1/24" dev switch
 ip -n "${mine}head" link set switch up
 
-# add_host NUMBER: a namespace with a cable to the switch.
+# add_host NUMBER: makes a namespace with a link to the switch.
 add_host() {
     local name
     name=$(printf 'node%02d' "$1")
@@ -120,8 +121,9 @@ for ((host = 1; host <= ranks + spares; ++host)); do
     printf 'node%02d%s\n' "$host" "$([[ $host -gt $ranks ]] && echo ' spare')" >>"$folder/hosts"
 done
 
-# In ssh's place. A port that nobody listens at is refused at once by a host that can be reached. Open MPI shares folders
-# and memory within a machine, which these hosts must not. The launcher must not know their processes either.
+# This program replaces ssh. To test whether a host can be reached, it connects to a closed port: a host that can be reached
+# refuses the connection at once. Open MPI shares folders and memory within a machine; each host gets its own folder, so
+# that these hosts share neither. SANDWALL_JOB is removed, so that the launcher cannot find their processes.
 cat >"$folder/agent" <<END
 #!/bin/bash
 host=\$1; shift
@@ -135,7 +137,7 @@ exec ip netns exec "$mine\$host" unshare --uts sh -c "hostname \$host; \$*"
 END
 chmod +x "$folder/agent"
 
-# cut HOST SECONDS: takes a host's cable out, so long after the first frame.
+# cut HOST SECONDS: takes the link of HOST down SECONDS after the first frame.
 cut() {
     until [[ -S $out/control ]]; do sleep 0.1; done
     sleep "$2"
@@ -148,7 +150,7 @@ for one in "${cuts[@]}"; do
     helpers+=($!)
 done
 
-echo "emulate_cluster.sh: $ranks hosts and $spares spares at $rate, one render rank each, the master on one more" >&2
+echo "emulate_cluster.sh: $ranks hosts with one render rank each, $spares spares, one host for the master; links of $rate" >&2
 export OMPI_MCA_plm_rsh_agent=$folder/agent TMPDIR=$folder/tmp-head
 mkdir -p "$TMPDIR"
 status=0
@@ -156,7 +158,7 @@ ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$
     --wall "$wall" --scene "$scene" --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
 session=$!
 trap 'kill -INT $session 2>/dev/null' INT TERM HUP
-# A wait that a signal ends is not the end of the session.
+# A signal ends `wait` before the session ends.
 while kill -0 "$session" 2>/dev/null; do
     wait "$session" && status=0 || status=$?
 done

@@ -18,7 +18,7 @@ BIN = ROOT / "build" / "release" / "bin"
 
 
 def benchmark(program, pattern):
-    """Median results of a Google Benchmark program, by name."""
+    """Returns the median results of a Google Benchmark program, by name."""
     command = [BIN / program, f"--benchmark_filter={pattern}", "--benchmark_format=json",
                "--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true"]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
@@ -27,7 +27,7 @@ def benchmark(program, pattern):
 
 
 def micro(result):
-    """CPU time in microseconds."""
+    """Returns the CPU time of a result [µs]."""
     return result["cpu_time"] * {"ns": 1e-3, "us": 1, "ms": 1e3}[result["time_unit"]]
 
 
@@ -81,7 +81,7 @@ def session_rows(summary):
 def main():
     file = sys.argv[1] if len(sys.argv) > 1 else ROOT / "out" / "demo" / "summary.json"
     if not pathlib.Path(file).is_file():
-        print(f"{file}: not there; run scripts/demo.sh first", file=sys.stderr)
+        print(f"{file}: does not exist; run scripts/demo.sh first", file=sys.stderr)
         return 2
     summary = session_results.read_summary(file)
     print(f"| {processor()} | | |\n|---|---|---|")

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Lets libFuzzer look for inputs that break what reads bytes from outside, under the address and undefined sanitizers.
+# Runs libFuzzer on all code that reads bytes from outside, under the address and undefined behaviour sanitizers.
 #
-# usage: scripts/fuzz.sh [SECONDS [NAME...]]     600 seconds each, and all of tests/fuzz, when nothing is said
+# usage: scripts/fuzz.sh [SECONDS [NAME...]]     (default: 600 seconds for each fuzzer of tests/fuzz)
 #
-# What it finds to be interesting is kept in build/fuzz/corpus/NAME for the next time. An input that breaks something
-# is left there too, named crash-..., and the exit status is 1.
+# Inputs that reach new code are kept in build/fuzz/corpus/NAME for the next run. An input that causes a failure is kept
+# there too, named crash-..., oom-..., timeout-... or leak-...; the exit status is then 1.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-600}
@@ -33,7 +33,7 @@ for name in "${names[@]}"; do
     done
     [[ $name == wall ]] && seeds+=(walls/configs tests/walls/broken)
     log=$corpus/$name.log
-    # The largest tool, dragged from as far away as a step may be, takes 5 s here; beside other work much more.
+    # An input with the largest tool on the longest step takes 5 s on an idle machine, and much more on a busy one.
     build/fuzz/bin/"fuzz_$name" -max_total_time="$seconds" -rss_limit_mb=4096 -timeout=120 -max_len=8192 \
         -print_final_stats=1 -artifact_prefix="$corpus/$name/" "$corpus/$name" "${seeds[@]}" 2>"$log" || true
     executions=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

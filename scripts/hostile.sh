@@ -1,19 +1,20 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs a session undisturbed, then while somebody who means no good talks to its haptic server, then with such a one as
-# its haptic server; prints what that did to the frames, the memory and the sand. Exit status 1 when the sand of a run
-# is not that of its journal, or the server's another, or the linked master lost its link.
+# Runs three sessions: one undisturbed, one while a hostile program sends frames to the haptic server, and one whose haptic
+# server is a hostile program. Prints frame times, memory, refused frames and hashes. The exit status is 1 if the state hash
+# of a session differs from its journal's. It is also 1 if ranks or server diverge, or if the master loses its link to the
+# real server.
 #
-# usage: scripts/hostile.sh [--tls] [FRAMES [SEED]]     1000000 hostile frames each time, and the time as the seed
-#        --secret-file FILE                             both roles; else --tls makes one
-# With a secret a false server can only send bad frames, one a connection: 30 of them.
+# usage: scripts/hostile.sh [--tls] [FRAMES [SEED]]     (default: 1000000 hostile frames in each session; SEED: the time)
+#        --secret-file FILE                             secrets for both roles; without FILE, --tls makes one
+# With a secret, a false server can only send one bad frame per connection. It then sends 30 of them.
 set -euo pipefail
 link=() secret='' tls=
 while [[ ${1:-} == --* ]]; do
     case $1 in
         --tls) tls=--tls; shift ;;
         --secret-file) secret=$(realpath "$2"); shift 2 ;;
-        *) echo "$1: unknown; --tls or --secret-file FILE" >&2; exit 2 ;;
+        *) echo "hostile.sh: $1: unknown option; use --tls or --secret-file FILE" >&2; exit 2 ;;
     esac
 done
 cd "$(dirname "$0")/.."
@@ -33,7 +34,8 @@ trap 'exec 3>&- 2>/dev/null; [[ -z $server ]] || kill "$server" 2>/dev/null || t
 
 resident() { awk '/VmRSS/ {printf "%.1f", $2 / 1024}' "/proc/$1/status"; }
 
-# resident_meanwhile PID WORKER: at the start, after each quarter of the time that WORKER took, and at the end [MiB]
+# resident_meanwhile PID WORKER: prints the resident memory of PID [MiB] while WORKER runs. The five numbers are from the
+# start, the end of each quarter of the time, and the end.
 resident_meanwhile() {
     local seen=()
     while kill -0 "$2" 2>/dev/null; do
@@ -47,7 +49,7 @@ resident_meanwhile() {
 }
 master_of() { pgrep -n -f "sandwall-master .*--out $folder/$1( |\$)"; }
 
-# start_session NAME HOST:PORT: with its own standard input, over which it is stopped
+# start_session NAME HOST:PORT: starts a session with its own standard input; end_session stops it over this input.
 start_session() {
     mkfifo "$folder/$1.in"
     exec 3<>"$folder/$1.in"
@@ -59,7 +61,7 @@ start_session() {
     before=$(resident "$master")
 }
 
-# end_session NAME
+# end_session NAME: stops the session and prints its row of the table.
 end_session() {
     after=$(resident "$master")
     echo stop >&3
@@ -79,7 +81,7 @@ divergences, reconnects = told["divergences"] + told["server_divergences"], told
 same = "equal" if replayed.strip() == told["state_hash"] else "DIFFERENT"
 print(f'| {name} | {ms["p50"]:.2f} | {ms["p99"]:.2f} | {ms["max"]:.2f} | {told["frames"]} | {before} → {after} | '
       f'{divergences} | {reconnects} | {count} | {same} |')
-# A false server has no link that could be lost.
+# In the run against-master every reconnection is to the false server, so reconnects are allowed there.
 sys.exit(same != "equal" or divergences > 0 or (reconnects > 0 and name != "against-master"))
 PYTHON
 }
@@ -107,7 +109,7 @@ start_session "against-server" "127.0.0.1:$port"
 hostile=$!
 memory=$(resident_meanwhile "$server" "$hostile")
 wait "$hostile"
-memory="the server, by quarters of that time: $memory MiB; $(<"$folder/hostile.log")"
+memory="memory of the server at the start and after each quarter of that time: $memory MiB; $(<"$folder/hostile.log")"
 end_session "against-server"
 kill "$server"; wait "$server" || true; server=
 SANDWALL_EVENTS=1 "$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \

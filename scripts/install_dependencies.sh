@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what Sandwall needs from Debian 12's packages; says nothing and asks for no password when all of it is there.
+# Installs the Debian 12 packages that Sandwall needs. Prints nothing and needs no password if all of them are installed.
 set -euo pipefail
 
 packages=(
@@ -9,16 +9,15 @@ packages=(
     libboost-dev                                            # Asio, Endian, Lockfree: headers alone
     libosmesa6-dev libglm-dev python3-glad                  # drawing
     libegl-dev libgl1-mesa-dri                              # off screen on graphics cards
-    libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, the hidden cursor
+    libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, hiding the cursor
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
     libgdal-dev libmuparser-dev                             # terrain from rasters, pictures and formulas
-    libssl-dev                                              # who may come in over a network
+    libssl-dev                                              # secrets and TLS on the haptic link
     libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
 )
-# The tests also build with clang, for the proof that the state hash does not depend on the compiler, and validate what
-# sessions write against its schemas.
-# The report draws its curves with matplotlib.
+# The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
+# events of sessions against the schemas. The report draws its curves with matplotlib.
 for option in "$@"; do
     case "$option" in
         --with-tests) packages+=(clang-14 python3-jsonschema) ;;
@@ -36,7 +35,7 @@ done
 
 as_root=()
 if [[ $EUID -ne 0 ]]; then
-    command -v sudo >/dev/null || { echo "install_dependencies.sh: run as root, or install sudo; missing: ${missing[*]}" >&2; exit 2; }
+    command -v sudo >/dev/null || { echo "install_dependencies.sh: run it as root, or install sudo; missing packages: ${missing[*]}" >&2; exit 2; }
     as_root=(sudo)
 fi
 echo "installing: ${missing[*]}"

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The layers of the project: checks who includes whom, and draws docs/layers.svg.
+"""Checks which folders of the project include which, and draws docs/layers.svg.
 
-A file may include a header of its own folder, or of a library that its own library links in CMake. A header, which other
-folders include in turn, may only use what its library links PUBLIC. Folders may not include each other in a circle; a
-source stands beside the header that it implements; a header that says `// Private to this folder.` is included from
-nowhere else but its tests; no folder holds more than 25 sources.
+A file may include a header of its own folder, or of a library that its own library links in CMake. Other folders include
+a header, so it may only include headers of libraries that its library links PUBLIC. Folders may not include each other in
+a circle. A source is in the folder of the header that it implements. A header with the line `// Private to this folder.`
+is only included from its folder and from its tests. A folder holds at most 25 sources.
 
 usage: scripts/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
 """
@@ -22,14 +22,14 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_SOURCES = 25
 PRIVATE = "// Private to this folder."
-OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # use the folders; nothing includes them
+OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
 
 
 class Project:
-    """Sources by path, and targets as cmake/Layers.cmake has written them."""
+    """The sources by path, and the targets that cmake/Layers.cmake has written."""
 
     def __init__(self, sources, targets):
-        self.sources = sources  # path: text
+        self.sources = sources  # {path: text}
         self.includes = {path: [name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if name in sources]
                          for path, text in sources.items()}
         objects = {name: target for name, target in targets.items() if target["type"] == "OBJECT_LIBRARY"}
@@ -42,7 +42,7 @@ class Project:
             for source in compiled:
                 if source in sources and not (source in self.owner and target["type"] != "STATIC_LIBRARY"):
                     self.owner[source] = name
-        self.library = {}  # of a folder: the one that is named as it, or the first
+        self.library = {}  # {folder: its library}: the library with the folder's name, or else the first
         for source, name in sorted(self.owner.items()):
             folder = os.path.dirname(source)
             if self.targets[name]["type"] == "STATIC_LIBRARY":
@@ -56,7 +56,7 @@ class Project:
         return cls(sources, json.loads((build / "layers.json").read_text()))
 
     def target_of(self, path):
-        """The library that a file is part of; None for a folder without one."""
+        """Returns the library that a file is part of, or None if no folder above it has a library."""
         folder, stem = os.path.dirname(path), os.path.splitext(path)[0]
         own = self.owner.get(stem + ".cpp")
         if own and self.targets[own]["type"] != "MODULE_LIBRARY":
@@ -66,7 +66,7 @@ class Project:
         return self.library.get(folder)
 
     def usable(self, target, public_only):
-        """Targets whose headers a target's sources (or, PUBLIC alone, its headers) may include."""
+        """Returns the targets whose headers the sources of `target` may include; if `public_only`, its headers."""
         links = self.targets[target]["interface_link_libraries" if public_only else "link_libraries"]
         found, waiting = {target}, list(links)
         while waiting:
@@ -77,7 +77,7 @@ class Project:
         return found
 
     def folder_edges(self):
-        """(from, to): files of the including folder with what they include."""
+        """Returns {(including folder, included folder): [(file, included header)]}."""
         edges = {}
         for path, names in self.includes.items():
             for name in names:
@@ -90,12 +90,12 @@ class Project:
 def wrong_links(project):
     for path, names in project.includes.items():
         if path.startswith(OUTER) and path.endswith(".hpp"):
-            continue  # of the programs that include it
+            continue  # it belongs to the programs that include it
         target = project.target_of(path)
         if target is None:
             if not path.startswith(OUTER):
                 yield f"{path}: no library of the project holds it; add it to a CMakeLists.txt"
-            continue  # a module of a test's own
+            continue  # a test's own module
         usable = project.usable(target, public_only=path.endswith(".hpp"))
         for name in names:
             other = project.target_of(name)
@@ -111,7 +111,7 @@ def misplaced(project):
         if path.endswith(".cpp") and not path.startswith(OUTER):
             for name in names[:1]:
                 if os.path.basename(name) == stem + ".hpp" and os.path.dirname(name) != os.path.dirname(path):
-                    yield f"{path}: implements {name} and does not stand beside it"
+                    yield f"{path}: implements {name} and is in another folder"
         for name in names:
             inside = os.path.dirname(name)
             if PRIVATE in project.sources[name] and os.path.dirname(path) != inside \
@@ -126,11 +126,11 @@ def crowded(project):
             count[os.path.dirname(path)] = count.get(os.path.dirname(path), 0) + 1
     for folder, sources in sorted(count.items()):
         if sources > MOST_SOURCES:
-            yield f"{folder}: holds {sources} sources, {MOST_SOURCES} are the most; divide it"
+            yield f"{folder}: holds {sources} sources, more than {MOST_SOURCES}; divide it"
 
 
 def circles(project):
-    """Every circle of folders once, by its first way back."""
+    """Yields a message for every circle of folders, once."""
     edges = project.folder_edges()
     below = {}
     for source, target in edges:
@@ -158,7 +158,7 @@ def faults(project):
 
 
 def reduced(edges):
-    """The edges that no longer way replaces."""
+    """Returns the edges between folders, except edges that a longer way replaces."""
     below = {}
     for source, target in edges:
         below.setdefault(source, set()).add(target)
@@ -194,7 +194,7 @@ def draw(project, file):
     lines += [f'"{source}" -> "{target}";' for source, target in edges] + ["}"]
     svg = subprocess.run(["dot", "-Tsvg"], input="\n".join(lines), capture_output=True, check=True, text=True).stdout
     svg = re.sub(r"<!--.*?-->\n?", "", svg, flags=re.DOTALL)
-    note = f"<!-- scripts/layers.py {fingerprint(project)}: an arrow is what a folder includes, less what follows from others -->\n"
+    note = f"<!-- scripts/layers.py {fingerprint(project)}: an arrow points to an included folder; arrows that follow from others are left out -->\n"
     file.write_text(re.sub(r"(<svg)", note + r"\1", svg, count=1))
 
 
@@ -205,7 +205,7 @@ def main():
     options = parser.parse_args()
     project = Project.of(ROOT, options.build)
     found = faults(project)
-    print("\n".join(found) or f"{len(project.folder_edges())} arrows between folders, none wrong")
+    print("\n".join(found) or f"{len(project.folder_edges())} arrows between folders, all correct")
     if options.svg:
         draw(project, options.svg)
     return 1 if found else 0

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Shows how punctual the force loop is: a real haptic server for a minute, with the sand eroding on the other core.
+"""Measures how punctual the force loop is while sand erodes on the other core.
 
-Runs the haptic server and a wall of one small tile, digging without end, and prints how often each period between two
-ticks and each cost of one force came, and how many deadlines were missed per mille.
+Runs the haptic server and a wall of one small tile for a minute, while the hand digs without end. Prints histograms of the
+period between two ticks and of the time of one force, and the share of missed deadlines.
 
 usage: scripts/loop_timings.py [--seconds 60] [--scene scenes/sandbox.toml]   (leave the machine alone meanwhile)
 """
@@ -15,17 +15,17 @@ import pathlib
 import sys
 import tempfile
 
-sys.dont_write_bytecode = True  # the folder of the project stays as it is
+sys.dont_write_bytecode = True  # writes no files into the project's folder
 import latency
 
-# us, between two ticks; the target is 1000.
+# Edges of the histogram of periods between two ticks [us]; the target is 1000.
 PERIODS = [0, 500, 900, 990, 1010, 1100, 1500, 2000, 5000, 20000]
 FORCES = [0, 1, 2, 5, 10, 20, 50, 100, 1000]
-TICK = 1000  # us
+TICK = 1000  # [us]
 
 
 def read(file):
-    """By what was timed: pairs of the shortest duration [us] and how often."""
+    """Returns {name of a measurement: [(shortest duration of the bin [us], count)]}."""
     found = {}
     with open(file, encoding="utf-8") as stream:
         for row in csv.DictReader(stream):
@@ -34,7 +34,7 @@ def read(file):
 
 
 def binned(buckets, edges):
-    """How many of the durations lie from each edge to the next."""
+    """Returns the number of durations from each edge to the next."""
     counts = [0] * len(edges)
     for lowest, count in buckets:
         counts[max(i for i, edge in enumerate(edges) if lowest >= edge)] += count
@@ -54,7 +54,7 @@ def table(what, buckets, edges):
 
 
 def missed(buckets):
-    """Deadlines of later ticks that passed while one was waited for, per mille of all."""
+    """Returns the deadlines that passed before the tick of the deadline before them had come [per mille of all]."""
     passed = sum(count * (int(lowest // TICK) - 1) for lowest, count in buckets if lowest >= 2 * TICK)
     return 1000 * passed / sum(count for _, count in buckets)
 
@@ -74,7 +74,7 @@ def run(args):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=60, help="of digging (default: 60)")
+    parser.add_argument("--seconds", type=float, default=60, help="seconds of digging (default: 60)")
     parser.add_argument("--scene", type=pathlib.Path, default=latency.SCENE, help="scene file (default: scenes/sandbox.toml)")
     args = parser.parse_args()
     args.warm_up = 0
@@ -88,7 +88,7 @@ def main():
     print(table("period of the force loop", found["period"], PERIODS))
     print("\n" + table("one force evaluation, by the clock", found["force"], FORCES))
     ticks = sum(count for _, count in found["period"])
-    print(f"\n- {missed(found['period']):.2f} per mille of {ticks} deadlines missed: each passed before the tick of the deadline before it had come")
+    print(f"\n- {missed(found['period']):.2f} per mille of {ticks} deadlines missed: the deadline passed before the tick before it had come")
     print(f"- {latency.processor()}, {len(os.sched_getaffinity(0))} cores shared by the haptic server (force loop, sand), the master and a render rank; "
           f"load average {before:.1f} before and {os.getloadavg()[0]:.1f} after; {summary['steps']} steps of sand dug by the tool of Dorjgotov et al. 2007")
     return 0

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes a plausible recording of a hand that draws a stroke list: about 1 kHz, in millimetres, z up.
 
-What a real recording has, and a script device has not: smooth accelerations, tremor, a position sensor with steps of
-0.1 mm, and ticks that come late (period 1.017 ms on average, 2.3 ms at the 99th percentile, rare gaps up to 20 ms).
+It has properties of a real recording that a script device lacks: smooth accelerations, tremor, a position sensor with steps
+of 0.1 mm, and late ticks. The mean period is 1.017 ms, the 99th percentile 2.3 ms; rare gaps last up to 20 ms.
 """
 import argparse
 import math
@@ -11,16 +11,16 @@ import os
 import random
 import sys
 
-MM_PER_HALF_SIDE = 100.0  # the word is about 180 mm wide
+MM_PER_HALF_SIDE = 100.0  # the written word is about 180 mm wide
 MM_PER_RADIUS = 4.0       # 0.04 half sides, as in scenes/writing.toml
 DEPTH_MM = 0.5 * MM_PER_RADIUS
 LIFT_MM = 3.0 * MM_PER_RADIUS
-TREMOR_MM = 0.12          # of each axis, 8 to 12 Hz
+TREMOR_MM = 0.12          # amplitude on each axis, at 8 to 12 Hz
 RESOLUTION_MM = 0.1
 
 
 def read_strokes(path):
-    """The strokes of a file as docs/devices.md describes it: lists of points, arcs cut into short lines."""
+    """Returns the strokes of a stroke list (docs/devices.md) as lists of points. Arcs are cut into short lines."""
     strokes = []
     with open(path, encoding="utf-8") as file:
         for number, line in enumerate(file, 1):
@@ -40,19 +40,19 @@ def read_strokes(path):
                         angle = math.radians(begin + (end - begin) * i / count)
                         strokes[-1].append((cx + rx * math.cos(angle), cy + ry * math.sin(angle)))
             except (ValueError, IndexError):
-                sys.exit(f"{path}:{number}: cannot be read: {line.strip()}")
+                sys.exit(f"{path}:{number}: cannot be read: {line.strip()}; write stroke, point X Y or arc CX CY RX RY BEGIN END")
     if not strokes or not all(strokes):
-        sys.exit(f"{path}: holds no strokes, or an empty one")
+        sys.exit(f"{path}: has no strokes or an empty stroke; add points")
     return strokes
 
 
 def minimum_jerk(share):
-    """How far a hand is on its way when `share` of its time has passed (Flash and Hogan 1985)."""
+    """Returns the share of its way that a hand has moved after `share` of its time (Flash and Hogan 1985)."""
     return share ** 3 * (10 - 15 * share + 6 * share * share)
 
 
 def along(points, share):
-    """The place at `share` of the length of a polyline."""
+    """Returns the point at `share` of the length of a polyline."""
     lengths = [math.dist(a, b) for a, b in zip(points, points[1:])]
     wanted = share * sum(lengths)
     for start, end, length in zip(points, points[1:], lengths):
@@ -63,7 +63,7 @@ def along(points, share):
 
 
 def moves(strokes, seconds):
-    """(duration, function of share → (x, y, z)) of every move; durations add up to `seconds`."""
+    """Returns (duration [s], function from share to (x, y, z) [mm]) of every move. The durations add up to `seconds`."""
     result = []
 
     def add(weight, points):
@@ -88,7 +88,7 @@ def moves(strokes, seconds):
 
 
 def period(luck):
-    """The time to the next tick [s]."""
+    """Returns a random time to the next tick [s]."""
     draw = luck.random()
     if draw < 0.0004:
         return luck.uniform(0.005, 0.020)
@@ -102,7 +102,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("output", help="CSV to write: time,x,y,z in seconds and millimetres")
     parser.add_argument("--strokes", default=os.path.join(here, "..", "haptic_bridge", "devices", "gis.strokes"))
-    parser.add_argument("--seconds", type=float, default=12.0, help="how long the hand takes")
+    parser.add_argument("--seconds", type=float, default=12.0, help="duration of the recording [s] (default: 12)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     if not options.seconds > 0:

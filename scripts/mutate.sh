@@ -4,14 +4,15 @@
 # tests that the mutation names, and expects them to fail. Prints a table; exits with 1 if a mutation survives. Takes
 # about half an hour on two cores; scripts/test.sh does not run it. docs/testing.md
 #
-#   mutate.sh [PATCH...]      these mutations alone
+# usage: scripts/mutate.sh [PATCH...]      (default: all mutations)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 (($#)) || set -- tests/mutations/*.patch
 copy=build/mutants
 mkdir -p "$copy"
 
-# What a mutation says of itself before its diff: "# tests: TARGET FILTER", and "# programs: TARGET…" that they start.
+# A mutation has these lines before its diff: "# tests: TARGET FILTER", and "# programs: TARGET…" for programs that the
+# tests start.
 tests_of() { sed -n 's/^# tests: //p' "$1"; }
 programs_of() { sed -n 's/^# programs: //p' "$1"; }
 
@@ -19,10 +20,11 @@ build() { cmake --build "$copy/build/release" --parallel "$(nproc)" --target "$@
 run() { (cd "$copy" && timeout 300 "build/release/bin/$1" --gtest_filter="$2" >run.log 2>&1); }
 change() { patch --directory "$copy" --strip 1 --fuzz 0 --silent --no-backup-if-mismatch "${@:2}" <"$1"; }
 
-# Times are kept, so that only what changed is built again. What an interrupted run left behind is overwritten.
+# The copies keep the times of their sources, so that only changed files are built again. A mutation that an interrupted run
+# left in the copy is overwritten.
 git ls-files -z | xargs -0 cp --parents --preserve=timestamps --target-directory "$copy"
-# Each file by itself, because a mutation changes one. Compiled in half the time that the release takes, and without
-# warnings, because a mutation may leave a name unused.
+# The build is not a unity build, because a mutation changes one file. -O1 compiles in half the time of the release build.
+# Warnings are off, because a mutation may leave a name unused.
 cmake --preset release -S "$copy" -B "$copy/build/release" -DCMAKE_UNITY_BUILD=OFF \
     -DCMAKE_CXX_FLAGS= -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" >/dev/null
 mapfile -t targets < <(for patch in "$@"; do
@@ -35,7 +37,7 @@ build "${targets[@]}" || { tail -n 20 "$copy/build.log" >&2; exit 1; }
 echo "== testing without mutations"
 for patch in "$@"; do tests_of "$patch"; done | sort -u | while read -r target filter; do
     if ! run "$target" "$filter" || grep -q '^\[  PASSED  \] 0 tests' "$copy/run.log"; then
-        echo "mutate.sh: $target --gtest_filter=$filter fails, or runs nothing, before anything is mutated" >&2
+        echo "mutate.sh: $target --gtest_filter=$filter fails or runs no test without a mutation; mend the tests or the filter first" >&2
         exit 1
     fi
 done

@@ -109,7 +109,7 @@ def sentences(text, kind="comments"):
 
 
 def judged(path, avoided):
-    """Yields (line, kind, sentence, flags). Sentences of fewer than four words count only in comments, if they are flagged."""
+    """Yields (line, kind, sentence, flags). A sentence of fewer than four words counts only in a comment, and if it is flagged."""
     for line, kind, text in prose_reader.of(path)(path.read_text(errors="replace")):
         if kind == "messages":
             text = re.sub(r"\{[^{}]*\}|%[.\d]*[a-z]\b", "Code", text).strip()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the prose of a source file: paragraphs of a document, comments, and messages for a person.
 
-Every reader takes the text of a file and gives (line, kind, paragraph). The kind is documents, comments or messages.
+Every reader takes the text of a file and yields (line, kind, paragraph). The kind is documents, comments or messages.
 """
 
 import ast

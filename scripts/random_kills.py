@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Kills processes of a session at random times, and proves that nothing is lost and the sand stays the same.
+"""Kills processes of a session at random times, and tests that no shown step is lost and the sand stays the same.
 
-Each kill ends a render rank, the master or the haptic server with a random signal (STOP: it hangs). The session must go on
-each time, with no step lost that was shown, and its last state hash must be that of an undisturbed replay of its journal.
-Exit status 0, or 1 when it is not so. docs/recovery.md
+Each kill ends a render rank, the master or the haptic server with a random signal; STOP makes it hang. The session must
+continue each time without losing a step that was shown. Its last state hash must equal that of an undisturbed replay of its
+journal. The exit status is 0 if all of this holds, else 1. docs/recovery.md
 """
 
 import argparse
@@ -34,11 +34,11 @@ LONGEST_CALM = 2.5  # seconds of frames between two kills
 
 
 class Violation(Exception):
-    """What must not happen."""
+    """A result that the test forbids."""
 
 
 class Session:
-    """A session of scripts/sandwall under its supervisor."""
+    """A session that scripts/sandwall supervises."""
 
     def __init__(self, args):
         self.out = pathlib.Path(args.out)
@@ -55,7 +55,7 @@ class Session:
                                          preexec_fn=processes.die_with_parent)
 
     def status(self):
-        """What `ctl status` answers, or None while no master does."""
+        """Returns the answer to `ctl status`, or None while no master answers."""
         try:
             found = json.loads(session_control.ask(self.out, "status", patience=5))
             return found if found.get("ok") else None
@@ -63,29 +63,29 @@ class Session:
             return None
 
     def wait(self, what, condition):
-        """What `condition` makes of the status, as soon as it is true."""
+        """Waits until `condition(status)` is true, and returns its value. Throws Violation after PATIENCE_SECONDS."""
         deadline = time.monotonic() + PATIENCE_SECONDS
         while time.monotonic() < deadline:
             if self.launcher.poll() is not None:
-                raise Violation(f"the session has ended with status {self.launcher.returncode}; {self.log.name}")
+                raise Violation(f"the session has ended with status {self.launcher.returncode}; see {self.log.name}")
             if (status := self.status()) and (found := condition(status)):
                 return found
             time.sleep(0.01)
-        raise Violation(f"{what}: not within {PATIENCE_SECONDS} s; {self.log.name}")
+        raise Violation(f"{what}: not within {PATIENCE_SECONDS} s; see {self.log.name}")
 
     def recoveries(self):
-        """The recoveries that the master has written down, each as soon as its first frame was shown."""
+        """Returns the recoveries that the master has recorded. It records each one after its first frame."""
         try:
             return [json.loads(line) for line in (self.out / "recoveries.jsonl").read_text().splitlines()]
         except FileNotFoundError:
             return []
 
     def links(self):
-        """How often the master was linked to a haptic server."""
+        """Returns how often the master was linked to a haptic server."""
         return sum(event["event"] == "link" and event["state"] == "linked" for event in events.read(self.log.name))
 
     def processes(self, which):
-        """Process id by rank, of the render ranks, the master or the haptic server (0)."""
+        """Returns {rank: process id} of the render ranks, the master or the haptic server, whose key is 0."""
         found = {}
         for entry in pathlib.Path("/proc").iterdir():
             try:
@@ -94,7 +94,7 @@ class Session:
                     rank = re.search(rb"\0OMPI_COMM_WORLD_RANK=(\d+)\0", (entry / "environ").read_bytes())
                     found[int(rank[1]) if rank else 0] = int(entry.name)
             except OSError:
-                pass  # gone
+                pass  # the process has ended
         return found
 
     def owns(self, entry):
@@ -102,13 +102,13 @@ class Session:
         return int(parent) == self.launcher.pid or f"{processes.MARK}={self.launcher.pid}-".encode() in (entry / "environ").read_bytes()
 
     def end(self):
-        """Ends it in order; its exit status."""
+        """Ends the session in order and returns its exit status."""
         self.launcher.send_signal(signal.SIGINT)
         return self.launcher.wait(PATIENCE_SECONDS)
 
 
 def strike(session, which, name, chance):
-    """Kills one, waits until the wall goes on, and says so; the seconds until then."""
+    """Kills a process, waits until the wall continues, and prints a line. Returns the time until then [s]."""
     victims = session.processes(which)
     if not victims:
         raise Violation(f"no {which} runs")
@@ -127,20 +127,20 @@ def strike(session, which, name, chance):
         recovery = session.recoveries()[before]
         resumed = recovery["checkpoint_step"] + recovery["replayed_steps"]
         if resumed < shown["step"]:
-            raise Violation(f"step {shown['step']} was shown, and only {resumed} came back")
+            raise Violation(f"step {shown['step']} was shown, but the session resumed at step {resumed}")
         named = (victim, "hung" if name == "STOP" else f"SIG{name}")  # the master is rank 0
         if (recovery["failed_rank"], recovery["failed_how"]) != named:
-            raise Violation(f"{who} was ended by SIG{name}, and this was reported: {recovery['failure']}")
+            raise Violation(f"{who} was ended by SIG{name}, but the report is: {recovery['failure']}")
         then = (f"resumed at step {resumed} (checkpoint {recovery['checkpoint_step']}), "
-                f"{recovery['seconds_to_next_frame']:.2f} s of it after it was noticed")
+                f"{recovery['seconds_to_next_frame']:.2f} s from its detection to the next frame")
     print(f"{who:8} SIG{name:4}  shown: frame {shown['frame']}, step {shown['step']}; {seconds:6.2f} s  {then}", flush=True)
     return seconds
 
 
 def check_end(session, status):
-    """The sand of the wall is that of an undisturbed replay."""
+    """Throws Violation if the session failed, or if its last hash differs from that of an undisturbed replay."""
     if status != 0:
-        raise Violation(f"the session ended with status {status}; {session.log.name}")
+        raise Violation(f"the session ended with status {status}; see {session.log.name}")
     summary = session_results.read_summary(session.out)
     folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
     replayed = subprocess.run([folder / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
@@ -160,13 +160,13 @@ def times(name, seconds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kills", type=int, default=5)
-    parser.add_argument("--seed", type=int, default=None, help="of victims, signals and times (default: a random one, printed)")
+    parser.add_argument("--seed", type=int, default=None, help="seed of victims, signals and times (default: a random one, which is printed)")
     parser.add_argument("--wall", default=str(ROOT / "walls/configs/desktop.toml"))
     parser.add_argument("--scene", default=str(ROOT / "scenes/sandbox.toml"))
     parser.add_argument("--out", required=True)
-    parser.add_argument("--victims", default="rank,master,server", help="of rank, master, server (default: all)")
+    parser.add_argument("--victims", default="rank,master,server", help="programs to kill, separated by commas (default: rank,master,server)")
     parser.add_argument("--signals", default=",".join(SIGNALS))
-    parser.add_argument("--frame-timeout", type=float, default=3, help="seconds after which a rank that hangs is given up")
+    parser.add_argument("--frame-timeout", type=float, default=3, help="seconds after which a hung rank is given up (default: 3)")
     parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
     args = parser.parse_args()
     seed = args.seed if args.seed is not None else random.randrange(1 << 32)
@@ -181,7 +181,7 @@ def main():
             time.sleep(chance.uniform(0, LONGEST_CALM))
             which, name = chance.choice(args.victims.split(",")), chance.choice(args.signals.split(","))
             if (which, name) == ("master", "TERM"):
-                name = "KILL"  # the master takes TERM for a wish: it ends the session in order
+                name = "KILL"  # TERM would end the session in order
             (hands if which == "server" else frames).append(strike(session, which, name, chance))
         check_end(session, session.end())
     except Violation as violation:

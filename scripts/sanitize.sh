@@ -1,16 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs under the sanitizers what scripts/test.sh has no time for; takes an hour on two cores. docs/testing.md
-#
-#   asan   whole sessions over real ranks: address and undefined behaviour, in every process
-#   tsan   the haptic server, the link, the trackers and the worker threads: data races
+# Runs the tests under sanitizers that take too long for scripts/test.sh: an hour on two cores. docs/testing.md
 #
 # usage: scripts/sanitize.sh [asan] [tsan]    (default: both)
+#
+# asan: tests whole sessions over real ranks, with the address and undefined behaviour sanitizers in every process.
+#
+# tsan: tests haptic server, link, trackers and worker threads for data races.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
 
-# build PRESET TARGET...
+# build PRESET TARGET...: configures PRESET and builds the targets.
 build() {
     local preset=$1
     shift
@@ -19,7 +20,8 @@ build() {
     cmake --build "build/$preset" --parallel "$jobs" --target "$@"
 }
 
-# Open MPI leaks by itself, and Mesa's compiler keeps what it has made: leaks are looked for in asan-sand.
+# Leaks are not detected here, because Open MPI leaks and Mesa's compiler keeps its results. The preset asan-sand detects
+# leaks.
 sessions() {
     build asan cluster_tests
     echo "== sessions with the address and undefined sanitizers"

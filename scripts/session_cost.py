@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares what one short session takes with several builds: time from start to end, processor time, memory.
+"""Compares the cost of one short session with several builds: time from start to end, processor time and memory.
 
-Sessions of a wall of two ranks with a recorded hand, of each build in turns; prints a table of medians. A build is named
-by its folder of programs, whose own scripts/sandwall starts it.
+Runs sessions of each build in turns, with a wall of two ranks and a recorded hand. Prints a table of medians. BIN is a
+build's folder of programs; the scripts/sandwall of its own source folder starts them.
 
 usage: scripts/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs 5]
 """
@@ -42,7 +42,7 @@ tilt_deg = 40
 
 
 def peaks_of(root, peaks):
-    """Adds the highest resident memory so far of each program under a process [MB]."""
+    """Updates `peaks` with the highest resident memory of each program below the process `root` [MB]."""
     parents, names = {}, {}
     for folder in pathlib.Path("/proc").glob("[0-9]*"):
         try:
@@ -51,7 +51,7 @@ def peaks_of(root, peaks):
             parents[int(folder.name)] = int(status["PPid"])
             names[int(folder.name)] = name, int(status["VmHWM"].split()[0]) / 1024
         except (OSError, KeyError, ValueError):
-            continue  # it has ended, or is a thread of the kernel
+            continue  # the process has ended, or is a thread of the kernel
     for process, (name, peak) in names.items():
         ancestor = process
         while ancestor in parents and ancestor != root:
@@ -62,7 +62,7 @@ def peaks_of(root, peaks):
 
 
 def session(folder, programs, scene, steps):
-    """What one session took, by name."""
+    """Runs one session. Returns {name with unit: cost}."""
     launcher = programs.parent.parent.parent / "scripts" / "sandwall"
     command = [launcher, "run", "--wall", folder / "wall.toml", "--scene", scene, "--device", "script:gis", "--pace", "fast",
                "--steps", str(steps), "--out", folder / "out", "--no-pictures"]
@@ -88,7 +88,7 @@ def main():
     parser.add_argument("programs", nargs="+", type=pathlib.Path, metavar="BIN", help="a build's folder of programs")
     parser.add_argument("--scene", type=pathlib.Path, default=ROOT / "scenes" / "writing.toml")
     parser.add_argument("--steps", type=int, default=60)
-    parser.add_argument("--runs", type=int, default=5, help="of each build (default: 5)")
+    parser.add_argument("--runs", type=int, default=5, help="number of sessions of each build (default: 5)")
     args = parser.parse_args()
     rows = [[] for _ in args.programs]
     with tempfile.TemporaryDirectory(prefix="sandwall-cost-") as name:

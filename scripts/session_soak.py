@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs a session at full rate for minutes or hours, and shows that nothing grows, leaks or gets lost.
+"""Runs a session at full rate for minutes or hours, and tests that nothing grows, leaks or gets lost.
 
-Samples resident memory, file descriptors and threads of every process; ends the session in order; compares the wall's last
-state hash and steps with a replay of the journal. Prints a table in markdown. Exit status 1 where descriptors or threads
-change after the warm-up, memory grows, or sand or steps differ. docs/recovery.md
+Samples resident memory, file descriptors and threads of every process, and ends the session in order. Compares the wall's
+last state hash and steps with a replay of the journal. Prints a table in Markdown. The exit status is 1 if descriptors or
+threads change after the warm-up, if memory grows, or if sand or steps differ. docs/recovery.md
 """
 
 import argparse
@@ -23,12 +23,12 @@ import session_results
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NAMES = ("mpirun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
-MOST_GROWTH = 1.0  # MiB an hour that a process may grow by, beside its share of noise
+MOST_GROWTH = 1.0  # largest growth of a process [MiB per hour]
 START_SECONDS = 120
 
 
 def family(launcher):
-    """{process: name} of the session's programs."""
+    """Returns {process id: name} of the session's programs."""
     found = {}
     for entry in pathlib.Path("/proc").iterdir():
         try:
@@ -40,19 +40,19 @@ def family(launcher):
                     rank = re.search(rb"\0OMPI_COMM_WORLD_RANK=(\d+)\0", environment)
                     found[int(entry.name)] = f"{name} (rank {int(rank[1])})" if rank else name
         except OSError:
-            pass  # gone
+            pass  # the process has ended
     return found
 
 
 def sample(process):
-    """(resident MiB, file descriptors, threads) of a process."""
+    """Returns (resident memory [MiB], file descriptors, threads) of a process."""
     status = pathlib.Path(f"/proc/{process}/status").read_text()
     return (int(re.search(r"VmRSS:\s+(\d+) kB", status)[1]) / 1024, len(os.listdir(f"/proc/{process}/fd")),
             int(re.search(r"Threads:\s+(\d+)", status)[1]))
 
 
 def slope(times, values):
-    """Of the straight line through these, by least squares."""
+    """Returns the slope of the straight line through the points (time, value), by least squares."""
     middle, mean = sum(times) / len(times), sum(values) / len(values)
     spread = sum((time - middle) ** 2 for time in times)
     return sum((time - middle) * (value - mean) for time, value in zip(times, values)) / spread if spread else 0.0
@@ -72,22 +72,22 @@ class Track:
         memory, descriptors, threads = zip(*self.samples)
         self.medians = [statistics.median(part) for part in quarters(memory)]
         self.growth = 3600 * slope(self.times, memory)
-        # A checkpoint is packed by a thread that comes for it and goes.
+        # A checkpoint has its own short thread, so threads are compared by their medians.
         self.constant = len(set(descriptors)) == 1 and len({statistics.median(part) for part in quarters(threads)}) == 1
         return (f"| {self.name} | {' | '.join(f'{median:.1f}' for median in self.medians)} | {max(memory):.1f} | "
                 f"{self.growth:+.2f} | {span(descriptors)} | {span(threads)} |")
 
     def grows(self):
-        """Whether the last quarter of the samples holds more than the second, by more than may be.
+        """Returns whether memory grows by more than MOST_GROWTH from the second quarter of the samples to the last.
 
-        By medians: while a checkpoint is packed its copy of the sand lies beside the sand, in one sample or another.
+        Compares medians, because a few samples also hold the copy of the sand from which a checkpoint is written.
         """
         hours = (self.times[-1] - self.times[0]) / 3600
         return self.medians[3] - self.medians[1] > MOST_GROWTH * max(hours, 1) / 2
 
 
 def quarters(values):
-    """Four parts of a list of four values or more, one after the other."""
+    """Returns a list of four or more values in four parts of equal length."""
     return [values[len(values) * part // 4:len(values) * (part + 1) // 4] or values[-1:] for part in range(4)]
 
 
@@ -96,7 +96,7 @@ def span(values):
 
 
 def follow(launcher, minutes, period, warm_up):
-    """Samples all processes until the time is over; the tracks."""
+    """Samples all processes for `minutes`. Returns a Track for each process."""
     tracks = {}
     deadline = time.monotonic() + START_SECONDS
     while len(members := family(launcher.pid)) < 4 and time.monotonic() < deadline and launcher.poll() is None:
@@ -127,7 +127,7 @@ def main():
     parser.add_argument("--device", default="script:gis")
     parser.add_argument("--out", required=True)
     parser.add_argument("--period", type=float, default=5, help="seconds between two samples (default: 5)")
-    parser.add_argument("--warm-up", type=float, default=None, help="seconds before the first that counts (default: a quarter, at most 120)")
+    parser.add_argument("--warm-up", type=float, default=None, help="seconds before the first sample that counts (default: a quarter of the time, at most 120)")
     parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
     args = parser.parse_args()
     warm_up = min(120, 15 * args.minutes) if args.warm_up is None else args.warm_up
@@ -144,7 +144,7 @@ def main():
             status = launcher.wait(300)
     summary = session_results.read_summary(out)
     print(f"{args.minutes:g} minutes, a sample every {args.period:g} s after {warm_up:g} s of warm-up\n")
-    print("Resident memory: medians of the four quarters of the time, and the most.\n")
+    print("Resident memory: medians of the four quarters of the time, and the largest sample.\n")
     print("| process | 1st [MiB] | 2nd | 3rd | 4th | most | slope [MiB/h] | file descriptors | threads |")
     print("|---|---|---|---|---|---|---|---|---|")
     for track in tracks:
@@ -153,11 +153,11 @@ def main():
     link = summary["haptic"]
     print(f"\n| session | |\n|---|---|\n| frames, steps | {summary['frames']}, {summary['steps']} |\n"
           f"| frames a second | {summary['fps']:.2f} |\n| late frames | {summary['late_frames']} ({100 * summary['late_frames'] / summary['frames']:.2f} %) |\n"
-          f"| links of the hand made again | {link['reconnects']} |\n| divergences of ranks, of the haptic server | {summary['divergences']}, {summary['server_divergences']} |\n"
+          f"| reconnections of the haptic link | {link['reconnects']} |\n| divergences of ranks, of the haptic server | {summary['divergences']}, {summary['server_divergences']} |\n"
           f"| state hash on the wall, of a replay of the journal | {summary['state_hash']}, {found} |")
     complaints = [f"{track.name}: descriptors or threads change" for track in tracks if not track.constant]
     complaints += [f"{track.name}: memory grows" for track in tracks if track.grows()]
-    # The server counts the steps, hashes its own sand after each, and the master compares: a lost one would show.
+    # The server counts the steps and hashes its own sand after each. The master compares the hashes, so a lost step shows.
     complaints += ["steps were lost: the server's sand differs"] if summary["server_divergences"] else []
     complaints += ["ranks differed"] if summary["divergences"] else []
     complaints += ["a replay of the journal differs"] if found != summary["state_hash"] else []

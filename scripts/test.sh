@@ -1,18 +1,21 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, and runs every test of every build below in one ctest run; fails if any part fails.
+# Installs missing packages, builds, and runs every test of every build below in one ctest run. Fails if any part fails.
 #
-#   release      everything: all tests, the sessions over real ranks among them
-#   asan-sand    parsers, codecs, kernels and the haptic link under the address, leak and undefined sanitizers
-#   golden-*     the golden hashes alone, without optimisation and with another compiler; scripts/goldens.sh has more
+# release: all tests, with the sessions over real ranks.
 #
-# A test of any build but release has the build's name before its own. docs/testing.md
+# asan-sand: parsers, codecs, kernels and the haptic link under the address, leak and undefined behaviour sanitizers.
+#
+# golden-*: only the golden hashes, without optimisation and with another compiler. scripts/goldens.sh tests more levels.
+#
+# The name of a test begins with the name of its build, except in the release build. docs/testing.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 jobs=$(nproc)
 scripts/install_dependencies.sh --with-tests
 
-# With ccache a clone finds what another one has compiled, in any folder. A cache that does not work changes nothing.
+# With ccache, a clone in any folder reuses the results of another clone. If the cache does not work, the build runs without
+# it.
 launcher=()
 if command -v ccache >/dev/null; then
     export CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
@@ -20,16 +23,16 @@ if command -v ccache >/dev/null; then
     trial=$(mktemp -d)
     echo 'int main() {}' >"$trial/trial.cpp"
     if ccache c++ -c "$trial/trial.cpp" -o "$trial/trial.o" >/dev/null 2>&1; then
-        # A precompiled header is another file in each clone, and all that include it would be compiled again.
+        # A precompiled header differs in each clone. With it, ccache would compile all files that include it again.
         launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache
             -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
     else
-        echo "test.sh: the cache of ccache cannot be used; building without it" >&2
+        echo "test.sh: ccache does not work; building without it" >&2
     fi
     rm -r "$trial"
 fi
 
-# build PRESET [TARGET...]: everything without a target.
+# build PRESET [TARGET...]: configures PRESET and builds the targets, or all targets if none is given.
 build() {
     local preset=$1
     shift
@@ -51,5 +54,5 @@ for folder in release asan-sand "${goldens[@]/%//tests/sand/golden}"; do
     echo "subdirs($folder)"
 done >build/CTestTestfile.cmake
 echo "== testing"
-# Four places a core: most tests take two of them, and those that mostly wait take one (tests/CMakeLists.txt).
+# ctest gets four slots per core. Most tests take two slots, and tests that mostly wait take one (tests/CMakeLists.txt).
 ctest --test-dir build --output-on-failure --no-tests=error --parallel $((4 * jobs))

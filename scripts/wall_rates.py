@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how a whole wall keeps up, on this machine alone: 12 ranks, 24 views of 1024 x 768, drawn by the processor.
+"""Measures the frame rate of a whole wall on this machine alone: 12 ranks, 24 views of 1024 x 768, drawn by the processor.
 
 Runs sessions one after another and prints a table: a still wall, digging with the tool of Dorjgotov et al. 2007 and one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
@@ -8,7 +8,11 @@ With --tin: digging in a height field and in TINs in turns. Frames a second of s
 one of the tiles, whose rank has a core as on a cluster, and of all; then what a frame takes of a rank with a core of its
 own (processor time of the sand and of the tile that has most to do), and of sessions as fast as the machine can.
 
-usage: scripts/wall_rates.py [--tin] [--seconds S]   (six minutes, or fifteen; leave the machine alone meanwhile)
+With --tin: digs in a height field and in TINs in turns. The first rows are frames per second at a display's pace. They are
+of a wall of one tile, whose rank has a core as on a cluster, and of the whole wall. The other rows are times of a frame. One
+is the processor time of a rank for the sand and the busiest tile. The other is of a session as fast as the machine can.
+
+usage: scripts/wall_rates.py [--tin] [--seconds S]   (takes six minutes, or fifteen with --tin; the machine should be idle otherwise)
 """
 
 import argparse
@@ -28,7 +32,7 @@ import session_results
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = ROOT / "build" / "release" / "bin"
 WALL = ROOT / "walls" / "configs" / "tiled_3x4.toml"
-WARM_UP = 5  # s, in which shaders are compiled and ranks fall into step
+WARM_UP = 5  # time at the start that does not count, because shaders are compiled and frame times settle [s]
 
 SCENE = """name = "{cells} cells a side, tool of {radius} cells"
 [field]
@@ -47,7 +51,7 @@ radius = {scene_radius}
 
 
 def scene(folder, cells, radius, kind="flat", talus=34):
-    """A scene file whose tool is `radius` cells wide."""
+    """Writes a scene file whose tool has a radius of `radius` cells, and returns its path."""
     file = folder / f"{kind}_{cells}_{radius}.toml"
     height = "height = 0.2" if kind == "flat" else ""
     file.write_text(SCENE.format(cells=cells, radius=radius, kind=kind, height=height, talus=talus, scene_radius=radius * 2.0 / cells))
@@ -55,7 +59,7 @@ def scene(folder, cells, radius, kind="flat", talus=34):
 
 
 def circles(folder, seconds, centre=(0, 0), largest=0.6):
-    """Strokes that never end in `seconds`: rings of all sizes, at 2 cells of 512 a step; places in half sides."""
+    """Writes a stroke list of rings that lasts at least `seconds`, at 2 cells of 512 per step. Lengths are in half sides."""
     file = folder / f"circles_{largest}.strokes"
     x, y = centre
     lines = ["speed 0.5", "depth 0.5", "stroke", f"point {x + largest} {y}"]
@@ -70,7 +74,7 @@ def circles(folder, seconds, centre=(0, 0), largest=0.6):
 
 
 def swaying_head(folder, seconds):
-    """A head that never rests, as a trace."""
+    """Writes a trace of a head that never rests."""
     file = folder / "head.csv"
     rows = ["time,x,y,z"]
     for i in range(int(60 * seconds)):
@@ -81,7 +85,10 @@ def swaying_head(folder, seconds):
 
 
 def one_tile(folder):
-    """A wall file: of the tiled wall a tile in the middle, which shows the sand from -0.77 to 0 and -0.57 to 0.15 half sides."""
+    """Writes a wall file with one tile from the middle of the tiled wall, and returns its path.
+
+    The tile shows the sand from -0.77 to 0 and from -0.57 to 0.15 half sides.
+    """
     text = WALL.read_text()
     (left, bottom), (across, up) = (tuple(map(float, re.search(rf"^{name} = \[([-.0-9]+), ([-.0-9]+)", text, re.MULTILINE).groups()))
                                     for name in ("lower_left", "tile_size"))
@@ -93,7 +100,7 @@ def one_tile(folder):
 
 
 def session(out, scene_file, *more, wall=WALL):
-    """A session's summary."""
+    """Runs a session and returns its summary."""
     command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
@@ -135,7 +142,7 @@ def head_row(out, scene_file, head, frames, what):
 
 
 def bare_redraw(scene_file):
-    """Processor time of all views drawn barely and as sand, in one process [ms]."""
+    """Returns the processor time of drawing all views in one process [ms]: barely, and as sand."""
     environment = dict(os.environ, LP_NUM_THREADS="0")
     found = json.loads(subprocess.run([BIN / "wall_bench", "--wall", WALL, "--scene", scene_file, "--json"], capture_output=True,
                                       text=True, check=True, env=environment).stdout)
@@ -149,20 +156,23 @@ widest = {widest}
 
 
 def as_tin(file, widest):
-    """The same scene with its sand as a TIN, whose points lie `widest` cells apart at the start, and one where it is dug."""
+    """Writes the scene of `file` with a TIN in place of the height field, and returns its path.
+
+    The points of the TIN are `widest` cells apart at the start, and one cell apart where the hand digs.
+    """
     tin = file.with_name(f"tin_{widest}_{file.name}")
     tin.write_text(file.read_text() + TIN.format(widest=widest * 2.0 / 512))
     return tin
 
 
 def digging_ms(out, scene_file, strokes, frames):
-    """Of a frame of digging, in which up to four steps are made and drawn [ms]."""
+    """Returns the median time of a frame of digging, with up to four steps per frame [ms]."""
     summary = session(out, scene_file, "--device", f"script:{strokes}", "--pace", "fast", "--frames", frames, "--warm-up", 20)
     return summary["frame_ms"]["p50"]
 
 
 def rank_ms(scene_file):
-    """Processor time of a frame of one step: the sand's and the drawing of the tile that has most to do [ms]."""
+    """Returns the processor time of a frame with one step [ms]: the sand's and the drawing of the busiest tile."""
     environment = dict(os.environ, LP_NUM_THREADS="0")
     found = json.loads(subprocess.run([BIN / "redraw_bench", "--wall", WALL, "--scene", scene_file, "--rate", "60", "--frames", "100",
                                        "--json"], capture_output=True, text=True, check=True, env=environment).stdout)
@@ -170,7 +180,7 @@ def rank_ms(scene_file):
 
 
 def tin_rates(folder, seconds):
-    """Frames a second with which TINs are dug in, beside the grid's, at a display's pace."""
+    """Yields rows of frames per second at a display's pace, for digging in a height field and in TINs."""
     everywhere, seen = circles(folder, 2 * (seconds + WARM_UP)), circles(folder, 2 * (seconds + WARM_UP), (-0.38, -0.2), 0.3)
     tile = one_tile(folder)
     ways = ((tile, seen, "one tile that sees all of it", 2.56, 60), (tile, seen, "one tile that sees all of it", 12, 60),
@@ -190,7 +200,7 @@ def tin_rates(folder, seconds):
 
 
 def tin_rows(folder, seconds, runs, frames):
-    """What a TIN takes over what the grid takes, the same hand in both, in turns."""
+    """Yields rows that compare TINs with the grid. One hand digs in both, in turns."""
     yield from tin_rates(folder, seconds)
     out, strokes = folder / "out", circles(folder, 1000)
     ways = {"one rank on a core": (rank_ms, "processor time"),
@@ -217,7 +227,8 @@ def measure(folder, seconds):
     strokes = circles(folder, 2 * (seconds + WARM_UP))
     head = swaying_head(folder, 120)
     paper, broad = scene(folder, 512, 2.56), scene(folder, 512, 12)
-    # Sand that rests as it is made: at 34 degrees 2048 x 2048 cells of dunes slide for longer than this takes.
+    # The talus of 60 degrees keeps the dunes at rest. With 34 degrees, 2048 x 2048 cells of dunes slide for longer than this
+    # measurement takes.
     dunes, large = (scene(folder, cells, 12, "dunes", talus=60) for cells in (512, 2048))
     bare, sand = bare_redraw(dunes)
     bare_ms = bare / cores
@@ -227,7 +238,7 @@ def measure(folder, seconds):
     yield dig_row(out, broad, strokes, seconds, 30, bare_ms, "digging, 512², R = 12 cells")
     yield dig_row(out, scene(folder, 2048, 12), strokes, min(seconds, 20), 30, bare_ms, "digging, 2048², R = 12 cells")
     row, median = head_row(out, dunes, head, 60, "head moving, 512² of dunes")
-    beside = bare_redraw(dunes)[0] / cores  # again: a shared machine's speed changes from minute to minute
+    beside = bare_redraw(dunes)[0] / cores  # measured again, because a shared machine's speed changes from minute to minute
     yield row[0], row[1], f"{row[2]}; {median / beside:.2f} × a bare redraw, {beside:.0f} ms then"
     row, large_median = head_row(out, large, head, 60, "head moving, 2048² of dunes")
     yield row[0], row[1], f"{row[2]}; {large_median / median:.2f} × 512²"
@@ -235,14 +246,14 @@ def measure(folder, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, help="of each digging session, warm-up apart (default: 60; with --tin 12)")
-    parser.add_argument("--tin", action="store_true", help="a TIN beside a height field, and nothing else")
-    parser.add_argument("--runs", type=int, default=3, help="of each scene with --tin (default: 3)")
-    parser.add_argument("--frames", type=int, default=240, help="of each run with --tin (default: 240)")
+    parser.add_argument("--seconds", type=float, help="seconds of each digging session after the warm-up (default: 60; with --tin 12)")
+    parser.add_argument("--tin", action="store_true", help="compare TINs with a height field, and measure nothing else")
+    parser.add_argument("--runs", type=int, default=3, help="number of runs of each scene with --tin (default: 3)")
+    parser.add_argument("--frames", type=int, default=240, help="number of frames of each run with --tin (default: 240)")
     args = parser.parse_args()
     for program in ("wall_bench", "redraw_bench"):
         if not (BIN / program).is_file():
-            print(f"{BIN}/{program}: not there; build the release preset first", file=sys.stderr)
+            print(f"{BIN}/{program}: not built yet; run cmake --build build/release", file=sys.stderr)
             return 2
     print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:
