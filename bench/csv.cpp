@@ -44,7 +44,7 @@ void Csv::Close::operator()(std::FILE* file) const {
 void Csv::open() {
     file_.reset(settings_.out.empty() ? stdout : std::fopen(settings_.out.c_str(), "w"));
     if (!file_) {
-        throw base::InputError(name() + ": cannot be written, choose another --out");
+        throw base::InputError(name() + ": cannot be written; choose another --out");
     }
     note("machine: " + machine());
     note("compiler: " SANDWALL_COMPILER);
@@ -69,7 +69,7 @@ void Csv::write(std::string_view line) {
 
 void Csv::finish() {
     if (file_ && std::ferror(file_.get()) != 0) {
-        throw std::runtime_error(name() + ": not everything could be written");
+        throw std::runtime_error(name() + ": not all rows could be written; make room on the disk");
     }
 }
 

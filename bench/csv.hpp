@@ -13,29 +13,30 @@
 
 namespace bench {
 
-/// What every curve is told: how large, how often, from which seed, and where to write.
+/// The options of a curve: sizes of fields, number of runs, seed, and output file.
 struct Settings {
     std::filesystem::path out;  // empty: stdout
     std::vector<int> sizes;     // [cell], sides of the square fields
-    int runs = 10;              // of everything that is timed
+    int runs = 10;              // number of runs of each timed measurement
     std::uint32_t seed = 1;
-    std::string scene;        // explain's
-    std::string raster;       // tin-simplify's, in place of dunes
-    std::string commandLine;  // as typed, for the file's head
+    std::string scene;        // scene file of `explain`
+    std::string raster;       // raster file of `tin-simplify`, in place of dunes
+    std::string commandLine;  // the typed command, for the file's head
 };
 
-/// A table of measurements: comment lines that say where they come from, a line of column names, rows of numbers.
+/// A table of measurements: comment lines with their origin, a line of column names, and rows of numbers.
 class Csv {
 public:
     explicit Csv(const Settings& settings) : settings_(settings) {}
 
-    /// One more comment line: a definition that a reader of the numbers needs. The first opens the file and writes
-    /// machine, compiler, flags, code path, seed, command and date before it: input that cannot be used leaves no file.
-    /// Throws base::InputError when the file cannot be opened.
+    /// Writes a comment line, such as the definition of a column.
+    ///
+    /// The first line opens the file and writes machine, compiler, flags, code path, seed, command and date before
+    /// itself. So a run that refuses its input leaves no file. Throws base::InputError if the file cannot be opened.
     void note(std::string_view line);
     void columns(std::string_view names);
 
-    /// A row as soon as it is known, so that an interrupted run leaves whole rows.
+    /// Writes a row to the file at once, so that an interrupted run leaves whole rows.
     template <class... Values>
     void row(const Values&... values) {
         std::string line;
@@ -43,7 +44,7 @@ public:
         write(line);
     }
 
-    /// Throws std::runtime_error when the disk did not take everything.
+    /// Throws std::runtime_error if a line could not be written.
     void finish();
 
 private:
@@ -68,7 +69,7 @@ private:
     std::unique_ptr<std::FILE, Close> file_;  // null before the first line
 };
 
-/// A line on stderr about what runs now.
+/// Prints a line about the current measurement to standard error.
 template <class... Arguments>
 void progress(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::print(stderr, "{}\n", fmt::format(format, std::forward<Arguments>(arguments)...));

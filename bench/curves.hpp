@@ -3,7 +3,7 @@
 
 #include "bench/csv.hpp"
 
-/// The curves of the report, one function each: it notes what its columns mean, names them and writes their rows.
+/// The curves of the report. Each function writes the definitions of its columns, their names and the rows.
 namespace bench {
 
 void workPrecision(const Settings& settings, Csv& csv);

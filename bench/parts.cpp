@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures a step with and without bedrock: of sand at rest, after a small edit, and with all sand moving.
+// Measures a step with and without bedrock: with sand at rest, after a small edit, and with all sand moving.
 #include <optional>
 #include <random>
 
@@ -13,7 +13,7 @@ namespace bench {
 namespace {
 
 constexpr int kSweeps = 16;        // per step
-constexpr int kBedrockDepth = 64;  // [cell], of the bedrock below the level sand
+constexpr int kBedrockDepth = 64;  // depth of the bedrock below the level sand [cell]
 
 enum class Happening { settled, smallEdit, everythingMoves };
 
@@ -73,10 +73,10 @@ Cost measure(int side, bool withBedrock, Happening happening, const Settings& se
 
 void parts(const Settings& settings, Csv& csv) {
     csv.note(
-        fmt::format("a step of {} sweeps; bedrock {} cells below level sand; a small edit: a sphere of 3 cells "
-                    "presses half of itself in; everything moving: noise of 64 cells",
+        fmt::format("a step of {} sweeps; bedrock {} cells below level sand. One small edit: a sphere of 3 cells "
+                    "presses half of itself in. Everything moving: noise of 64 cells.",
                     kSweeps, kBedrockDepth));
-    csv.note("CPU time of one thread; sweeps: run before nothing moved any more");
+    csv.note("CPU time of one thread; sweeps: number until all motion ended");
     csv.columns("ground,state,N,us_median,us_min,us_max,sweeps,bytes");
     for (const int side : settings.sizes) {
         for (const bool withBedrock : {false, true}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The curves of docs/report, one subcommand each: scripts/report.sh runs and draws them all.
+// Measures the curves of docs/report. Each curve is a subcommand; scripts/report.sh runs and draws all of them.
 #include <string_view>
 
 #include "bench/curves.hpp"
@@ -13,7 +13,7 @@ namespace {
 struct Curve {
     const char* name;
     const char* what;
-    std::vector<int> sizes;  // [cell]; a curve without measures a scene, one of size 0 neither
+    std::vector<int> sizes;  // [cell]; empty: the curve measures a scene file; {0}: it needs neither field nor scene
     int runs;
     void (*measure)(const bench::Settings&, bench::Csv&);
 };
@@ -21,47 +21,43 @@ struct Curve {
 std::vector<Curve> allCurves() {
     return {
         {"work-precision",
-         "error against seconds: our schemes and the rules in common use",
+         "error against run time: our schemes and the rules in common use",
          {16, 32, 64, 128, 256},
          10,
          bench::workPrecision},
         {"error-at-rest", "error of the piles at rest, and its order in N", {32, 64, 128, 256}, 1, bench::errorAtRest},
         {"sweeps", "sweeps until nothing moves, with and without a band", {32, 64, 128, 256}, 1, bench::sweeps},
         {"anisotropy", "radius of the piles by direction", {64, 128}, 1, bench::anisotropy},
-        {"decay", "sand that moves, and sand that still has to, by sweep", {128}, 1, bench::decay},
+        {"decay", "moving sand and distance to rest, by sweep", {128}, 1, bench::decay},
         {"height-bits", "error by the size of the height unit", {32, 64, 128}, 1, bench::heightBits},
         {"band", "sweeps and error by the width of the hysteresis band", {128}, 1, bench::band},
         {"edit",
-         "milliseconds of one edit by the tool's radius, active blocks and all",
+         "time of one edit by the tool's radius, with active blocks and with all blocks",
          {512, 1024, 2048},
          10,
          bench::edit},
-        {"dig", "milliseconds per step of digging, and how far behind the sand is", {512, 2048}, 10, bench::dig},
+        {"dig", "time per step of digging, and share of sand that has yet to move", {512, 2048}, 10, bench::dig},
         {"throughput",
-         "nanoseconds per cell of a sweep, beside a copy of the same bytes",
+         "time per cell of a sweep, beside a copy of the same bytes",
          {64, 128, 256, 512, 1024, 2048, 4096},
          10,
          bench::throughput},
-        {"rest", "seconds to rest of a pile", {512}, 10, bench::rest},
+        {"rest", "time to rest of a pile", {512}, 10, bench::rest},
         {"rest-moving",
-         "seconds to rest of a field in which everything moves; of 512 x 512 ten minutes",
+         "time to rest of a field in which all sand moves; ten minutes for 512 x 512",
          {256},
          10,
          bench::restMoving},
-        {"force-rate",
-         "error of the force by how often the sand is seen, and what it costs",
-         {256},
-         10,
-         bench::forceRate},
-        {"force-work", "work of the force round closed paths on slopes", {256}, 1, bench::forceWork},
-        {"hashes", "one hash by every code path, number of threads and size of blocks", {128}, 1, bench::hashes},
+        {"force-rate", "error and time of the force, by the rate of surfaces", {256}, 10, bench::forceRate},
+        {"force-work", "work of the force along closed paths on slopes", {256}, 1, bench::forceWork},
+        {"hashes", "state hash by code path, number of threads and size of blocks", {128}, 1, bench::hashes},
         {"parts",
-         "what bedrock, an edit and moving sand cost, and settled sand does not",
+         "time of a step: with bedrock, with an edit, with moving sand, with settled sand",
          {512, 1024, 2048},
          10,
          bench::parts},
         {"stability",
-         "stiffest springs that arms come to rest on, literal and guarded, against the theory; one run: two dampings",
+         "stiffest springs on which arms come to rest, literal and guarded; --runs 1: two dampings",
          {0},
          10,
          bench::stability},
@@ -70,47 +66,47 @@ std::vector<Curve> allCurves() {
          {0},
          10,
          bench::guardedSweep},
-        {"explain",
-         "what a scene loads and runs, what it leaves out, and what each part costs",
-         {},
-         100,
-         bench::explain},
-        {"certificate", "distance from the right pile: proved, and true", {32, 64, 128}, 1, bench::certificate},
-        {"mass-drift", "sand that floats lose or invent, and integers do not", {128}, 1, bench::massDrift},
+        {"explain", "parts that a scene loads, runs and leaves out, with the cost of each", {}, 100, bench::explain},
+        {"certificate",
+         "proved bound and true value of the distance from the right pile",
+         {32, 64, 128},
+         1,
+         bench::certificate},
+        {"mass-drift", "sand that floats lose or invent, beside integers", {128}, 1, bench::massDrift},
         {"tin-piles",
-         "error of piles on a TIN against its vertices and seconds, for meshes of every kind and turned",
+         "error of piles on a TIN by vertices and run time, for meshes of every kind and turned",
          {32, 64, 128},
          1,
          bench::tinPiles},
-        {"tin-active", "milliseconds of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
-        {"tin-step", "milliseconds of a step on a TIN, part by part, with 64 sweeps", {500}, 10, bench::tinStep},
-        {"budget", "where one pile's error comes from", {128}, 1, bench::budget},
-        {"tin-imprint", "milliseconds of a tool's work in a TIN, without the sweeps", {512}, 10, bench::imprint},
+        {"tin-active", "time of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
+        {"tin-step", "time of a step on a TIN with 64 sweeps, part by part", {500}, 10, bench::tinStep},
+        {"budget", "sources of one pile's error", {128}, 1, bench::budget},
+        {"tin-imprint", "time of a tool in a TIN, without sweeps", {512}, 10, bench::imprint},
         {"tin-simplify",
-         "error of a TIN of dunes, or of a raster, by its vertices and the seconds it takes",
+         "error of a TIN of dunes, or of a raster, by its vertices and its run time",
          {256, 1024},
          10,
          bench::simplify},
     };
 }
 
-constexpr int kLargestSide = 4096;  // [cell]: beyond, a pile's sweeps to rest take hours
+constexpr int kLargestSide = 4096;  // [cell]; the sweeps of a larger pile take hours
 
 void addOptions(host::CommandLine& command, const Curve& curve, bench::Settings& settings) {
     settings.sizes = curve.sizes;
     settings.runs = curve.runs;
-    command.option("--out", settings.out, "the CSV file; standard output without");
-    command.option("--runs", settings.runs, "runs of everything that is timed").range(1, 1000).showDefault();
-    command.option("--seed", settings.seed, "of everything that is random").showDefault();
+    command.option("--out", settings.out, "CSV file to write (default: standard output)");
+    command.option("--runs", settings.runs, "number of runs of each timed measurement").range(1, 1000).showDefault();
+    command.option("--seed", settings.seed, "seed of all random numbers").showDefault();
     if (curve.sizes == std::vector<int>{0}) {
         return;
     }
     if (curve.sizes.empty()) {
-        command.option("SCENE", settings.scene, "a scene file").required();
+        command.option("SCENE", settings.scene, "scene file").required();
         return;
     }
     if (curve.measure == bench::simplify) {
-        command.option("--raster", settings.raster, "an ESRI ASCII grid, in place of dunes");
+        command.option("--raster", settings.raster, "ESRI ASCII grid, in place of dunes");
     }
     command.option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
         .commaSeparated()
@@ -124,8 +120,8 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-bench", {{"algorithm", sand::kAlgorithmVersion}})) {
         return 0;
     }
-    host::CommandLine line("Measures the sand: errors, sweeps and seconds, as CSV.", "sandwall-bench");
-    if (argc > 1 && std::string_view(argv[1]) == "latency") {  // its options are the script's
+    host::CommandLine line("Measures the sand: errors, sweeps and times, as CSV.", "sandwall-bench");
+    if (argc > 1 && std::string_view(argv[1]) == "latency") {  // scripts/latency.py reads the options
         return host::runMain(line, 1, argv, [&]() -> int { bench::becomeLatency({argv + 2, argv + argc}); });
     }
     const std::vector<Curve> curves = allCurves();
@@ -135,7 +131,8 @@ int main(int argc, char** argv) {
         commands.push_back(line.command(curves[i].name, curves[i].what));
         addOptions(commands.back(), curves[i], settings[i]);
     }
-    (void)line.command("latency", "half round trip from the hand to whole walls, beside the floor");  // for --help
+    (void)line.command("latency",
+                       "half round trip from the hand to whole walls, beside the floor");  // for --help
     return host::runMain(line, argc, argv, [&] {
         for (std::size_t i = 0; i < curves.size(); ++i) {
             if (commands[i].given()) {

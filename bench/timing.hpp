@@ -8,22 +8,21 @@
 
 namespace bench {
 
-/// Time that this thread has computed [s]. Of one thread it is what a quiet machine's clock would show, and it does
-/// not count the time for which others had the processor.
+/// Returns the CPU time of this thread [s]. It leaves out the time in which other threads used the processor.
 inline double cpuSeconds() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Time on the wall [s], for what several threads do together.
+/// Returns the wall time [s], which measures the work of several threads.
 inline double wallSeconds() {
     timespec now{};
     clock_gettime(CLOCK_MONOTONIC, &now);
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Seconds of this thread that `work` takes.
+/// Returns the CPU time of this thread in `work` [s].
 template <class Work>
 double secondsOf(const Work& work) {
     const double before = cpuSeconds();
@@ -31,7 +30,8 @@ double secondsOf(const Work& work) {
     return cpuSeconds() - before;
 }
 
-/// The value below which `share` of the values lie, between neighbours by linear interpolation. None give 0.
+/// Returns the value below which `share` of `values` are, by linear interpolation between neighbours. Returns 0 if
+/// `values` is empty.
 inline double quantile(std::vector<double> values, double share) {
     if (values.empty()) {
         return 0;
@@ -43,7 +43,7 @@ inline double quantile(std::vector<double> values, double share) {
     return values[below] + (place - std::floor(place)) * (values[above] - values[below]);
 }
 
-/// Several measurements of one thing.
+/// Median, lowest and highest of several measurements.
 struct Spread {
     double median, lowest, highest;
 };

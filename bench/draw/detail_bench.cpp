@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curve o: picture error against draw time for each bound of the level of detail, on a large field under a moving head.
+// Measures picture error and draw time for each bound of the level of detail, on a large field under a moving head.
 #include <cstdlib>
 
 #include "bench/csv.hpp"
@@ -14,14 +14,14 @@ namespace {
 constexpr int kBadLevel = 8;  // [of 255]
 constexpr int kWidth = 1024, kHeight = 768;
 
-/// Of one bound, over all frames.
+/// The results of one bound over all frames.
 struct Sums {
     std::vector<double> seconds;
-    double bad = 0, difference = 0;  // [pixel], [level], sums
+    double bad = 0, difference = 0;  // sums [pixel], [level]
     double triangles = 0, coarse = 0, chunks = 0;
 };
 
-/// Dunes with a furrow, and sand that has slid into it.
+/// Returns a scene of dunes with a furrow, into which sand has slid.
 scene::Scene dunesOf(int side, std::uint32_t seed) {
     scene::Scene scene = sample::flatScene(side, side, 0.01);
     sand::grid::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
@@ -43,7 +43,7 @@ void addDifference(const sample::Pixels& exact, const sample::Pixels& picture, S
     }
 }
 
-/// One frame at one bound, built once before it is timed.
+/// Draws one frame `runs` times at one bound and adds the times to `sums`. Draws once before, so that all chunks exist.
 sample::Pixels drawFrame(render_node::ScenePainter& view, const render_node::Camera& camera,
                          const render_node::EyeTarget& target, int runs, Sums& sums) {
     view.draw(camera, target);
@@ -92,17 +92,17 @@ void measure(int side, int frames, const bench::Settings& settings, bench::Csv& 
 }  // namespace
 
 int main(int argc, char** argv) {
-    // All of llvmpipe's work in the thread whose time is taken; it reads this once.
+    // llvmpipe then does all its work in the measured thread. It reads the variable once.
     setenv("LP_NUM_THREADS", "0", 1);
     bench::Settings settings;
     settings.sizes = {512, 2048};
     settings.runs = 3;
     int frames = 6;
-    host::CommandLine line("Measures pictures at each level of detail: errors and seconds, as CSV.", "detail_bench");
-    line.option("--out", settings.out, "the CSV file; standard output without");
-    line.option("--runs", settings.runs, "drawings of every picture").range(1, 1000);
-    line.option("--frames", frames, "of the moving head").range(1, 1000);
-    line.option("--seed", settings.seed, "of the dunes");
+    host::CommandLine line("Measures pictures at each level of detail: errors and times, as CSV.", "detail_bench");
+    line.option("--out", settings.out, "CSV file to write (default: standard output)");
+    line.option("--runs", settings.runs, "number of drawings of every picture").range(1, 1000);
+    line.option("--frames", frames, "number of frames of the moving head").range(1, 1000);
+    line.option("--seed", settings.seed, "seed of the dunes");
     line.option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
         .commaSeparated()
         .range(64, 4096);

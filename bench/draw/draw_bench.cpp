@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of one eye of one tile: the twelve tiles of a 3 × 4 wall, 1024 × 768 pixels each, over dunes of 512 × 512 or
-// 2048 × 2048 cells. Set LP_NUM_THREADS to choose llvmpipe's threads (0: draw in the calling thread).
+// Measures the drawing of one eye of one tile. The wall has 3 × 4 tiles of 1024 × 768 pixels each and shows dunes of
+// 512 × 512 or 2048 × 2048 cells. LP_NUM_THREADS sets llvmpipe's threads (0: draw in the calling thread).
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -22,13 +22,13 @@ sample::Window windowOf(int tile) {
     return {column / double{kAcross}, row / double{kDown}, (column + 1) / double{kAcross}, (row + 1) / double{kDown}};
 }
 
-/// Argument 0: whether chunks that a tile does not see are left out. Argument 1: cells on a side.
+/// Draws the tiles of the wall. Argument 0: whether chunks outside a tile are left out. Argument 1: cells on a side.
 void drawWall(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
     const render_node::EyeTarget target(1024, 768);
     const bool culling = state.range(0) != 0;
-    // One view per tile, as on the ranks: each holds only what its tile sees.
+    // Each tile has its own view, as on the ranks. A view holds only the chunks inside its tile.
     double chunks = 0;
     double kilobytes = 0;
     for (int tile = 0; tile < kAcross * kDown; ++tile) {
@@ -62,7 +62,8 @@ BENCHMARK(drawWall)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// The head moves, so that all of a tile is drawn in every frame, and chunks come into view. Argument: cells on a side.
+/// Draws a tile while the head moves, so that every frame draws the whole tile and new chunks. Argument: cells on a
+/// side.
 void moveHead(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
@@ -86,7 +87,7 @@ BENCHMARK(moveHead)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// A new furrow: the damaged heights to the view, and what is drawn of them.
+/// Gives the changed heights of a new furrow to the view, and draws. Argument: side of the changed square [cell].
 void updateDamage(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(512);
@@ -107,8 +108,8 @@ void dig(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const int side = static_cast<int>(state.range(1));
     scene::Scene scene = sample::flatScene(side, side, 0.01);
-    sand::grid::makeDunes({.height = 0.02}, scene.terrain);  // at rest as they are
-    // As many as a scene file gives it.
+    sand::grid::makeDunes({.height = 0.02}, scene.terrain);  // these dunes are at rest
+    // The default of a scene file.
     const double radius = 0.01 / scene.terrain.cellSize();
     scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
     sand::Replica terrain(scene);
@@ -142,7 +143,7 @@ BENCHMARK(dig)
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 
-/// A tile of the wall with its overlays. Argument 0: Overlays::bits().
+/// Draws a tile of the wall with overlays. Argument 0: Overlays::bits().
 void overlays(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
     const scene::Scene scene = sample::duneScene(512);

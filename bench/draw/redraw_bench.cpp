@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cost of a wall's frames during digging, in three parts: the sand's steps, taking over their changes, and drawing.
-// For all tiles together and for the busiest one. One process holds a view of the sand for each tile, as each rank
-// does. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+// Measures the CPU time of a wall's frames during digging, in three parts: the sand's steps, the update of the views,
+// and drawing. Prints it for all tiles together and for the busiest tile. One process holds a view of the sand for each
+// tile, as each rank does. LP_NUM_THREADS=0 keeps all work in this thread.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ struct Options {
     bool json = false;
 };
 
-/// A tile as a rank has it.
+/// A tile with the view and the eyes that its rank has.
 struct Tile {
     render_node::ScenePainter view;
     struct Eye {
@@ -61,7 +61,8 @@ std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const scene:
     return tiles;
 }
 
-/// Rings of all sizes at half a side a second, half a radius deep: as scripts/wall_rates.py has a hand dig.
+/// Returns the hand after `seconds`. It digs rings of all sizes, half a radius deep, at half a side per second, as the
+/// stroke list of scripts/wall_rates.py does.
 sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double seconds) {
     double left = 0.5 * seconds;
     double radius = 0.6;
@@ -76,9 +77,9 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
             level / kUnitsPerProbe + rules.toolRadius / 2};
 }
 
-/// The steps of one frame, at as many samples of the hand as a device gives.
+/// Applies the `steps` steps of one frame. Each step has as many samples of the hand as a device gives.
 void dig(sand::Replica& terrain, std::int32_t level, int steps) {
-    constexpr int kSamples = 17;  // in a step
+    constexpr int kSamples = 17;  // per step
     for (int i = 0; i < steps; ++i) {
         sand::Step step{1, terrain.stepNumber() + 1, true, {}};
         for (int sample = 1; sample <= kSamples; ++sample) {
@@ -91,10 +92,10 @@ void dig(sand::Replica& terrain, std::int32_t level, int steps) {
 }
 
 struct Measured {
-    std::vector<double> stepMs, updateMs, drawMs, busiestMs, busiestUpdateMs;  // a frame
-    std::vector<double> views, shares;                                         // a frame
-    std::vector<double> placesRead;                                            // a frame and tile
-    std::vector<double> viewMs, viewTriangles, viewChunks;                     // a view
+    std::vector<double> stepMs, updateMs, drawMs, busiestMs, busiestUpdateMs;  // per frame
+    std::vector<double> views, shares;                                         // per frame
+    std::vector<double> placesRead;                                            // per frame and tile
+    std::vector<double> viewMs, viewTriangles, viewChunks;                     // per view
 };
 
 void takeOver(Tile& tile, const sand::Replica& terrain, const sand::SurfaceChange& change) {
@@ -107,10 +108,10 @@ void takeOver(Tile& tile, const sand::Replica& terrain, const sand::SurfaceChang
     view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
 }
 
-/// Takes over what changed and draws it, tile by tile.
+/// Updates the views with the changes since the last call, and draws them, tile by tile.
 void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrain, Measured& measured) {
     sand::SurfaceChange change;
-    const double listed = bench::secondsOf([&] { change = terrain.takeChange(); });  // once in each rank
+    const double listed = bench::secondsOf([&] { change = terrain.takeChange(); });  // each rank does this once
     double update = listed * static_cast<double>(tiles.size());
     double read = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
@@ -158,7 +159,7 @@ int measure(const Options& options) {
     const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.surface().data());
     const std::int32_t level = scene.referenceHeight();
     Measured measured;
-    constexpr int kWarmUp = 30;  // [frame]: shaders, buffers, the first bank
+    constexpr int kWarmUp = 30;  // [frame]; shaders are compiled, buffers are filled, and the first bank is made
     for (int frame = 0; frame < kWarmUp + options.frames; ++frame) {
         if (frame == kWarmUp) {
             measured = {};
@@ -182,16 +183,16 @@ int measure(const Options& options) {
     const auto row = [](const char* what, const std::vector<double>& values) {
         fmt::print("{:48} {:8.2f} {:8.2f}\n", what, bench::quantile(values, 0.5), bench::quantile(values, 0.99));
     };
-    fmt::print("{} frames at {} a second of {}, {}, {}\n", options.frames, options.rate, wall.name, scene.name,
+    fmt::print("{} frames at {} per second of {}, {}, {}\n", options.frames, options.rate, wall.name, scene.name,
                context->renderer());
     fmt::print("{:48} {:>8} {:>8}\n", "", "p50", "p99");
     row("steps of one replica [ms/frame]", measured.stepMs);
-    row("taking over what changed, all tiles [ms/frame]", measured.updateMs);
-    row("what a tile reads for that [1/frame]", measured.placesRead);
+    row("update of the views, all tiles [ms/frame]", measured.updateMs);
+    row("places that a tile reads for it [1/frame]", measured.placesRead);
     row("drawing, all tiles [ms/frame]", measured.drawMs);
     row("the busiest tile, both eyes [ms/frame]", measured.busiestMs);
-    row("what of it is taking over [ms/frame]", measured.busiestUpdateMs);
-    row("a view that is drawn [ms]", measured.viewMs);
+    row("update of its view [ms/frame]", measured.busiestUpdateMs);
+    row("one drawn view [ms]", measured.viewMs);
     row("its triangles of sand", measured.viewTriangles);
     row("its chunks", measured.viewChunks);
     row("views drawn [1/frame]", measured.views);
@@ -206,8 +207,8 @@ int main(int argc, char** argv) {
     host::CommandLine line("Measures the CPU time of a wall's frames during digging.", "redraw_bench");
     line.option("--wall", options.wall, "wall file").showDefault();
     line.option("--scene", options.scene, "scene file").showDefault();
-    line.option("--frames", options.frames, "how many").range(1, 100000).showDefault();
-    line.option("--rate", options.rate, "frames a second of the wall").range(1, 1000).showDefault();
+    line.option("--frames", options.frames, "number of frames").range(1, 100000).showDefault();
+    line.option("--rate", options.rate, "frames per second of the wall").range(1, 1000).showDefault();
     line.flag("--json", options.json, "print medians per frame as an object: step_ms, busiest_tile_ms, update_ms, …");
     return host::runMain(line, argc, argv, [&] { return measure(options); });
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A redraw of every view of a wall against a bare one of the same views: the same chunks of the same mesh, lit by one
-// dot product at its vertices, every cell of it, no grain, no shadow, no box, no tool. Both alternate, so that the
-// ratio holds on a busy machine. CPU time; LP_NUM_THREADS=0 keeps all of it in this thread.
+// Compares a redraw of every view of a wall with a bare redraw. The bare one draws every cell of the same chunks, lit
+// by one dot product at each vertex, without grain, shadow, box and tool. The two alternate, so that their ratio is
+// valid on a busy machine. Times are CPU time; LP_NUM_THREADS=0 keeps all work in this thread.
 #include <fmt/format.h>
 
 #include <string>
@@ -38,7 +38,7 @@ in vec3 vColour;
 out vec4 oColour;
 void main() { oColour = vec4(vColour, 1.0); })"};
 
-/// Draws the sand and nothing else, as plainly as can be.
+/// Draws the bare sand.
 class BareView {
 public:
     explicit BareView(const scene::Scene& scene)
@@ -85,7 +85,7 @@ int measure(const std::string& wallFile, const std::string& sceneFile, int round
     render_node::ScenePainter sand(scene, sceneToRoom);
     BareView bare(scene);
     std::vector<double> bareMs, sandMs, ratios;
-    for (int round = -1; round < rounds; ++round) {  // the first compiles shaders and fills buffers
+    for (int round = -1; round < rounds; ++round) {  // the first round compiles shaders and fills buffers
         double bareSeconds = 0;
         double sandSeconds = 0;
         for (const render_node::Camera& camera : cameras) {
@@ -123,11 +123,11 @@ int main(int argc, char** argv) {
     std::string scene = "scenes/writing.toml";
     int rounds = 5;
     bool json = false;
-    host::CommandLine line("A redraw of all views of a wall against a bare one of the same views, in CPU time.",
+    host::CommandLine line("Compares the CPU time of a redraw of all views of a wall with that of a bare redraw.",
                            "wall_bench");
     line.option("--wall", wall, "wall file").showDefault();
     line.option("--scene", scene, "scene file").showDefault();
-    line.option("--rounds", rounds, "how often each is drawn").range(1, 1000).showDefault();
+    line.option("--rounds", rounds, "number of drawings of each view").range(1, 1000).showDefault();
     line.flag("--json", json, "print the medians as an object: bare_ms, sand_ms");
     return host::runMain(line, argc, argv, [&] { return measure(wall, scene, rounds, json); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cost of one tick of the force loop, and of the copy of the sand that it gets after each step.
+// Measures one tick of the force loop, and the copy of the sand that the loop gets after each step.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -30,7 +30,7 @@ sand::HeightField ripples(int side) {
 
 sand::ProbePoint middle(int side) { return {side / 2 * sand::kProbePerCell, side / 2 * sand::kProbePerCell, 0}; }
 
-/// Ticks on a TIN with a vertex in the middle of every cell, as far as the tool reaches.
+/// Returns a TIN with a vertex in the middle of every cell, and ripples on it.
 sand::tin::VertexSand tinRipples(int side) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<sand::tin::Place> places;
@@ -49,13 +49,13 @@ sand::tin::VertexSand tinRipples(int side) {
 
 sand::tin::SurfaceView viewOf(const sand::tin::VertexSand& layer) { return {layer.triangles(), layer.heights()}; }
 
-/// ForceModel::at with another surface every sixteenth tick.
+/// Measures ForceModel::at() with another surface every sixteenth tick.
 void tick(benchmark::State& state, const sand::force::SurfacePatch& patch, double side /* [cell] */) {
     sand::ForceConstants constants;
     constants.law = static_cast<sand::ForceLaw>(state.range(0));
     const double radius = static_cast<double>(state.range(1)) * kCell;
     const auto tool = sand::force::Contour::sphere(radius);
-    // Several patches, as a triple buffer hands them over: none may stay in the first cache because it is alone.
+    // Three patches, as in a triple buffer. A single patch would stay in the first-level cache.
     const auto patches = std::make_unique<std::array<sand::force::SurfacePatch, 3>>();
     patches->fill(patch);
     sand::force::ForceModel model(constants);
@@ -77,18 +77,19 @@ void tick(benchmark::State& state, const sand::force::SurfacePatch& patch, doubl
         state.counters[name] = 1e6 * bench::quantile(seconds, share);
     }
 }
-/// range: law, radius [cell], side of the field [cell].
+/// Measures a tick on a height field. Arguments: law, radius [cell], side of the field [cell].
 void forceTick(benchmark::State& state) {
     const auto side = static_cast<int>(state.range(2));
     tick(state, {ripples(side), middle(side), static_cast<double>(state.range(1)) * kCell}, side);
 }
-// As many ticks in every row: a percentile of fewer is another number. 20,000 are twenty seconds of the loop.
+// Every row has as many ticks, because a percentile depends on their number. 20,000 ticks are twenty seconds of the
+// loop.
 BENCHMARK(forceTick)
     ->ArgNames({"law", "cells", "side"})
     ->ArgsProduct({{0, 1}, {2, 10, 31, 63, 127}, {512, 4096}})
     ->Iterations(20000);
 
-/// range: law, radius [cell].
+/// Measures a tick on a TIN. Arguments: law, radius [cell].
 void forceTickOfTin(benchmark::State& state) {
     const sand::tin::VertexSand layer = tinRipples(kTinSide);
     const double radius = static_cast<double>(state.range(1)) * kCell;
@@ -98,7 +99,7 @@ void forceTickOfTin(benchmark::State& state) {
 }
 BENCHMARK(forceTickOfTin)->ArgNames({"law", "cells"})->ArgsProduct({{0, 1}, {2, 4, 5}})->Iterations(20000);
 
-/// range: radius [cell].
+/// Measures the copy of a height field around the tool. Argument: radius [cell].
 void surfacePatch(benchmark::State& state) {
     const sand::HeightField field = ripples(2048);
     for (auto step : state) {
@@ -108,7 +109,7 @@ void surfacePatch(benchmark::State& state) {
 }
 BENCHMARK(surfacePatch)->Arg(2)->Arg(10)->Arg(31)->Arg(63)->Arg(127);
 
-/// Samples the heights of a TIN, which has more than Facets::kMost triangles around the tool. range: radius [cell].
+/// Measures the sampling of a TIN with more than Facets::kMost triangles around the tool. Argument: radius [cell].
 void surfacePatchOfFineTin(benchmark::State& state) {
     constexpr int kSide = 520;
     static const auto fine = std::make_shared<const sand::tin::TinStart>(
@@ -132,7 +133,7 @@ void surfacePatchOfFineTin(benchmark::State& state) {
 }
 BENCHMARK(surfacePatchOfFineTin)->Arg(10)->Arg(31);
 
-/// Copies the triangles of a TIN into the memory of the copy before.
+/// Measures the copy of a TIN's triangles into the memory of the previous copy. Argument: radius [cell].
 void facets(benchmark::State& state) {
     const sand::tin::VertexSand layer = tinRipples(kTinSide);
     sand::force::Facets facets;

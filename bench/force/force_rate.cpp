@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error of the force between two surfaces, by the rate at which the sand is seen, beside its cost.
+// Measures the error of the force between two surfaces of the sand, by the rate of surfaces, and the time of a tick.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -18,8 +18,8 @@ using sand::force::Vec3;
 
 constexpr double kRadius = 0.01;  // [scene unit], the tool of Dorjgotov et al. 2007
 constexpr int kCells = 10;        // per radius
-constexpr int kTicks = 3000;      // a thousand a second
-constexpr int kSettled = 200;     // [tick], until the error counts: the start is no model's fault
+constexpr int kTicks = 3000;      // at a thousand per second
+constexpr int kSettled = 200;     // [tick]; the errors of earlier ticks come from the start and do not count
 constexpr std::array kRates{15, 30, 60, 125, 250, 500, 1000};  // [1/s]
 
 struct ForceMethod {
@@ -31,8 +31,8 @@ constexpr std::array kMethods{
     ForceMethod{"eq. 9", sand::Between::interpolate, 0}, ForceMethod{"hold", sand::Between::hold, 0},
     ForceMethod{"local", sand::Between::local, 0.05}, ForceMethod{"local at once", sand::Between::local, 0}};
 
-/// The hand that is followed: it writes a bent eight and presses and lifts meanwhile, between a third of a radius deep
-/// and one, at up to half a radius in a sixtieth of a second.
+/// Returns the place of the hand at `time`. It writes a bent eight, and presses and lifts meanwhile: its depth is from
+/// a third of a radius to one radius. It moves by up to half a radius in a sixtieth of a second.
 Vec3 handAt(double time /* [s] */, int side) {
     const double turn = 2 * std::numbers::pi * time / 3, middle = kRadius * side / kCells / 2;
     const double depth = kRadius * (0.65 - 0.35 * std::cos(5 * turn));
@@ -52,13 +52,13 @@ scene::Scene sceneOf(int side) {
     scene.rules.columns = scene.rules.rows = side;
     scene.rules.threshold = 44204;  // 34 degrees
     scene.rules.startThreshold = 44248;
-    scene.rules.sweepsPerStep = 3;  // a tenth of a second to rest, as at sixty steps of 40 sweeps
+    scene.rules.sweepsPerStep = 3;  // sand rests after a tenth of a second, as with sixty steps of 40 sweeps per second
     scene.rules.stepsPerSecond = 1000;
     scene.rules.toolRadius = kCells * sand::kProbePerCell;
     return scene;
 }
 
-/// One model at one rate: what it sees and how wrong it is.
+/// A force model that gets the sand at one rate, with its errors.
 struct Follower {
     Follower(sand::ForceConstants constants, const ForceMethod& method, int rate)
         : name(method.name), every(1000 / rate), model([&] {
@@ -71,7 +71,7 @@ struct Follower {
     int every;  // [tick]
     sand::force::ForceModel model;
     sand::force::SurfacePatch patch;
-    std::vector<double> seconds;  // of the ticks
+    std::vector<double> seconds;  // of each tick
     double square = 0, most = 0, jump = 0;
     Vec3 last;
 
@@ -93,11 +93,11 @@ struct Follower {
     }
 };
 
-/// Truth, and everybody who follows it, over the same sand.
+/// A drag through the sand: the exact force at every tick, and all followers on the same sand.
 struct Drag {
     std::vector<Follower> followers;
-    double square = 0, jump = 0;       // of the exact force
-    std::vector<double> patchSeconds;  // of the copies
+    double square = 0, jump = 0;       // sum of squares [N²] and largest change per tick [N] of the exact force
+    std::vector<double> patchSeconds;  // of each copy of the sand
 
     Drag(const sand::ForceConstants& constants, int side) {
         for (const ForceMethod& method : kMethods) {

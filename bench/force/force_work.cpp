@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a force that has no potential gives or takes on a path that closes.
+// Measures the work of a force without a potential along closed paths.
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -15,7 +15,7 @@ using sand::force::Vec3;
 
 constexpr double kTurnRadius = 0.01;  // [scene unit], the tool of Dorjgotov et al. 2007
 constexpr int kTurnCells = 10;        // per radius
-constexpr int kTurnTicks = 20000;     // of a turn: twenty seconds
+constexpr int kTurnTicks = 20000;     // per turn: twenty seconds
 
 sand::force::SurfacePatch slopePatch(int side, double slope) {
     sand::HeightField field(side, side, kTurnRadius / kTurnCells);
@@ -33,7 +33,8 @@ struct Work {
     double net = 0, exchanged = 0;  // [N · scene unit]
 };
 
-/// A circle in the plane of the slope's steepest line and the vertical, from `shallow` to a radius deeper.
+/// Returns the work along a circle in the plane of the slope's steepest line and the vertical. Its depth is from
+/// `shallow` to `shallow` + 1 [radius].
 Work around(const sand::ForceConstants& constants, const sand::force::SurfacePatch& patch, int side, double shallow) {
     const double middle = kTurnRadius * side / kTurnCells / 2;
     const auto tool = sand::force::Contour::sphere(kTurnRadius);
@@ -60,8 +61,8 @@ Work around(const sand::ForceConstants& constants, const sand::force::SurfacePat
 
 void forceWork(const Settings& settings, Csv& csv) {
     csv.note(
-        "a sphere goes once, in twenty seconds, round a circle of a radius across that stands on the slope's "
-        "steepest line; the sand lies still, and there is no friction");
+        "a sphere moves once round an upright circle on the slope's steepest line, in twenty seconds. The circle is a "
+        "radius across. The sand does not move, and there is no friction");
     csv.note(
         "shallow: least depth [radius]; net: work that comes out of the turn [N scene unit], positive when the hand "
         "gains; exchanged: sum of |work| along it; share: |net| over exchanged");

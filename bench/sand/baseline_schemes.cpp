@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled twice, as the sweeps of sand/ are: once for every x86-64 and once for x86-64-v3.
+// This file is compiled twice, as the sweeps of sand/ are: once for every x86-64 and once for x86-64-v3.
 #include "bench/sand/baseline_schemes.hpp"
 
 #include <algorithm>
@@ -9,12 +9,12 @@
 namespace bench::SANDWALL_CODE_PATH {
 namespace {
 
-/// What of a difference is above the talus, with its sign.
+/// Returns the part of a difference above the talus, with its sign.
 inline float excess(float difference, float talus) {
     return difference - std::max(std::min(difference, talus), -talus);
 }
 
-// Each loop keeps the largest move of its column in `largest`: a reduction to one number would not vectorise.
+// Each loop keeps the largest move of each column in `largest`, because a reduction to one number would not vectorise.
 
 void balancePairs(float* __restrict first, int pairs, float talus, float* __restrict largest) {
     for (int i = 0; i < pairs; ++i) {
@@ -34,8 +34,8 @@ void balanceRows(float* __restrict lower, float* __restrict upper, int count, fl
     }
 }
 
-/// Every face once, from south to north; in a row the even faces before the odd ones, so that a vector unit can take
-/// them: one after another they would run eight times slower.
+/// Balances every face once, from south to north. In a row the even faces come before the odd faces, because a vector
+/// unit can take them together. One after another they would be eight times slower.
 float inPlaceN4(float talus, FloatField& field, FloatField& scratch) {
     float* largest = scratch.row(0);
     std::fill_n(largest, field.side, 0.0F);
@@ -75,11 +75,12 @@ void rowN8(const float* __restrict south, const float* __restrict here, const fl
     }
 }
 
-/// Rows of the new heights by `row(south, here, north, out, largest)`; returns the largest change of a cell.
+/// Computes each row of the next heights by `row(south, here, north, out, largest)`. Returns the largest change of a
+/// cell [cell].
 template <class Row>
 float jacobi(FloatField& field, FloatField& scratch, const Row& row) {
     field.refreshGhosts();
-    // The ghost row below the new heights belongs to nobody until the next refresh.
+    // The ghost row of `scratch` is free until the next refresh.
     float* largest = scratch.row(-1);
     std::fill_n(largest, field.side, 0.0F);
     for (int y = 0; y < field.side; ++y) {

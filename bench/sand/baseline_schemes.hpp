@@ -7,8 +7,8 @@
 
 namespace bench {
 
-/// Heights as public sand and terrain codes keep them: one float a cell [cell], and a ghost cell all round that
-/// repeats the edge, so that nothing falls over it as long as the ground along the edge is level.
+/// Heights as in public sand and terrain codes: one float per cell [cell]. A rim of ghost cells repeats the edge, so
+/// that no sand falls over it as long as the ground along the edge is level.
 struct FloatField {
     explicit FloatField(int sideCells)
         : side(sideCells),
@@ -31,20 +31,20 @@ struct FloatField {
     std::vector<float> heights;
 };
 
-/// The talus rules in common use, written here for comparison only: sand above the talus goes to the lower neighbour.
+/// The talus rules in common use, for comparison only: sand above the talus flows to the lower neighbour.
 ///
-/// Each computes what its sources compute, by whole rows and restricted pointers that the compiler vectorises, with
-/// the flags and the instruction sets of our own sweeps. None visits less than the whole field: none of the sources
-/// does. `talus` is the largest stable difference between neighbours [cell].
+/// Each rule gives the result of its sources. It works on whole rows with restricted pointers, which the compiler
+/// vectorises. It has the flags and the instruction sets of our own sweeps. Every sweep visits the whole field, as the
+/// sources do. `talus` is the largest stable difference between neighbours [cell].
 enum class BaselineScheme {
-    inPlaceN4,   // faces one after another, half of the excess each: as soil and terrain simulators do it
-    jacobiN4,    // all faces from the old heights, a quarter of the excess each
-    jacobiN8,    // eight neighbours alike, an eighth each
-    jacobiN8r2,  // eight neighbours, the diagonal ones allowed sqrt(2) times the difference, an eighth each
+    inPlaceN4,   // faces one after another, half of the excess each, as in soil and terrain simulators
+    jacobiN4,    // all faces from the heights before the sweep, a quarter of the excess each
+    jacobiN8,    // eight equal neighbours, an eighth of the excess each
+    jacobiN8r2,  // eight neighbours, an eighth each; diagonal neighbours may differ by sqrt(2) times the talus
 };
 
-/// One sweep over the whole field; `scratch` is of the same size. Returns the largest amount that a face or, for the
-/// Jacobi rules, a cell moved [cell].
+/// Runs one sweep over the whole field. `scratch` has the same size. Returns the largest amount that moved over a face
+/// [cell]; for the Jacobi rules, the largest change of a cell [cell].
 namespace baseline {
 float sweep(BaselineScheme scheme, float talus, FloatField& field, FloatField& scratch);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a pile is from the right one, as its fluxes can prove, and as it really is.
+// Measures the distance of a pile from the right one: the bound that its fluxes prove, and the true value.
 #include "sand/grid/certificate.hpp"
 
 #include "bench/curves.hpp"
@@ -13,7 +13,7 @@
 namespace bench {
 namespace {
 
-/// The end of a relaxation, and what passed every face on the way.
+/// The heights after a relaxation, and the net flux across every face.
 struct Relaxed {
     sand::HeightField field;
     sand::grid::NetFlux flux;
@@ -69,7 +69,7 @@ double squaredDistance(const sand::HeightField& a, const sand::HeightField& b) {
     return sum;
 }
 
-/// The start projected onto the fields without a quad steeper than the talus.
+/// Returns the projection of `start` onto the fields without a quad steeper than the talus.
 sand::HeightField projected(const sand::HeightField& start, const sand::Rules& rules) {
     sand::grid::DualProjection projection(start, rules);
     projection.run();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Digging at the rate of the session: what a step costs, and how far behind the hand the sand is.
+// Measures digging at the rate of a session: the time of a step, and the share of sand that has yet to move.
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +13,8 @@
 namespace bench {
 namespace {
 
-constexpr int kSteps = 200;       // of a stroke
-constexpr int kMostAfter = 2000;  // steps that are waited for after lifting
+constexpr int kSteps = 200;       // per stroke
+constexpr int kMostAfter = 2000;  // largest number of steps after lifting
 
 struct Stroke {
     int side;
@@ -34,12 +34,12 @@ scene::Scene sceneFor(const Stroke& stroke) {
 
 sand::Step stepOf(const sand::Replica& terrain, const Stroke& stroke, int number) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(std::lround(cells * sand::kProbePerCell)); };
-    // Along the diagonal: 480 cells and their banks fit into a field of 512.
+    // The stroke is along the diagonal, because 480 cells and their banks then fit into a field of 512.
     const double at = stroke.side / 2.0 + stroke.speed * (number - kSteps / 2.0) / std::numbers::sqrt2;
     return {1, terrain.stepNumber() + 1, true, {{probe(at), probe(at), 0}}};
 }
 
-/// Digs one stroke and leaves the tool in the sand; seconds of each step go to `seconds`. Returns the last hash.
+/// Digs one stroke and leaves the tool in the sand. Adds the time of each step to `seconds` [s]. Returns the last hash.
 std::uint64_t digStroke(sand::Replica& terrain, const Stroke& stroke, std::vector<double>& seconds) {
     std::uint64_t hash = 0;
     for (int i = 0; i <= kSteps; ++i) {
@@ -48,14 +48,14 @@ std::uint64_t digStroke(sand::Replica& terrain, const Stroke& stroke, std::vecto
             terrain.apply(step);
             hash = terrain.stateHash();
         });
-        if (i > 0) {  // the first presses, and touches every page for the first time
+        if (i > 0) {  // the first step presses the tool in, and touches every page for the first time
             seconds.push_back(took);
         }
     }
     return hash;
 }
 
-/// Returns how far the sand is behind at the end of a stroke.
+/// The sand at the end of a stroke, compared with settled sand.
 struct Lag {
     double held = 0, lifted = 0;  // share of the displaced sand that still has to move
     double bank = 0;              // [cell]
@@ -63,7 +63,8 @@ struct Lag {
     int stepsAfter = 0;
 };
 
-/// Sum of |a - b| over that of |b|: half of each is a volume, of sand that has to move and of sand that was displaced.
+/// Returns the volume of sand that has to move, divided by the volume of displaced sand. Each volume is half of a sum:
+/// of |field - rest|, and of |rest|.
 double behind(const sand::HeightField& field, const sand::HeightField& rest) { return misplaced(field, rest); }
 
 Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
@@ -129,8 +130,8 @@ void dig(const Settings& settings, Csv& csv) {
                     kSteps));
     csv.note("ms: CPU time of one thread per step, hash included, over the steps of all strokes");
     csv.note(
-        "misplaced_held: sum of |height - height once settled, the tool still held where it is| over the sum of "
-        "|the latter - level|: sand that has yet to move over sand displaced");
+        "misplaced_held: sum of |height - settled height| over the sum of |settled height - level|. The sand settles "
+        "with the tool in its last place. This is sand that has yet to move over displaced sand");
     csv.note("misplaced_lifted: the same, settled without the tool: the hole it leaves fills too");
     csv.note("bank: highest sand over the level at the end of the stroke [cell]");
     csv.note("bank_reach: how far from the stroke's line sand is half a cell higher than once settled [cell]");

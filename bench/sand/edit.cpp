@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one edit costs: sand at rest anywhere else should cost nothing.
+// Measures one edit. Resting sand in other places should add no time.
 #include "bench/curves.hpp"
 #include "bench/sand/relaxations.hpp"
 #include "bench/timing.hpp"
@@ -8,7 +8,7 @@
 namespace bench {
 namespace {
 
-constexpr int kStepSweeps = 16;  // of one step
+constexpr int kStepSweeps = 16;  // per step
 
 sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
     const auto probe = [](double cells) { return static_cast<std::int32_t>(cells * sand::kProbePerCell); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One number for the sand after many edits, by every way of computing it that one program has.
+// Prints the hash of the sand after many edits, by code path, number of threads and block size.
 #include <random>
 
 #include "bench/curves.hpp"
@@ -16,7 +16,7 @@ constexpr int kEdits = 300;
 std::uint64_t hashAfterEdits(int side, std::uint32_t seed, sand::Scheme scheme,
                              const sand::grid::Erosion::Options& options) {
     std::mt19937 random(seed);
-    // Odd sides, so that blocks and vectors are cut short at the rim.
+    // The sides are odd, so that blocks and vectors are cut short at the rim.
     sand::HeightField field(side | 1, (side / 2) | 1, 1.0);
     sand::Rules rules = rulesFor(field, 0.6745, 1e-3);
     rules.scheme = scheme;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled twice, as the sweeps of sand/ are: once for every x86-64 and once for x86-64-v3.
+// This file is compiled twice, as the sweeps of sand/ are: once for every x86-64 and once for x86-64-v3.
 #include "bench/sand/integer_n4.hpp"
 
 namespace bench::SANDWALL_CODE_PATH {
 namespace {
 
-/// The fluxes between two parallel runs of cells.
+/// Computes the fluxes between two parallel runs of cells [unit].
 void fluxesBetween(const std::int32_t* __restrict from, const std::int32_t* __restrict to, int count,
                    std::int32_t threshold, std::int32_t startThreshold, std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ std::int32_t addUp(const std::int32_t* __restrict east, const std::int32_t* __re
 
 bool sweep(const IntegerN4Sweep& patch) {
     std::int32_t moved = 0;
-    // A row changes only after the fluxes to the row north of it are known, while that row still has its old heights.
+    // A row changes after its fluxes to the row north of it are known. That row still has the heights before the sweep.
     for (int y = 0; y < patch.rows; ++y) {
         const std::ptrdiff_t row = y * patch.stride;
         std::int32_t* const heights = patch.heights + row;

@@ -11,7 +11,7 @@
 
 namespace bench {
 
-/// The arrays of one sweep. All three have the same stride, and a cell of margin on every side.
+/// The arrays of one sweep. All three have the same stride and a margin of one cell on every side.
 struct IntegerN4Sweep {
     std::int32_t* heights;  // [unit], at cell (0,0)
     std::int32_t* east;     // flux from each cell to its eastern neighbour [unit]; written
@@ -21,7 +21,7 @@ struct IntegerN4Sweep {
     std::int32_t threshold, startThreshold;  // [unit]
 };
 
-// One source, compiled twice like baseline_schemes.cpp. Returns whether any sand moved.
+// integer_n4.cpp is compiled twice, like baseline_schemes.cpp. sweep() returns whether any sand moved.
 namespace baseline {
 bool sweep(const IntegerN4Sweep& patch);
 }
@@ -31,12 +31,13 @@ bool sweep(const IntegerN4Sweep& patch);
 
 /// The four-neighbour rule in integers, for comparison only: it rests in the wrong pile at every resolution.
 ///
-/// Each face looks at its two cells alone. If their difference is above the start threshold, a quarter of the excess
-/// over the threshold flows, rounded up. All fluxes come from the old heights, so that volume is exact. The box is
-/// closed and its cells are square. Below a threshold of 4 units rounding up never lets the sand rest.
+/// The flux across a face depends on its two cells only. If their difference is above the start threshold, a quarter of
+/// the excess over the threshold flows, rounded up. All fluxes come from the heights before the sweep, so the volume is
+/// exact. The box is closed and its cells are square. With a threshold below 4 units, rounding up keeps the sand
+/// moving.
 class IntegerN4 {
 public:
-    /// `v3`: sweeps with the instructions of x86-64-v3, which give the same heights.
+    /// Takes the heights of `start`. With `v3`, sweeps use the instructions of x86-64-v3, which give the same heights.
     IntegerN4(const sand::HeightField& start, const sand::Rules& rules, bool v3 = base::machineHasV3())
         : field_(start),
           east_(start.columns(), start.rows()),
@@ -53,8 +54,7 @@ public:
     IntegerN4(const IntegerN4&) = delete;
     IntegerN4& operator=(const IntegerN4&) = delete;
 
-    /// Runs at most `count` sweeps, fewer when nothing moves any more. The last sweep, in which nothing moves, counts
-    /// too.
+    /// Runs at most `count` sweeps. Stops after the first sweep in which no sand moves, which counts too.
     void sweep(int count) {
         for (int i = 0; i < count && !atRest_; ++i) {
             atRest_ = !(v3_ ? v3::sweep(patch_) : baseline::sweep(patch_));

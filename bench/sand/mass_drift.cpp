@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether sand is lost: floats against integers.
+// Measures how much sand floats lose or invent, beside integers.
 #include <cmath>
 #include <numeric>
 
@@ -10,7 +10,7 @@
 namespace bench {
 namespace {
 
-/// The pile `cells` above the zero of heights, as a survey's sand is above sea level.
+/// Returns `field` with `cells` cells added to every height, as a survey's ground is above sea level.
 sand::HeightField lifted(const sand::HeightField& field, int cells) {
     sand::HeightField result = field;
     for (int y = 0; y < field.rows(); ++y) {
@@ -38,7 +38,7 @@ void massDrift(const Settings& settings, Csv& csv) {
                 const auto volume = [&] {
                     double sum = 0;
                     for (const double height : relaxation->heights()) {
-                        sum += height - datum;  // of differences: doubles hold them exactly
+                        sum += height - datum;  // doubles hold these differences exactly
                     }
                     return sum;
                 };

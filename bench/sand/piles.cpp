@@ -33,7 +33,7 @@ std::vector<Pile> pilesOf(int side) {
 sand::HeightField bumpySlope(int side, std::uint32_t seed) {
     std::mt19937 random(seed);
     sand::HeightField field(side, side, 1.0);
-    // Around height 0, so that the steepest side the benchmarks use stays within the heights' range.
+    // The heights are around 0, so that the largest field of the benchmarks stays within their range.
     for (int y = 0; y < side; ++y) {
         for (int x = 0; x < side; ++x) {
             const int bump = static_cast<int>(random() % (sand::kUnitsPerCell / 2));

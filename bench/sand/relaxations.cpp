@@ -48,7 +48,7 @@ public:
           scratch_(field.columns()),
           v3_(std::strcmp(codePath(), "baseline") != 0) {
         if (field.columns() != field.rows()) {
-            throw std::logic_error("the baselines know square fields only");
+            throw std::logic_error("the baselines need square fields");
         }
         for (int y = 0; y < field_.side; ++y) {
             for (int x = 0; x < field_.side; ++x) {
@@ -79,7 +79,7 @@ private:
     FloatField field_, scratch_;
     bool v3_;
     std::int64_t sweepsDone_ = 0;
-    float largest_ = 1;  // moved in the last sweep [cell]
+    float largest_ = 1;  // largest move in the last sweep [cell]
 };
 
 Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
@@ -92,7 +92,7 @@ Method ours(const std::string& name, sand::Scheme scheme, bool skipSettled) {
             }};
 }
 
-/// sand::settle(): one call does it all.
+/// Calls sand::grid::settle() in the first sweep, which brings the pile to rest.
 class Direct : public Relaxation {
 public:
     Direct(const sand::HeightField& field, const sand::Rules& rules) : field_(field), rules_(rules) {}
@@ -164,7 +164,7 @@ std::vector<Method> methods(const std::vector<std::string>& names) {
     for (const std::string& name : names) {
         const auto found = std::find_if(all.begin(), all.end(), [&](const Method& m) { return m.name == name; });
         if (found == all.end()) {
-            throw std::logic_error("no method is called " + name);
+            throw std::logic_error("there is no method with the name " + name);
         }
         chosen.push_back(*found);
     }

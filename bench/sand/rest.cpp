@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Seconds to rest: of one pile, and of a field in which everything moves.
+// Measures the time to rest of a pile, and of a field in which all sand moves.
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -19,9 +19,9 @@ struct Contender {
     std::int64_t sweeps = 0;
 };
 
-constexpr double kRestPatience = 60;  // [s] of all runs of one method: a slower one is run fewer times
+constexpr double kRestPatience = 60;  // total time of one method [s]; a slower method is run fewer times
 
-/// Every method in every round, so that a neighbour's load meets all of them alike.
+/// Runs every method in every round, so that the load of other programs affects all methods equally.
 std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
                             const std::string& field) {
     std::vector<Contender> contenders;
@@ -54,7 +54,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 double sumOf(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// The rows of one race, the first contender being the reference; errors are over `whole`.
+/// Writes the rows of one race. The first contender is the reference. Errors are divided by `whole`.
 void write(Csv& csv, const std::string& field, int side, const std::vector<Contender>& contenders,
            const std::vector<double>& truth, double whole) {
     const double reference = spreadOf(contenders.front().seconds).median;
@@ -87,7 +87,7 @@ void rest(const Settings& settings, Csv& csv) {
 
 void restMoving(const Settings& settings, Csv& csv) {
     std::vector<Method> all = methods(kToRest);
-    // Where everything moves, active blocks are full sweeps.
+    // All blocks are active if all sand moves, so "G plain" would repeat "G plain full sweeps".
     std::erase_if(all, [](const Method& method) { return method.name == "G plain"; });
     csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
     csv.note("  error against " + kToRest.back() + ": sum of |difference| over that of |rest - start|, the sand moved");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The piles at rest: how wrong, after how many sweeps, and in which direction.
+// Measures the piles at rest: their error, their number of sweeps, and their radius by direction.
 #include <map>
 
 #include "bench/curves.hpp"
@@ -10,8 +10,8 @@
 namespace bench {
 namespace {
 
-/// A pile brought to rest. Floats that creep on for ever end after half as many sweeps as the field has cells, when
-/// their piles have long had the shape that they keep.
+/// Returns the pile at rest. Floats may creep without end, so they stop after half as many sweeps as the field has
+/// cells. Their piles have then long had their final shape.
 std::unique_ptr<Relaxation> relaxed(const Method& method, const Pile& pile) {
     std::unique_ptr<Relaxation> relaxation = method.start(pile.start, rulesFor(pile.start));
     relaxation->sweep(method.integers ? kMostSweeps : pile.side() * pile.side() / 2);
@@ -126,7 +126,8 @@ void decay(const Settings& settings, Csv& csv) {
                     }
                     relaxation->sweep(sweepsWanted - static_cast<int>(done));
                     const std::vector<double> now = relaxation->heights();
-                    // Every grain that moves is missing in one cell and too many in another: half of the sum.
+                    // Sand that moves is missing in one cell and surplus in another, so the moved volume is half of the
+                    // sum.
                     const double moved = misplaced(now, last) / 2 / static_cast<double>(sweepsWanted - done);
                     csv.row(pile.name, method.name, side, sweepsWanted, moved, misplaced(now, rest));
                     last = now;

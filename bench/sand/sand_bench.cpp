@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the sand costs. Sweeps are of fields in which everything moves, beside a memcpy of the same bytes in one run:
-// quote the ratio, machines differ.
+// Measures sweeps, steps and copies of the sand. The sweeps are of fields in which all sand moves. A memcpy of the same
+// bytes in the same run is the reference: quote the ratio, because machines differ.
 #include <benchmark/benchmark.h>
 
 #include <cstring>
@@ -33,7 +33,7 @@ void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath pa
     sand::HeightField field = roughField(side);
     sand::Rules rules;
     rules.columns = rules.rows = side;
-    rules.threshold = 64;  // next to nothing rests
+    rules.threshold = 64;  // nearly all sand moves
     rules.startThreshold = rules.threshold + band;
     rules.scheme = scheme;
     sand::grid::Erosion erosion(field, rules, {.path = path});
@@ -75,7 +75,7 @@ scene::Scene level(double toolCells, int sweeps, std::int32_t band = 0) {
     return scene;
 }
 
-/// A step of digging in circles, 1.5 cells long, hash included.
+/// Measures a step of digging in circles, 1.5 cells long, with its hash.
 void dig(benchmark::State& state, double toolCells, int sweeps, std::int32_t band = 0) {
     sand::Replica terrain(level(toolCells, sweeps, band));
     for (auto _ : state) {
@@ -92,7 +92,8 @@ BENCHMARK_CAPTURE(dig, paper_tool, 2.56, 4)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(dig, tool_of_12_cells, 12.0, 24)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(dig, tool_of_12_cells_band, 12.0, 24, 44)->Unit(benchmark::kMillisecond);
 
-/// A hand touches down, far from where sand still moves, and leaves again: what keeping the sand for an undo costs.
+/// Measures two steps, in which a hand touches the sand, far from moving sand, and leaves it. The result is the
+/// cost of a snapshot for an undo.
 void touchDown(benchmark::State& state) {
     const int side = static_cast<int>(state.range(0));
     scene::Scene scene = level(2.56, 4);
@@ -109,7 +110,7 @@ void touchDown(benchmark::State& state) {
 }
 BENCHMARK(touchDown)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 
-/// The same sand compressed, as it was kept before.
+/// Measures the compression of a snapshot.
 void compressed(benchmark::State& state) {
     const int side = static_cast<int>(state.range(0));
     scene::Scene scene = level(2.56, 4);
@@ -123,7 +124,7 @@ void compressed(benchmark::State& state) {
 }
 BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 
-/// Settled sand and a hovering hand.
+/// Measures a step with settled sand and a hovering hand.
 void idle(benchmark::State& state) {
     sand::Replica terrain(level(12, 24));
     for (auto _ : state) {

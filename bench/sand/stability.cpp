@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which springs an arm can be pressed against: sampled as they are, and behind the guards.
+// Measures the stiffest springs on which an arm comes to rest, with and without the guards.
 #include <cmath>
 #include <limits>
 
@@ -17,13 +17,15 @@ using haptic_bridge::ForceLimits;
 using haptic_bridge::Guards;
 using haptic_bridge::SimulatedArm;
 
-/// A flat bottom of a stiffness, through the guards or straight: whether an arm that is pressed onto it with half of
-/// its force, and pushed at 0.1 m/s, is below 1 mm/s after 3 s; a heavy arm is given half as long again as half of its
-/// damping needs.
+/// Returns whether an arm comes to rest on a flat spring of `stiffness`, through the guards if `mode` is `on`.
+///
+/// The arm is pressed onto the spring with half of its greatest force and pushed at 0.1 m/s. It is at rest if it is
+/// slower than 1 mm/s after 3 s. A heavy arm gets 6 ln(1000) times mass over damping, half as
+/// long again as with half of its damping.
 bool rests(const ArmPhysics& physics, double stiffness /* [N/m] */, Guards::Mode mode) {
     const haptic_bridge::LawAtRadius law{stiffness, 0, 0};
     ForceLimits limits = ForceLimits::of(physics, 1, law, 0);
-    limits.fastestThing = std::numeric_limits<double>::infinity();  // it is put into the spring at once
+    limits.fastestThing = std::numeric_limits<double>::infinity();  // the arm starts inside the spring
     const double soft = mode == Guards::Mode::on ? limits.lawStiffness : stiffness;
     Guards guards(limits, mode);
     SimulatedArm arm(physics);
@@ -47,7 +49,7 @@ bool rests(const ArmPhysics& physics, double stiffness /* [N/m] */, Guards::Mode
     return fastest < 1e-3;
 }
 
-/// The stiffest that rests, by halving between `low` and `high`.
+/// Returns the greatest stiffness between `low` and `high` on which the arm comes to rest [N/m], by bisection.
 double stiffest(const ArmPhysics& physics, Guards::Mode mode, double low, double high) {
     if (rests(physics, high, mode)) {
         return high;
@@ -62,13 +64,11 @@ double stiffest(const ArmPhysics& physics, Guards::Mode mode, double low, double
 }  // namespace
 
 void stability(const Settings& settings, Csv& csv) {
-    csv.note(
-        "K, the stiffest spring [N/m] on which an arm comes to rest: below 1 mm/s within 3 s, or within what a heavy");
-    csv.note("arm's damping takes; pressed with half of its greatest force, pushed at 0.1 m/s. theory: b/(T/2 + t_d).");
-    csv.note(
-        "textbook: the preset's mass alone, by growth; literal: with its encoder, friction and motor; guarded: what");
-    csv.note(
-        "the guards make of any law, and bears: the stiffest law asked for with which it came to rest, up to 1e6.");
+    csv.note("K, the stiffest spring [N/m] on which an arm comes to rest: below 1 mm/s within 3 s, or within the");
+    csv.note("time of a heavy arm's damping; pressed with half of its greatest force, pushed at 0.1 m/s. theory:");
+    csv.note("b/(T/2 + t_d); textbook: the preset's mass alone, by growth; literal: with its encoder, friction and");
+    csv.note("motor; guarded: the stiffness that the guards allow; bears: the stiffest law with which the arm came");
+    csv.note("to rest, tried up to 1e6.");
     csv.columns("arm,delay,b,theory,textbook,literal,guarded,bears");
     const std::vector<double> dampings =
         settings.runs > 1 ? std::vector<double>{0.1, 0.2, 0.35, 0.5, 1, 2, 3.5, 5, 10} : std::vector<double>{0.5, 5};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sweep costs per cell, beside what the machine's memory allows.
+// Measures the time of a sweep per cell, beside the time of a copy, which is the limit of the machine's memory.
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -15,7 +15,7 @@
 namespace bench {
 namespace {
 
-/// Noise of 64 cells' height: next to nothing of it rests.
+/// Returns a field of noise with a height of 64 cells. Nearly all of it moves.
 sand::HeightField roughField(int side, std::uint32_t seed) {
     std::mt19937 random(seed);
     sand::HeightField field(side, side, 1.0);
@@ -27,7 +27,7 @@ sand::HeightField roughField(int side, std::uint32_t seed) {
     return field;
 }
 
-/// Sweeps enough for the clock's grain not to matter, and few enough for everything still to move.
+/// Returns a number of sweeps that is large enough for the clock's resolution, and so small that all sand still moves.
 int sweepsFor(int side) { return std::clamp((1 << 24) / (side * side), 2, 64); }
 
 struct Variant {
@@ -37,7 +37,7 @@ struct Variant {
     int threads;
 };
 
-/// Seconds per sweep, a number for each run: on the wall where several threads share the work.
+/// Returns the time per sweep of each run [s]: CPU time of one thread, or wall time of several threads.
 std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
     sand::Rules rules = rulesFor(start, 64.0 / sand::kUnitsPerCell);
     rules.scheme = variant.scheme;
@@ -51,7 +51,7 @@ std::vector<double> measure(const Variant& variant, const sand::HeightField& sta
     for (int run = 0; run < runs; ++run) {
         sand::HeightField field = start;
         sand::grid::Erosion erosion(field, rules, options);
-        erosion.sweep(field, 1);  // touches every page, and wakes the threads
+        erosion.sweep(field, 1);  // touches every page and wakes the threads
         const auto clock = variant.threads > 1 ? wallSeconds : cpuSeconds;
         const double before = clock();
         erosion.sweep(field, count);
@@ -60,8 +60,8 @@ std::vector<double> measure(const Variant& variant, const sand::HeightField& sta
     return seconds;
 }
 
-/// One number read and one written per cell. Not memcpy: on some virtual machines it copies what fits into the cache
-/// ten times slower than a loop does.
+/// Reads and writes one number per cell. On some virtual machines memcpy copies data that fit into the cache ten times
+/// slower than this loop.
 void copyAndAdd(const std::int32_t* __restrict from, std::int32_t* __restrict to, std::size_t cells) {
     for (std::size_t i = 0; i < cells; ++i) {
         to[i] = from[i] + 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the numbers themselves cost: height bits, hysteresis band, and the budget of one pile's error.
+// Measures the errors that the numbers cause: height bits, hysteresis band, and the sources of one pile's error.
 #include <cmath>
 
 #include "bench/curves.hpp"
@@ -9,8 +9,8 @@
 namespace bench {
 namespace {
 
-/// The pile in units of 2^-bits cells. Sweeps know nothing but units: scaled heights with a scaled threshold are the
-/// same sand in coarser or finer numbers.
+/// A pile in units of 2^-bits cells. Sweeps compute in units, so scaled heights with a scaled threshold are the same
+/// sand in coarser or finer numbers.
 class Scaled {
 public:
     Scaled(const Pile& pile, int bits) : field(pile.start), rules(rulesFor(pile.start)), scale_(std::ldexp(1.0, bits)) {
@@ -42,7 +42,7 @@ private:
 
 bool fits(const Pile& pile, int bits) { return std::ldexp(pile.shape.apex() * 2, bits) <= sand::kMaxHeight; }
 
-/// Largest slope through a face of the pile; the talus is 1.
+/// Returns the largest slope through a face of the pile. The talus is 1.
 double steepest(const std::vector<double>& heights, int side) {
     const auto at = [&](int x, int y) { return heights[static_cast<std::size_t>(y * side + x)]; };
     double slope = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Error against run time: what a second buys with each method.
+// Measures the error of each method by its run time.
 #include <cmath>
 
 #include "bench/curves.hpp"
@@ -10,7 +10,7 @@
 namespace bench {
 namespace {
 
-// Full sweeps cost what active ones do while the whole pile moves; `rest` compares them.
+// "G plain full sweeps" is left out: while the whole pile moves it takes as long as "G plain". `rest` compares the two.
 const std::vector<std::string> kRaced{"G",
                                       "G plain",
                                       "N4",
@@ -20,15 +20,15 @@ const std::vector<std::string> kRaced{"G",
                                       "float32 N8 Jacobi",
                                       "float32 N8 sqrt2 Jacobi"};
 
-/// One place on a method's curve.
+/// One point on a method's curve.
 struct Sample {
     int sweeps = 0;
     oracles::Distance error;
     bool atRest = false;
-    std::vector<double> seconds;  // since the start, of each run
+    std::vector<double> seconds;  // time since the start of each run
 };
 
-/// 1, 2, 3, 4, 6, 8, 12, 16, 24 …
+/// Returns the next number of sweeps in the series 1, 2, 3, 4, 6, 8, 12, 16, 24 …
 int next(int sweeps) {
     if (sweeps < 4) {
         return sweeps + 1;
@@ -37,17 +37,19 @@ int next(int sweeps) {
     return powerOfTwo ? sweeps / 2 * 3 : sweeps / 3 * 4;
 }
 
-// G is told how many sweeps it has, as every step of a scene tells it, and begins with more inertia when they are few;
-// from so many on it makes no difference, and the rest of a run is measured in parts.
+// G gets the number of sweeps of a run, as in every step of a scene. If there are few, it begins with more inertia.
+// From kAtOnce sweeps on there is no difference, so the rest of a run is measured in parts.
 constexpr int kAtOnce = 96;  // [sweep]
-// A clock that is read before and after takes its own time.
+// Reading the clock takes time too. A run shorter than kShort is repeated between two readings.
 constexpr double kShort = 50e-6;  // [s]
-constexpr int kRepeats = 32;      // of a run so short, between two readings
+constexpr int kRepeats = 32;      // number of repeats
 
-constexpr double kPatience = 4;  // [s] of all runs of one method: a slower one is run fewer times
+constexpr double kPatience = 4;  // total time of one method [s]; a slower method is run fewer times
 
-/// Whether twice the sweeps have changed the error by less than a hundredth, halfway too: in floats some piles never
-/// rest, and some pass by the right one, where the error is level for a moment.
+/// Returns whether the error has changed by less than a hundredth since half of the sweeps, and since the sample
+/// between.
+///
+/// Some piles of floats never rest. Others pass by the right pile, and their error is level for a moment there.
 bool onPlateau(const std::vector<Sample>& samples) {
     const std::size_t count = samples.size();
     if (count < 3 || samples[count - 3].sweeps < 256) {
@@ -64,7 +66,7 @@ oracles::Distance errorOf(const Pile& pile, const Relaxation& relaxation) {
         pile.side(), pile.rest, [&](std::size_t i) { return heights[i]; }, [](int, int) { return true; });
 }
 
-/// Runs a method once through the samples that `samples` holds, or, the first time, as far as it goes.
+/// Runs one method several times. first() runs to rest or to a plateau; again() repeats the samples of the first run.
 class Runner {
 public:
     Runner(const Method& method, const Pile& pile) : method_(method), pile_(pile), rules_(rulesFor(pile.start)) {}
@@ -86,7 +88,7 @@ public:
         return samples;
     }
 
-    [[nodiscard]] double total() const { return total_; }  // [s], of all runs so far
+    [[nodiscard]] double total() const { return total_; }  // total time of all runs [s]
 
     void again(std::vector<Sample>& samples) {
         start();
@@ -101,7 +103,7 @@ private:
         done_ = 0;
         seconds_ = 0;
     }
-    /// Seconds from the start to `sweeps` sweeps, setting up included.
+    /// Advances to `sweeps` sweeps. Returns the time since the start, with the setup [s].
     double advanceTo(int sweeps) {
         if (sweeps <= kAtOnce) {
             seconds_ = secondsAtOnce(sweeps);

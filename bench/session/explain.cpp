@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lists what one scene loads and runs, and what it leaves out, with the cost of each part on this machine.
+// Lists the parts that one scene loads and runs, and the parts that it leaves out, with the cost of each on this
+// machine.
 #include <fstream>
 #include <map>
 #include <random>
@@ -18,7 +19,7 @@ namespace {
 
 using sand::kProbePerCell;
 
-/// Size of every library this process has mapped [byte], by name.
+/// Returns the size of every library that this process has mapped [byte], by name.
 std::map<std::string, std::size_t> mappedLibraries() {
     std::map<std::string, std::size_t> libraries;
     std::ifstream maps("/proc/self/maps");
@@ -36,7 +37,7 @@ std::map<std::string, std::size_t> mappedLibraries() {
     return libraries;
 }
 
-/// Rows of the explanation: what kind of part, its name, whether this scene uses it, what it costs, and why.
+/// The rows of the explanation: kind of part, name, whether this scene uses it, cost, and reason.
 class Explanation {
 public:
     explicit Explanation(Csv& csv) : csv_(csv) { csv_.columns("kind,part,used,cost,unit,why"); }
@@ -116,8 +117,8 @@ std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::St
     return seconds;
 }
 
-/// Adds noise to the scene's sand, so that nearly all of it moves. The noise is as high as the scene's tool, and at
-/// least a cell, but no higher than a TIN's volumes can hold.
+/// Returns the scene with noise in its sand, so that nearly all sand moves. The noise is as high as the scene's tool,
+/// and at least a cell. It is limited to the heights that a TIN's volumes can hold.
 scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
     std::mt19937 random(seed);
     scene::Scene result = scene;

@@ -15,7 +15,7 @@ namespace bench {
 void becomeLatency(const std::vector<std::string>& arguments) {
     std::vector<std::string> words{"python3", SANDWALL_SOURCE_DIR "/scripts/latency.py"};
     if (!std::filesystem::exists(words[1])) {
-        throw base::InputError(words[1] + ": not there; run sandwall-bench where it was built");
+        throw base::InputError(words[1] + ": does not exist; run sandwall-bench on the machine that built it");
     }
     words.insert(words.end(), arguments.begin(), arguments.end());
     const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
@@ -27,7 +27,7 @@ void becomeLatency(const std::vector<std::string>& arguments) {
     }
     pointers.push_back(nullptr);
     execvp(pointers[0], pointers.data());
-    throw base::InputError(words[0] + ": " + std::strerror(errno) + "; scripts/install_dependencies.sh installs it");
+    throw base::InputError(words[0] + ": " + std::strerror(errno) + "; run scripts/install_dependencies.sh");
 }
 
 }  // namespace bench

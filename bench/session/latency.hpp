@@ -6,8 +6,8 @@
 
 namespace bench {
 
-/// Becomes scripts/latency.py, which starts whole sessions with the programs beside this one. Returns only by throwing:
-/// base::InputError when there is no such script or Python.
+/// Replaces this process by scripts/latency.py, which starts whole sessions with the programs beside this one. Throws
+/// base::InputError if the script or Python cannot be found. Does not return.
 [[noreturn]] void becomeLatency(const std::vector<std::string>& arguments);
 
 }  // namespace bench

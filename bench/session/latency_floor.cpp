@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a message and a frame cost without sand, pictures and waiting: the floor beside which latencies are told.
+// Measures a message and a frame without sand, pictures and the wait for a frame. They are the floor of the latency.
 #include <fmt/format.h>
 #include <mpi.h>
 #include <sys/prctl.h>
@@ -27,11 +27,11 @@ using base::LiveHistogram;
 using boost::asio::ip::tcp;
 
 constexpr std::chrono::microseconds kFrame{16'667};
-constexpr double kMeanPause = 0.005;  // [s] between echoes: both ends sleep, as they do in a session
+constexpr double kMeanPause = 0.005;  // mean pause between echoes [s], in which both ends sleep as in a session
 
 struct Options {
     std::string to;
-    int bytes = 74;  // of the message, or of the frame
+    int bytes = 74;  // size of the message, or of the frame message
     double seconds = 3;
     std::uint32_t seed = 7;
 };
@@ -41,7 +41,7 @@ void print(const LiveHistogram& times) {
                times.stddevNs() * 1e-6, times.percentileNs(0.50) * 1e-6, times.count());
 }
 
-/// Sends every connection's bytes back, one connection after another, until it is ended.
+/// Sends the bytes of each connection back, one connection after another, until this process is ended.
 int echo() {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     boost::asio::io_context io;
@@ -63,7 +63,7 @@ int echo() {
     }
 }
 
-/// Half of the round trip of messages at random times.
+/// Measures half of the round trip of messages at random times.
 int message(const Options& options) {
     const auto to = haptic_bridge::Address::parse(options.to, "--to");
     boost::asio::io_context io;
@@ -86,8 +86,8 @@ int message(const Options& options) {
     return 0;
 }
 
-/// Waits as the ranks of a wall do: by MPI's own waiting, which never sleeps, they would be pushed aside by whatever
-/// else runs on their cores.
+/// Waits for `request` as the ranks of a wall do, with sleeps. MPI's own wait never sleeps, so the scheduler would
+/// prefer other processes on the ranks' cores.
 void await(MPI_Request request) {
     lockstep::Backoff backoff;
     for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), done == 0;) {
@@ -95,7 +95,7 @@ void await(MPI_Request request) {
     }
 }
 
-/// A broadcast and a barrier, as rank 0 sees them, 60 times a second.
+/// Measures a broadcast and a barrier at rank 0, 60 times per second.
 int frame(const Options& options) {
     MPI_Init(nullptr, nullptr);
     int rank = 0;
@@ -105,8 +105,8 @@ int frame(const Options& options) {
     LiveHistogram whole;
     std::int64_t end = 0;
     for (int round = 0; bytes[0] != 0; ++round) {
-        constexpr int kWarmUp = 10;  // in which connections are made
-        // The others come a little sooner, as to the next frame.
+        constexpr int kWarmUp = 10;  // rounds in which connections are made
+        // The other ranks come a little earlier, as render ranks do.
         std::this_thread::sleep_for(rank == 0 ? kFrame : kFrame - std::chrono::milliseconds(1));
         const std::int64_t began = host::monotonicNs();
         end = round == kWarmUp ? began + static_cast<std::int64_t>(options.seconds * 1e9) : end;
@@ -132,17 +132,17 @@ int frame(const Options& options) {
 
 int main(int argc, char** argv) {
     host::CommandLine line(
-        "A bare message over TCP, and a bare broadcast and barrier over MPI: mean and spread, as JSON.",
+        "Measures a bare message over TCP, or a bare broadcast and barrier over MPI. Prints mean and spread as JSON.",
         "sandwall-latency-floor");
     Options options;
-    const host::CommandLine echoes = line.command("echo", "answer messages, until ended");
-    host::CommandLine messages = line.command("message", "half of the round trip to an echo, at random times");
-    host::CommandLine frames = line.command("frame", "a broadcast and a barrier; under mpirun");
+    const host::CommandLine echoes = line.command("echo", "answer messages until this program is ended");
+    host::CommandLine messages = line.command("message", "measure half of the round trip to an echo, at random times");
+    host::CommandLine frames = line.command("frame", "measure a broadcast and a barrier; needs mpirun");
     messages.option("--to", options.to, "ADDRESS:PORT of the echo").required();
     for (host::CommandLine* command : {&messages, &frames}) {
-        command->option("--bytes", options.bytes, "of a message").range(1, 1 << 20);
-        command->option("--seconds", options.seconds, "to measure").range(0.1, 600.0);
-        command->option("--seed", options.seed, "of the random times");
+        command->option("--bytes", options.bytes, "size of a message").range(1, 1 << 20);
+        command->option("--seconds", options.seconds, "seconds to measure").range(0.1, 600.0);
+        command->option("--seed", options.seed, "seed of the random times");
     }
     return host::runMain(line, argc, argv, [&] {
         return echoes.given() ? echo() : messages.given() ? message(options) : frame(options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a tool costs in a TIN, without the sweeps: an imprint far from the last one, and a step of dragging.
+// Measures a tool in a TIN without sweeps: an imprint far from the last one, and a step of dragging.
 #include <array>
 #include <cmath>
 #include <random>
@@ -14,13 +14,13 @@ namespace {
 using sand::tin::Place;
 using sand::tin::VertexSand;
 
-constexpr double kToolRadius = 16.8;  // [cell]: about 1000 cells below a round tool and in the ring beside it
+constexpr double kToolRadius = 16.8;  // [cell]; about 1000 cells are below a round tool and in the ring beside it
 constexpr double kDepth = 2;          // [cell]
-constexpr int kSamples = 16;          // of the hand, in one step
-constexpr double kWay = 1.5;          // [cell], of one step
-constexpr int kEach = 10;             // imprints a run, and steps of its drag
+constexpr int kSamples = 16;          // samples of the hand per step
+constexpr double kWay = 1.5;          // length of a step [cell]
+constexpr int kEach = 10;             // imprints per run, and steps of its drag
 
-/// A vertex somewhere in the middle half of every cell, level sand.
+/// Returns level sand with one vertex per cell, at a random place in the middle half of the cell.
 VertexSand jittered(int side, std::mt19937& random) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
     std::vector<Place> places;
@@ -42,7 +42,7 @@ sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
     return {probe(x), probe(y), probe(z)};
 }
 
-/// Vertices that the tool takes sand from or gives it to, at one place.
+/// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `at`.
 int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
     int count = 0;
     for (const Place& place : layer.triangles().places) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A TIN of a raster by greedy insertion: error against vertices and seconds, beside a regular grid of as many points.
+// Measures a TIN that approximates a raster: its error by vertices and by run time, beside a regular grid with as many
+// points.
 #include "sand/tin/refine/simplify.hpp"
 
 #include <cmath>
@@ -19,7 +20,7 @@ struct Terrain {
     std::string name;
     int columns = 0, rows = 0;
     std::int32_t cellDepth = kCell;  // [probe unit]
-    std::vector<double> heights;     // from the south
+    std::vector<double> heights;     // row by row from the south
 
     [[nodiscard]] std::int32_t width() const { return columns * kCell; }
     [[nodiscard]] std::int32_t depth() const { return rows * cellDepth; }
@@ -50,7 +51,8 @@ Terrain terrainOf(const scene::EsriGrid& grid) {
     return terrain;
 }
 
-/// Samples of a regular grid of about so many points, the outermost included, without those that have no data.
+/// Returns a regular grid with about `share` of the samples. It has the outermost samples, and leaves out samples
+/// without data.
 sand::tin::Simplified regularGrid(const Terrain& terrain, double share) {
     const int most = static_cast<int>(share * terrain.columns * terrain.rows);
     const double aspect = static_cast<double>(terrain.width()) / terrain.depth();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a TIN costs to make and to change: whole meshes, and one tool's imprint in a large one.
+// Measures how long it takes to make a TIN and to change it: whole meshes, and one tool's imprint in a large mesh.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -15,7 +15,7 @@ using sand::tin::Place;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
-constexpr std::int32_t kSide = 512 * 256;  // as wide as 512 cells [probe unit]
+constexpr std::int32_t kSide = 512 * 256;  // side of 512 cells [probe unit]
 constexpr int kVertices = 250'000;
 
 std::vector<Place> randomPlaces(int count) {
@@ -28,7 +28,7 @@ std::vector<Place> randomPlaces(int count) {
     return places;
 }
 
-/// All of whose squares have their corners on a circle.
+/// Returns the points of a square lattice. The four corners of each square are on one circle.
 std::vector<Place> latticePlaces() {
     std::vector<Place> places;
     for (std::int32_t y = 0; y <= kSide; y += 264) {
@@ -63,7 +63,8 @@ void insertOneByOne(benchmark::State& state) {
     }
 }
 
-/// An ellipse of 32 points whose edges are constraints, 16 cells by 8; some 150 vertices lie in it.
+/// Inserts an ellipse of 32 points with a radius of 16 cells by 8, and makes its edges constraints. Returns its
+/// vertices. About 380 vertices of the mesh are inside.
 template <class Surface>
 std::vector<Vertex> imprint(Surface& surface, const Place& centre) {
     constexpr std::array<std::array<int, 2>, 32> kUnit{
@@ -90,7 +91,7 @@ Place somewhere(std::mt19937& random) {
 
 void imprintMesh(benchmark::State& state) {
     Mesh mesh = meshOf(randomPlaces(kVertices));
-    (void)mesh.takeChange();  // everything, the first time
+    (void)mesh.takeChange();  // the first change is the whole mesh
     std::mt19937 random(3);
     for (auto _ : state) {
         const std::vector<Vertex> ring = imprint(mesh, somewhere(random));
@@ -103,10 +104,10 @@ void imprintMesh(benchmark::State& state) {
     }
 }
 
-/// The same with the sand on it, as one change.
+/// Measures an imprint in a mesh with sand on it, as one change.
 void imprintLayer(benchmark::State& state) {
     VertexSand layer(meshOf(randomPlaces(kVertices)));
-    (void)layer.takeChange();  // everything, the first time
+    (void)layer.takeChange();  // the first change is the whole mesh
     std::mt19937 random(3);
     for (auto _ : state) {
         std::vector<Vertex> ring;
@@ -124,7 +125,7 @@ void imprintLayer(benchmark::State& state) {
 
 void dissolveLayer(benchmark::State& state) {
     VertexSand layer(meshOf(randomPlaces(kVertices)));
-    (void)layer.takeChange();  // everything, the first time
+    (void)layer.takeChange();  // the first change is the whole mesh
     std::mt19937 random(3);
     for (auto _ : state) {
         state.PauseTiming();

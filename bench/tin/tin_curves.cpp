@@ -19,7 +19,7 @@ constexpr std::int32_t kSteepest = 65536;  // [unit per cell], 45 degrees
 
 struct Shape {
     const char* name;
-    double radius, height;  // [side of the field]
+    double radius, height;  // share of the field's side
 };
 
 void measurePile(Kind kind, int side, double degrees, const Shape& shape, const Settings& settings, Csv& csv) {
@@ -56,9 +56,9 @@ void tinPiles(const Settings& settings, Csv& csv) {
 }
 
 void tinActive(const Settings& settings, Csv& csv) {
-    csv.note("100 sweeps after a cone of about 1000 vertices has been put on level sand, elsewhere in every run: with");
     csv.note(
-        "what they must find out about the mesh, and once more as they have it; mean over the vertices that moved");
+        "100 sweeps after a cone of about 1000 vertices has been put on level sand, in another place in every run;");
+    csv.note("first: the mesh's weights must be computed; again: they are known; mean over the vertices that moved");
     csv.columns("N,vertices,raised,moved,first_ms,again_ms,first_ns_per_vertex_sweep,again_ns_per_vertex_sweep");
     constexpr int kSweeps = 100;
     for (const int side : settings.sizes) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a whole step of a session on a TIN costs: a tool put somewhere new, dragged on, lifted, and sand that slides on.
+// Measures the steps of a session on a TIN: a tool is put into the sand, dragged and lifted, and the sand slides on.
 #include <array>
 #include <cmath>
 #include <map>
@@ -15,19 +15,19 @@
 namespace bench {
 namespace {
 
-constexpr double kToolCells = 13;   // [cell]: about 1000 vertices below the tool and in the ring beside it
+constexpr double kToolCells = 13;   // [cell]; about 1000 vertices are below the tool and in the ring beside it
 constexpr double kPressed = 2;      // [cell]
-constexpr int kSamplesOfHand = 16;  // in one step
+constexpr int kSamplesOfHand = 16;  // per step
 constexpr double kPerStep = 1.5;    // [cell]
-constexpr int kRunSteps = 30;       // a run, of either kind
-constexpr int kStepsAfter = 4;      // an imprint, in which its sand slides on
+constexpr int kRunSteps = 30;       // imprints per run, and steps of its drag
+constexpr int kStepsAfter = 4;      // steps after an imprint in which sand slides
 constexpr int kSweepsPerStep = 64;
 constexpr std::int32_t kSlope = 65536;         // [unit per cell], 45 degrees
-constexpr std::int32_t kBand = kSlope / 1000;  // as scenes have it that say nothing else
+constexpr std::int32_t kBand = kSlope / 1000;  // the default of scenes
 constexpr std::int32_t kMaxError = 65536 / 8;  // [unit]
 constexpr std::int32_t kMostVertices = 1 << 19;
 
-/// Seconds by kind of step and part.
+/// Times by kind of step and part [s].
 using Times = std::map<std::pair<std::string, std::string>, std::vector<double>>;
 
 scene::Scene levelScene(int side, bool refines, std::uint32_t seed) {
@@ -56,7 +56,7 @@ struct Action {
     sand::Step step;
 };
 
-/// Imprints far from one another, each lifted again, and one long drag.
+/// Returns imprints far from one another, each followed by a lift, and one long drag.
 std::vector<Action> actionsOf(int side, std::uint32_t seed) {
     std::mt19937 random(seed);
     const auto somewhere = [&] { return 2 * kToolCells + tin_piles::chance(random) * (side - 4 * kToolCells); };
@@ -85,10 +85,10 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
     return actions;
 }
 
-/// As a rank and the master do it: the step, its hash, and what is to be drawn anew.
+/// Measures whole steps as on a rank: the step, its hash, and the list of changes for drawing.
 void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::Replica terrain(scene);
-    terrain.apply({1, 1, false, {}});  // everything moves at first
+    terrain.apply({1, 1, false, {}});  // all sand moves in the first step
     static_cast<void>(terrain.stateHash());
     static_cast<void>(terrain.takeChange());
     for (Action action : actions) {
@@ -101,7 +101,7 @@ void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions,
     }
 }
 
-/// The same, part by part: the surface's calls as Replica::apply() makes them.
+/// Measures the parts of a step: the calls of the surface in the order of Replica::apply().
 void measureParts(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
@@ -134,7 +134,7 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
     }
 }
 
-/// What of an imprint is the mesh's change, and what the remap; each is taken back again.
+/// Measures the two parts of an imprint, the change of the mesh and the remap. Takes each imprint out again.
 void measureImprints(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     sand::tin::VertexSand layer = sand::tin::Snapshot(surface.layer(), {}).layer();
@@ -172,9 +172,12 @@ void tinStep(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a round tool of 32 points and radius {} cells, {} cells deep, in level sand; {} sweeps; ms of",
                     kToolCells, kPressed, kSweepsPerStep));
-    csv.note("CPU time. imprint: put somewhere new, where a stroke begins; drag: moved on by 1.5 cells; lift: taken");
-    csv.note("out; after: nothing but sweeps. step: all of it with hash and damage, measured on its own. mesh, remap:");
-    csv.note("within tool, tried apart and without refinement; keep: for an undo; sweeps: with coarsening");
+    csv.note(
+        "CPU time. imprint: the tool at a new place, where a stroke begins; drag: moved on by 1.5 cells; lift: taken");
+    csv.note(
+        "out; after: only sweeps. step: the whole step with hash and list of changes, measured separately. mesh, "
+        "remap:");
+    csv.note("parts of tool, measured separately and without refinement; keep: for an undo; sweeps: with coarsening");
     csv.columns("what,refined,N,vertices,near,part,steps,ms_median,ms_p99,ms_max");
     for (const int side : settings.sizes) {
         for (const bool refines : {false, true}) {
