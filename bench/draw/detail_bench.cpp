@@ -114,10 +114,10 @@ int main(int argc, char** argv) {
         bench::Csv csv(settings);
         csv.note(
             "one eye of a middle tile of 3 x 4, 1024 x 768 pixels, drawn whole; dunes with a furrow, the head moves");
-        csv.note("bound: how far the level of detail may shift the picture of any sand [pixel]; 0 draws every cell");
-        csv.note("ms: CPU time of one thread, llvmpipe's work in it; ratio: to bound 0 of the same frames");
+        csv.note("bound: largest shift of any sand in the picture by the level of detail [pixel]; 0 draws every cell");
+        csv.note("ms: CPU time of one thread with llvmpipe's work; ratio: over the time of bound 0 in the same frames");
         csv.note(
-            "bad: share of pixels that differ from bound 0 by more than 8 of 255 levels; mean: of all differences "
+            "bad: share of pixels that differ from bound 0 by more than 8 of 255 levels; mean: mean of all differences "
             "[level]; coarse: share of the drawn chunks above level 0");
         csv.columns("N,bound,ms_median,ms_min,ms_max,ratio,bad,mean,triangles,coarse");
         for (const int side : settings.sizes) {

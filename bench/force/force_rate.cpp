@@ -165,10 +165,13 @@ void forceRate(const Settings& settings, Csv& csv) {
         fmt::format("a sphere of {} cells writes an eight for {} s, a third to one radius deep, in sand that steps "
                     "a thousand times a second",
                     kCells, kTicks / 1000));
-    csv.note("truth: the law at every tick on the sand of that tick; rate: how often a model sees that sand [1/s]");
+    csv.note(
+        "truth: the law at every tick on the sand of that tick; rate: surfaces that a model gets per second [1/s]");
     csv.note(
         "rms, most: |push - truth| [N]; share: rms over the rms of truth; jump: most change of push in a tick [N]");
-    csv.note("us: CPU time of one thread per tick, the copy of the sand included; p99: of a tick without it");
+    csv.note(
+        "us: CPU time of one thread per tick with the copy of the sand; p99: 99th percentile of a tick without the "
+        "copy");
     csv.columns("law,N,method,rate,rms,share,most,jump,truth_jump,us_median,us_min,us_max,us_p99");
     for (const int side : settings.sizes) {
         sand::ForceConstants constants;

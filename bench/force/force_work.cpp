@@ -64,7 +64,7 @@ void forceWork(const Settings& settings, Csv& csv) {
         "a sphere moves once round an upright circle on the slope's steepest line, in twenty seconds. The circle is a "
         "radius across. The sand does not move, and there is no friction");
     csv.note(
-        "shallow: least depth [radius]; net: work that comes out of the turn [N scene unit], positive when the hand "
+        "shallow: least depth [radius]; net: work of the turn [N scene unit], positive if the hand "
         "gains; exchanged: sum of |work| along it; share: |net| over exchanged");
     csv.columns("law,N,slope,shallow,net,exchanged,share");
     for (const int side : settings.sizes) {

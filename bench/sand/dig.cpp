@@ -132,11 +132,13 @@ void dig(const Settings& settings, Csv& csv) {
     csv.note(
         "misplaced_held: sum of |height - settled height| over the sum of |settled height - level|. The sand settles "
         "with the tool in its last place. This is sand that has yet to move over displaced sand");
-    csv.note("misplaced_lifted: the same, settled without the tool: the hole it leaves fills too");
+    csv.note("misplaced_lifted: as misplaced_held, but settled without the tool, so that its hole fills too");
     csv.note("bank: highest sand over the level at the end of the stroke [cell]");
-    csv.note("bank_reach: how far from the stroke's line sand is half a cell higher than once settled [cell]");
-    csv.note("hash: of the sand at the end of the stroke and of level sand, together");
-    csv.note("steps_after: steps after lifting until misplaced_lifted is 1 %");
+    csv.note(
+        "bank_reach: largest distance from the stroke's line at which sand is half a cell above its settled height "
+        "[cell]");
+    csv.note("hash: combined hash of the sand at the end of the stroke and of level sand");
+    csv.note("steps_after: number of steps after lifting until misplaced_lifted is 1 %");
     csv.columns(
         "N,R,cells_per_step,sweeps_per_step,ms_p50,ms_p99,ms_max,idle_us,misplaced_held,misplaced_lifted,bank,"
         "bank_reach,steps_after,hash");

@@ -49,7 +49,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
 void edit(const Settings& settings, Csv& csv) {
     csv.note(fmt::format("an edit: a sphere of `radius` cells presses half of itself into level sand, then {} sweeps",
                          kStepSweeps));
-    csv.note("full: the same with every block visited in every sweep; the sand is the same, bit for bit");
+    csv.note("full: every block is visited in every sweep, and the sand is the same bit for bit");
     csv.note("CPU time of one thread");
     csv.columns("blocks,N,radius,ms_median,ms_min,ms_max,ms_to_rest");
     for (const int side : settings.sizes) {

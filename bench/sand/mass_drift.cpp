@@ -25,7 +25,7 @@ sand::HeightField lifted(const sand::HeightField& field, int cells) {
 
 void massDrift(const Settings& settings, Csv& csv) {
     csv.note("datum: height of the ground [cell]; floats have 24 bits for datum and sand together");
-    csv.note("drift: volume above the datum minus that at the start, over the latter");
+    csv.note("drift: (volume above the datum - volume at the start) over the volume at the start");
     csv.columns("pile,method,N,datum,sweeps,drift");
     for (const int side : settings.sizes) {
         const Pile pile = lowPile(side);

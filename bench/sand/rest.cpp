@@ -90,7 +90,8 @@ void restMoving(const Settings& settings, Csv& csv) {
     // All blocks are active if all sand moves, so "G plain" would repeat "G plain full sweeps".
     std::erase_if(all, [](const Method& method) { return method.name == "G plain"; });
     csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
-    csv.note("  error against " + kToRest.back() + ": sum of |difference| over that of |rest - start|, the sand moved");
+    csv.note("  error against " + kToRest.back() +
+             ": sum of |difference| over the sum of |rest - start|, the moved sand");
     begin(csv);
     for (const int side : settings.sizes) {
         const sand::HeightField start = bumpySlope(side, settings.seed);

@@ -32,10 +32,10 @@ sand::HeightField fieldFrom(const std::vector<double>& heights, int side) {
 }  // namespace
 
 void errorAtRest(const Settings& settings, Csv& csv) {
-    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the latter");
+    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the analytic means");
     csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
-    csv.note("order: of `misplaced`, from the size before: log of the errors' ratio over log of the sizes'");
-    csv.note("sweeps: until nothing moves; a float baseline until no sweep moves 1e-6 cells, at most N x N / 2");
+    csv.note("order: order of `misplaced` from the size before: log of the errors' ratio over log of the sizes' ratio");
+    csv.note("sweeps: number until the sand is at rest; floats: until no sweep moves 1e-6 cells, at most N x N / 2");
     csv.columns("pile,method,integers,N,sweeps,at_rest,seconds,misplaced,largest,apex,order");
     struct Before {
         int side = 0;
@@ -62,8 +62,9 @@ void errorAtRest(const Settings& settings, Csv& csv) {
 }
 
 void sweeps(const Settings& settings, Csv& csv) {
-    csv.note("sweeps until nothing moves; band: how much steeper than the talus sand at rest must be to start");
-    csv.note("exponent: of the sweeps in N, from the size before");
+    csv.note(
+        "sweeps: number until the sand is at rest; band: share of the talus by which the start threshold exceeds it");
+    csv.note("exponent: exponent of the sweeps in N, from the size before");
     csv.columns("pile,method,band,N,sweeps,exponent");
     struct Before {
         int side = 0;
@@ -108,7 +109,7 @@ void anisotropy(const Settings& settings, Csv& csv) {
 }
 
 void decay(const Settings& settings, Csv& csv) {
-    csv.note("moved: volume that changed cell per sweep, mean since the sample before, over the pile's volume");
+    csv.note("moved: volume that changed cell per sweep, over the pile's volume; mean since the sample before");
     csv.note("to_rest: sum of |height - height at this method's own rest| over the volume");
     csv.columns("pile,method,N,sweeps,moved,to_rest");
     for (const int side : settings.sizes) {

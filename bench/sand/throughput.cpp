@@ -117,7 +117,7 @@ void throughput(const Settings& settings, Csv& csv) {
     for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
         variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
     }
-    csv.note("a field in which everything moves; CPU time of one thread, wall time of several");
+    csv.note("a field in which all sand moves; CPU time of one thread, wall time of several threads");
     csv.note(
         "times_copy: over the median of reading and writing a 32-bit number per cell in the same run: the roofline");
     csv.columns("variant,threads,N,ns_per_cell_median,ns_per_cell_min,ns_per_cell_max,times_copy");

@@ -64,7 +64,7 @@ oracles::Distance errorOf(const Pile& pile, const std::vector<double>& heights) 
 }  // namespace
 
 void heightBits(const Settings& settings, Csv& csv) {
-    csv.note("bits: a height unit is 2^-bits cells; rows are missing where the pile is out of 32 bits' range");
+    csv.note("bits: a height unit is 2^-bits cells; a row is missing if the pile exceeds the range of 32 bits");
     csv.note("too_steep: largest slope through a face at rest over the talus, minus 1");
     csv.columns("pile,N,bits,sweeps,misplaced,largest,apex,too_steep");
     for (const int side : settings.sizes) {
@@ -83,7 +83,7 @@ void heightBits(const Settings& settings, Csv& csv) {
 }
 
 void band(const Settings& settings, Csv& csv) {
-    csv.note("band: how much steeper than the talus sand at rest must be to start, as a share of the talus");
+    csv.note("band: share of the talus by which the start threshold exceeds it");
     csv.columns("pile,method,N,band,sweeps,misplaced,largest,apex");
     for (const int side : settings.sizes) {
         for (const Pile& pile : pilesOf(side)) {
@@ -102,11 +102,11 @@ void band(const Settings& settings, Csv& csv) {
 }
 
 void budget(const Settings& settings, Csv& csv) {
-    csv.note("grid: pile at rest in the finest units that fit against the analytic pile");
-    csv.note("bits: pile at rest in units of 2^-16 cells against that in the finest");
-    csv.note("band: pile at rest with the default band of 1e-3 against that with none");
-    csv.note("iteration: pile after a quarter, half or nine tenths of the sweeps to rest against that at rest");
-    csv.note("misplaced: sum of |difference| over the sum of what it is measured against");
+    csv.note("grid: pile at rest in the finest units that fit, against the analytic pile");
+    csv.note("bits: pile at rest in units of 2^-16 cells against the pile in the finest units");
+    csv.note("band: pile at rest with the default band of 1e-3 against the pile without a band");
+    csv.note("iteration: pile after a quarter, half or nine tenths of the sweeps to rest, against the pile at rest");
+    csv.note("misplaced: sum of |difference| over the sum of the reference");
     csv.columns("pile,N,part,misplaced");
     for (const int side : settings.sizes) {
         for (const Pile& pile : pilesOf(side)) {

@@ -146,9 +146,9 @@ private:
 }  // namespace
 
 void workPrecision(const Settings& settings, Csv& csv) {
-    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the latter");
+    csv.note("misplaced: sum of |height - analytic mean over the cell| over the sum of the analytic means");
     csv.note("largest, apex: L-infinity error and error of the highest point [cell of this N]");
-    csv.note("seconds: CPU time of one thread from the start field on, setting up included");
+    csv.note("seconds: CPU time of one thread from the start field, with the setup");
     csv.note(
         fmt::format("a float baseline ends when no sweep moves {} cells, or twice the sweeps change the error by < 1 %",
                     kFloatTolerance));

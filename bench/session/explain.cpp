@@ -192,7 +192,7 @@ void explain(const Settings& settings, Csv& csv) {
     }
     csv.note(fmt::format("scene: {}, {} sweeps per step, tool of {:.3g} cells", scene.name, scene.rules.sweepsPerStep,
                          static_cast<double>(scene.rules.toolRadius) / kProbePerCell));
-    csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless it says otherwise",
+    csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless `why` says otherwise",
                          settings.runs));
     Explanation rows(csv);
     explainMemory(scene, rows);

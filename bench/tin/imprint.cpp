@@ -101,12 +101,14 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
 }  // namespace
 
 void imprint(const Settings& settings, Csv& csv) {
-    csv.note(fmt::format("a tool of radius {} cells, {} cells deep, in a TIN of a vertex a cell; no sweeps; CPU time",
-                         kToolRadius, kDepth));
-    csv.note("imprint: put somewhere, its outline's edges constrained");
+    csv.note(
+        fmt::format("a tool of radius {} cells, {} cells deep, in a TIN with one vertex per cell; no sweeps; CPU time",
+                    kToolRadius, kDepth));
+    csv.note("imprint: the tool at a new place, with the edges of its outline as constraints");
     csv.note(fmt::format("drag: a step of {} cells and {} samples, the imprint before taken out", kWay, kSamples));
     csv.note(
-        "refined: whether the mesh is refined around the tool, to a nominal cell; near: vertices below and beside");
+        "refined: whether the mesh is refined around the tool, to a nominal cell; near: vertices below and beside the "
+        "tool");
     csv.columns("what,tool,refined,N,vertices,near,ms_median,ms_p99,ms_max");
     for (const int side : settings.sizes) {
         for (const sand::ToolKind kind : {sand::ToolKind::circle, sand::ToolKind::ellipse, sand::ToolKind::footprint}) {

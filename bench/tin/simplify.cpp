@@ -119,7 +119,7 @@ void simplify(const Settings& settings, Csv& csv) {
     }
     csv.note("greedy insertion until there are so many vertices: a share of the samples that have data");
     csv.note("max, rms: vertical errors over all samples, in the raster's unit of height, as relief is (dunes: cells)");
-    csv.note("grid_: the same of a regular grid of as many samples, triangulated; CPU time of one thread");
+    csv.note("grid_: vertices and errors of a regular grid of as many samples, triangulated; CPU time of one thread");
     csv.columns(
         "terrain,columns,rows,samples,relief,vertices,share,ms_median,ms_min,ms_max,max,rms,grid_vertices,grid_max,"
         "grid_"

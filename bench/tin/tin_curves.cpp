@@ -42,7 +42,7 @@ void tinPiles(const Settings& settings, Csv& csv) {
     csv.note(
         "error: volume between the pile at rest and the right one, over its volume; iterations of the projection,");
     csv.note("then sweeps, settled 0: 1,000,000 were not enough; seconds: of this thread, from the cylinder to rest;");
-    csv.note("exact: whether the volume is what it was");
+    csv.note("exact: whether the volume has stayed the same");
     csv.columns("mesh,pile,N,degrees,vertices,error,iterations,sweeps,settled,seconds,exact");
     for (const int side : settings.sizes) {
         for (const Shape& shape : {Shape{"low", 0.25, 0.15}, Shape{"tall", 0.15, 0.45}}) {
