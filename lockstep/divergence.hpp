@@ -19,7 +19,7 @@ struct Divergence {
     struct Odd {
         int rank = 0;
         std::uint64_t hash = 0;
-        int tile = -1;           // first hash tile that differs; -1 if only pose, step or outflow differ
+        int tile = -1;           // first hash tile that differs; -1 if only probe, step number or outflow differ
         sand::CellRect cells;    // cells of that tile
         int cellsDiffering = 0;  // in that tile; counted for the first odd rank and for others with the same tile
     };

@@ -18,7 +18,7 @@ inline constexpr std::uint32_t kStateVersion = 6;
 
 /// Copy of a replica's whole state. Another thread can compress it while the replica applies further steps.
 struct StateCopy {
-    base::Bytes head;                                 // step number, pose, heading and tuned rules, encoded
+    base::Bytes head;                                 // step number, probe, heading and tuned rules, encoded
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
@@ -45,7 +45,8 @@ public:
     /// sand slides for Rules::sweepsPerStep sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
     /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. Such a step runs no
-    /// sweeps, so that it ends with exactly the restored sand. It does not restore step number, pose, tool or material.
+    /// sweeps, so that it ends with exactly the restored sand. It does not restore step number, probe, tool or
+    /// material.
     ///
     /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
     /// then runs its sweeps.
@@ -65,17 +66,16 @@ public:
     }
     [[nodiscard]] ToolShape toolShape() const { return rules_.toolShape(); }
     [[nodiscard]] Heading heading() const { return heading_; }  // the tool's, from rules or hand
-    [[nodiscard]] bool engaged() const { return engaged_; }     // whether the tool touches the sand
+    [[nodiscard]] bool engaged() const { return engaged_; }     // whether the tool may touch the sand
     /// Returns whether an undo can restore sand. The replica keeps the sand from before the last stroke. A stroke
-    /// begins with the first step in which the tool touches the sand after it hovered. After an undo, a reset or a
-    /// load, the replica keeps no sand. If the tool is still engaged, it keeps the restored sand, because a stroke
-    /// begins there.
+    /// begins with the first step in which the tool is engaged after it hovered. After an undo, a reset or a load, the
+    /// replica keeps no sand. If the tool is still engaged, it keeps the restored sand: a stroke begins there.
     [[nodiscard]] bool canUndo() const { return surface_->hasKept(); }
     /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
 
-    /// Returns the state hash. It covers the sand, outflow, pose, heading, step number, whether the tool is engaged,
+    /// Returns the state hash. It covers the sand, outflow, probe, heading, step number, whether the tool is engaged,
     /// and the rules that an operator has tuned. It covers the age of the inertia but not its fluxes, because a wrong
     /// flux shows in the heights after the next step. It does not cover the sand that is kept for an undo, because
     /// wrong sand shows after the undo.

@@ -65,19 +65,19 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer);
 ///
 /// `number` counts 1, 2, 3 … over a whole session. In one `epoch` either the master or the haptic server numbers all
 /// steps. `path` has at most kMaxPathPoints points, and is empty while the hand rests. The tool moves to its first
-/// point from the last point of the steps before. If the tool hovered before, it touches the sand only from the first
+/// point from the last point of the earlier steps. If the tool hovered before, it touches the sand only from the first
 /// point on.
 struct Step {
     std::uint32_t epoch = 0;
     std::uint64_t number = 0;
-    bool engaged = false;  // whether the tool touches the sand; a hovering tool leaves the sand as it is
+    bool engaged = false;  // true: the tool may touch the sand; false: it hovers and leaves the sand alone
     std::vector<ProbePoint> path;
     Edit edit = Edit::none;                         // done after the tool's displacement and before the sweeps
     std::optional<Heading> heading = std::nullopt;  // of the tool from this step on; nullopt: unchanged
     friend bool operator==(const Step&, const Step&) = default;
 };
 
-/// Writes a step in the one format that link, broadcast and journal share. A point is encoded as the difference
+/// Writes a step in the one format that link, frame message and journal share. A point is encoded as the difference
 /// from the point before, in integers of variable length: about 60 bytes for a step of 17 samples.
 void encode(const Step& step, base::ByteWriter& writer);
 /// Reads a step that encode() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points,
