@@ -9,15 +9,16 @@
 
 namespace lockstep {
 
-/// Message that a rank sends when it reaches the barrier. Times [ns] are on its own clock, corrected to the master's.
+/// Message that a rank sends when it reaches the barrier. `arrived` and `lastSwap` are times on the rank's own clock,
+/// corrected to the master's clock.
 struct Arrival {
     std::uint64_t frame = 0;
-    std::int64_t arrived = 0;
-    std::int64_t lastSwap = 0;  // swap of the frame before; 0 in the first frame
-    std::int64_t drawn = 0;     // time spent drawing
-    std::uint64_t stateHash = 0;
-    std::uint64_t viewHash = 0;  // ViewProof::hash() of this frame's view
-    char key = 0;                // key pressed in a window of this rank since the frame before; 0 without one
+    std::int64_t arrived = 0;     // [ns], when the rank had its hash and, if it draws, its picture
+    std::int64_t lastSwap = 0;    // [ns], swap of the frame before; 0 in the first frame
+    std::int64_t drawn = 0;       // [ns], duration of the drawing; 0 at the master
+    std::uint64_t stateHash = 0;  // sand::Replica::stateHash() after the steps of this frame
+    std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
+    char key = 0;                 // key pressed in a window of this rank since the frame before; 0 without one
 };
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so

@@ -34,11 +34,11 @@ enum class Verdict : std::uint8_t {
 /// All messages are point-to-point, and the master polls for them. Inside a broadcast or an allreduce of MPI, a rank
 /// that has stopped looks the same as the ranks that wait for it. The master would hang there, too.
 ///
-/// All waits use Backoff, so that a waiting rank leaves its core to the ranks that draw. Main thread only.
+/// All waits for messages use Backoff, so that a waiting rank leaves its core to the ranks that draw. Main thread only.
 class FrameBarrier {
 public:
-    /// Size of the first MPI message of a frame, with the frame message's length in 4 bytes [byte]. The rest of a
-    /// longer frame message follows in a second one.
+    /// Largest size of the first MPI message of a frame [byte]. It holds the frame message's length, in 4 bytes, and
+    /// the frame message. The rest of a longer frame message follows in a second MPI message.
     static constexpr std::size_t kOneMessage = 1024;
 
     /// Called when a wait has reached its limit. `rank` is the first missing rank, or -1 if no rank is missing. `line`
@@ -46,7 +46,7 @@ public:
     using LastWords = std::function<void(int rank, const std::string& line)>;
 
     /// `names` are the names of the ranks in messages, in order of rank; only the master needs them. A wait longer than
-    /// `limitSeconds` [s] ends the job; before the first barrier the limit is at least 120 s. The master first calls
+    /// `limitSeconds` [s] ends the job; until the end of the first barrier it is at least 120 s. The master first calls
     /// `lastWords`, on the watchdog's thread. Ends the start-up watch of `cluster`.
     FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds, LastWords lastWords = {});
     ~FrameBarrier();

@@ -29,9 +29,10 @@ namespace master {
 
 /// Frame loop of the master.
 ///
-/// In each frame the master takes the steps that are due, sends them to all ranks, writes them to the journal and
-/// applies them. It then waits until all ranks agree, so that the render ranks may swap. Frames follow the wall's
-/// refresh rate, usually 60 Hz. Main thread only.
+/// In each frame the master takes the steps that are due and sends them to all ranks. While the render ranks draw, it
+/// writes the steps to the journal and applies them to its own sand. It then waits until all ranks agree, so that the
+/// render ranks may swap. A slow disk delays the swap, as a slow rank does. Frames follow the wall's refresh rate,
+/// usually 60 Hz. Main thread only.
 class Session {
 public:
     /// `cluster`, `scene` and `wall` must outlive the session.

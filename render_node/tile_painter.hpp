@@ -49,8 +49,9 @@ public:
     /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.
     void drawAnew();
 
-    /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL. Throws
-    /// std::runtime_error if a shader of an overlay or a test pattern does not compile.
+    /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL;
+    /// GlContext::present() does. Throws std::runtime_error if a shader of an overlay or a test pattern does not
+    /// compile.
     ///
     /// @param terrain  Replica whose sand is drawn. Its list of changes is taken.
     /// @param view     Eyes and overlays of this frame. If it has a test pattern, the pattern is drawn instead.

@@ -25,7 +25,9 @@ struct Offer {
     std::string sceneName;
 };
 
-/// State of the link. The server numbers the steps only in the state `linked`; in all other states the master does.
+/// State of the link. In the state `linked` the server numbers the steps. In the states `offered` and `granting` no
+/// program numbers steps, and the sand stands still. In all other states the master numbers them, except at the start
+/// of a session (master::LiveSteps::kStartWait).
 ///
 /// In the states `connecting`, `refused` and `lost` the client tries to connect again, without end.
 enum class Link : std::uint8_t {
@@ -89,7 +91,7 @@ enum class LinkDrill : std::uint8_t {
 /// Master's end of the link. Connects to the haptic server, again and again if necessary, and gives out its steps.
 ///
 /// Threads: the client has a network thread of its own. Any thread may call every member function. Only stop() and the
-/// destructor block. No failure of the network throws; link() reports it.
+/// destructor wait for the network. No failure of the network throws; link() reports it.
 ///
 /// Order of calls:
 /// 1. Poll link() until the link is `offered`.
@@ -115,8 +117,10 @@ public:
     /// the sand after a step in `recent`, it gets only the steps that it lacks. Otherwise it gets `state`.
     void grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                StepRing recent = {});
-    /// Returns at most `most` steps of the granted epoch, in order and without gaps. When kMaxQueued steps wait, the
-    /// network thread stops reading until this is called, and TCP holds the server back.
+    /// Returns at most `most` steps of the granted epoch, in order and without gaps.
+    ///
+    /// A server is at most StepMaker::kWindow steps ahead of shown(). Against a server that ignores this, the network
+    /// thread stops reading when kMaxQueued steps wait, until this is called. TCP then holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
     /// Tells the server that the wall has swapped and shows step `stepNumber`. The server may then send further steps.
     /// `frameIntervalNs` is the time since the swap before [ns].

@@ -13,18 +13,20 @@ namespace haptic_bridge {
 
 /// An arm that is mapped to the sand: metres along its own axes become hand space, and forces go back the same way.
 ///
-/// A force reaches the hand unchanged, in newtons: the scale only changes how far the tool moves. The limits of
-/// stiffness and damping therefore hold after the scale. Forces go back through the transpose of the mapping. A force
-/// that does no work on a closed path of the tool then does no work on the hand's path either. If the vertical has a
+/// The scale only changes how far the tool moves; it does not change a force [N]. The limits of stiffness and damping
+/// therefore hold after the scale. Forces go back through the transpose of the mapping. A force that does no work on a
+/// closed path of the tool then does no work on the hand's path either. There is one exception: if the vertical has a
 /// scale of its own, the force along the direction with the smaller scale is reduced.
+///
+/// After an implausible reading the tool hovers at its last place. The arm gets no force until a reading is plausible.
 ///
 /// While the second button is held, the tool keeps its place, and the hand moves freely. With a drift, the middle of
 /// the workspace moves slowly to where the hand works, while the hand feels no force.
 class MappedDevice : public Device {
 public:
     static constexpr double kRampSeconds = 0.5;    // [s], ramp from no force to the full force
-    static constexpr double kFadeSeconds = 0.05;   // [s], ramp back to no force while readings are plausible
-    static constexpr double kFarthestShare = 0.5;  // [reach], largest movement between two readings
+    static constexpr double kFadeSeconds = 0.05;   // [s], ramp from the full force to no force
+    static constexpr double kFarthestShare = 0.5;  // [share of the reach], largest movement between two readings
 
     /// Maps `arm` to `scene`. Throws base::InputError for settings that an arm cannot have.
     MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const scene::Scene& scene);

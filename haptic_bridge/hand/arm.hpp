@@ -43,7 +43,7 @@ public:
     Arm& operator=(const Arm&) = delete;
 
     [[nodiscard]] virtual const ArmPhysics& physics() const = 0;
-    /// Returns the arm's current reading. `time` [s] counts from the start of the session and never decreases.
+    /// Returns the arm's current reading. `time` [s] counts only while a master is linked, and never decreases.
     [[nodiscard]] virtual ArmReading read(double time) = 0;
     /// Pushes with `force`. The arm holds this force until the next call.
     virtual void push(sand::force::Vec3 force /* [N] */) = 0;

@@ -27,7 +27,7 @@ public:
     [[nodiscard]] sand::force::Vec3 place(sand::ProbePoint at) const;
 
 private:
-    [[nodiscard]] double surface(double x, double y) const;  // [cell], height 0 of the hand at x, y
+    [[nodiscard]] double surface(double x, double y) const;  // [cell], height of the datum at x, y [cell]
 
     const scene::Scene& scene_;
     HandSettings::Datum datum_;

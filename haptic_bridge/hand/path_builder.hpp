@@ -24,13 +24,14 @@ struct HandSample {
 /// next step takes the rest. Points at which the hand rests are left out. A path that is too long for a step keeps its
 /// first and its last point, and evenly chosen points in between. The points stay in the order of time.
 ///
-/// A server that is late catches up with steps that hold up to kMostPeriods periods of the hand. They hold no more
-/// because a path costs time by its length: one path of all waiting samples would make the wall later still. If the
-/// hand is too far ahead, the waiting samples are dropped: the tool is lifted, and put down where the hand is now.
+/// Samples wait while a slow wall holds the server back. A later step then holds up to kMostPeriods periods of the
+/// hand. It holds no more, because a longer path takes longer to apply, and the wall would fall further behind. If the
+/// waiting samples span more than kFarthestAhead, only the last kMostPeriods periods of them are kept. The tool is then
+/// lifted, and put down where these samples begin.
 class PathBuilder {
 public:
     static constexpr std::int64_t kMostPeriods = 4;  // [period of a step] of hand movement that a step may hold
-    static constexpr std::int64_t kFarthestAhead = 1'000'000'000;  // [ns], largest lead of the hand over the sand
+    static constexpr std::int64_t kFarthestAhead = 1'000'000'000;  // [ns], longest time that the waiting samples span
 
     /// Number of waiting samples above which every second one is dropped, so that a blocked link costs bounded memory.
     static constexpr std::size_t kMaxWaiting = 4096;

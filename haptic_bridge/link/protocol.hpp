@@ -76,7 +76,7 @@ struct Hello {
     Identity master;
     Role role = Role::move;
     bool proves = false;  // it has a secret of `role`, and the server must prove the same secret
-    bool tls = false;     // it believes that this link uses TLS; if it does not, the server refuses
+    bool tls = false;     // the sender uses TLS; the server refuses if its own end of the connection does not
     Nonce nonce{};        // zeros without a secret
     friend bool operator==(const Hello&, const Hello&) = default;
 };

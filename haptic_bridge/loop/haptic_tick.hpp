@@ -23,7 +23,7 @@ namespace haptic_bridge {
 /// Sand around the hand after one step. The forces are computed from it.
 struct FeltSand {
     sand::force::SurfacePatch patch;
-    sand::ProbePoint around;    // the hand's place when the patch was taken, at height 0
+    sand::ProbePoint around;    // [probe unit], the hand's place when the patch was taken; z is 0
     sand::force::Contour tool;  // outline of the tool, which an operator may change
     std::uint64_t step = 0;     // number of the step after which the patch was taken
     std::int64_t timeNs = 0;    // when the patch was published, on the clock of HapticTick::tick() [ns]
@@ -72,7 +72,7 @@ public:
     [[nodiscard]] const Guards& guards() const { return guards_; }
     [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
 
-    /// Returns the place of the last reading, at height 0; before the first reading, the centre of the field. Any
+    /// Returns the place of the last reading, with z = 0; before the first reading, the centre of the field. Any
     /// thread.
     [[nodiscard]] sand::ProbePoint where() const;
     /// Returns how long the law and the guards took in each engaged tick [ns]. Any thread.

@@ -11,18 +11,18 @@ namespace haptic_bridge {
 
 /// Input of a hand at one tick. Together with the steps of a session it determines the forces.
 struct TickInput {
-    double time = 0;  // [s], time at which the device was read
+    double time = 0;  // [s], argument of Device::read()
     Pose pose;
     ArmReading reading;
-    std::int64_t nowNs = 0;         // [ns], on the loop's clock
+    std::int64_t nowNs = 0;         // [ns], time of the tick, see HapticTick::tick()
     std::int64_t surfaceAgeNs = 0;  // [ns], age of the sand at this tick
-    std::uint64_t surfaceStep = 0;
-    sand::ProbePoint around;  // FeltSand::around, at height 0
+    std::uint64_t surfaceStep = 0;  // FeltSand::step
+    sand::ProbePoint around;        // FeltSand::around
 };
 
 /// Complete record of one tick of the force loop. --record writes it, and a replay must reproduce it bit for bit.
 struct Tick {
-    double time = 0;                          // [s] since the session began, on the device's clock
+    double time = 0;                          // [s], argument of Device::read(); counts only while a master is linked
     sand::force::Vec3 armPlace, armVelocity;  // [m], [m/s], along the device's axes; 0 for a recording
     sand::force::Vec3 place, velocity;        // [scene unit], [scene unit/s], east, north, up
     sand::force::Vec3 lawful, sent;           // [N], scene axes, before and after the guards

@@ -16,12 +16,11 @@ class Peer;
 template <class Member>
 class Roster;
 
-/// The streaming thread. It accepts masters, one at a time, and sends the steps of the sand thread to the master and to
-/// watchers.
+/// Accepts masters, one at a time, and sends the steps of the sand thread to the master and to watchers.
 ///
-/// Everything runs on the thread that runs the service's `io`. A master that leaves, fails or sends garbage ends only
-/// its own link, and another master may connect. Roster and Gate limit how many unauthenticated connections there are
-/// and how often they come.
+/// Everything runs on the streaming thread: the server's main thread, which runs the service's `io`. A master that
+/// leaves, fails or sends garbage ends only its own link, and another master may connect. Roster and Gate limit how
+/// many unauthenticated connections there are and how often they come.
 class Listener {
 public:
     /// Takes over `acceptor`, which must listen.

@@ -15,7 +15,8 @@ namespace haptic_bridge {
 
 enum class Pace : std::uint8_t { realtime, fast };
 
-/// The sand thread. Its StepMaker makes steps when they are due, and it carries out commands between them.
+/// The sand thread. Its StepMaker makes steps when they are due, and it carries out commands between them. It sleeps
+/// until a command comes or a step is due.
 ///
 /// In real time the StepClock decides when a step is due. The step takes the samples that the force thread has queued.
 /// If the hand is far ahead of the wall, the step takes only a part of them (PathBuilder). Under the fast pace there is

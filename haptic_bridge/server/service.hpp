@@ -13,7 +13,8 @@
 
 namespace haptic_bridge {
 
-/// Settings and callbacks of a server that all its connections share. Used only on the thread that runs `io`.
+/// Settings and callbacks of a server that all its connections share. Used only on the streaming thread, which
+/// runs `io`.
 struct Service {
     boost::asio::io_context& io;
     Identity identity = {};

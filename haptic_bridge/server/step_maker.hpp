@@ -17,12 +17,13 @@ namespace haptic_bridge {
 /// Makes and numbers the steps of a haptic server, and owns the server's replica.
 ///
 /// An epoch begins when a master sends Start and the replica has the same sand. It ends with release(). Until then,
-/// makeStep() puts the samples of the hand into a step, applies the step to the replica, and sends it to the master.
+/// makeStep() puts the samples of the hand into a step and applies the step to the replica. It sends the step to the
+/// master, with the replica's state hash, and gives the hand the sand after the step.
 ///
 /// Threads: one thread calls it, except where a function allows any thread. It has no thread of its own.
 class StepMaker {
 public:
-    // A wall that cannot keep up shows the hand late, by the steps in its queue. With 32 steps that was a second.
+    // A wall that cannot keep up shows the hand late, by the steps of a window. With 32 steps that was a second.
     static constexpr std::uint64_t kWindow = 8;  // [step], largest lead of the server over the wall
 
     /// Callbacks that send messages to a master. `session` is the number that start() got.

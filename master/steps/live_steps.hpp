@@ -19,9 +19,12 @@ namespace master {
 
 /// The steps of a live session. In each epoch exactly one program numbers the steps: the haptic server or the master.
 ///
-/// While a server with sand is linked, the server numbers the steps. Otherwise the master does, so that sliding sand
-/// never stops. The tool of the master's steps is where a server without sand reports it, or it hovers. Each change
-/// begins a new epoch. Main thread only.
+/// While a server with sand is linked, the server numbers the steps. Otherwise the master does, so that sand that
+/// slides continues to slide. The tool of the master's steps is where a server without sand reports it, or it hovers.
+/// Each change begins a new epoch. Main thread only.
+///
+/// There are two times without steps: at the start, at most kStartWait, and while a server takes over, at most
+/// kGrantWait.
 class LiveSteps : public StepSource, public StepRequests {
 public:
     /// Time at the start for which the master waits for a haptic server before it numbers the steps itself [s].
