@@ -95,7 +95,7 @@ TEST(Injection, OfTheLinkNeedsALink) {
             (void)master::parseFault(text, alone);
             ADD_FAILURE() << text << " was accepted";
         } catch (const base::InputError& error) {
-            EXPECT_NE(std::string(error.what()).find("name a rank"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find("add rank=R"), std::string::npos) << error.what();
         }
     }
     EXPECT_EQ(master::parseFault("garbage:rank=1,frame=9", alone).rank, 1);

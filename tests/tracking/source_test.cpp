@@ -35,7 +35,7 @@ TEST(TrackingSource, ListensOnLoopbackUnlessAnAddressIsGiven) {
 TEST(TrackingSource, TakesTheTrackersOwnAddress) {
     EXPECT_EQ(parseSource("opentrack:4242").from, "");
     EXPECT_EQ(parseSource("dtrack:0.0.0.0:5000 from=192.168.1.20").from, "192.168.1.20");
-    expectComplaint("opentrack:4242 from=cave", "no IP address");
+    expectComplaint("opentrack:4242 from=cave", "is not an IP address");
 }
 
 TEST(TrackingSource, TakesABodyBehindThePort) {

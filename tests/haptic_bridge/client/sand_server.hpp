@@ -91,7 +91,7 @@ private:
 
     /// Gets the sand that the master begins with.
     bool reach(FakeServer::Guest& guest, const haptic_bridge::Start& start) {
-        if (isAt(start)) {
+        if (!lied_ && isAt(start)) {
             return true;
         }
         const std::uint64_t step = links_ > 0 ? claimed_.value_or(sand_.stepNumber()) : sand_.stepNumber();
@@ -101,6 +101,7 @@ private:
             if (const auto* state = std::get_if<haptic_bridge::State>(&*message)) {
                 ++states_;
                 sand_.decodeState(state->bytes);
+                lied_ = false;
                 return isAt(start);
             }
             if (const auto* steps = std::get_if<haptic_bridge::CatchUp>(&*message); steps != nullptr && steps->last) {
@@ -120,7 +121,9 @@ private:
             message.step.edit = *std::exchange(edit_, std::nullopt);
         }
         sand_.apply(message.step);
-        message.stateHash = said_[message.step.number] = say_(link, message.step.number, sand_.stateHash());
+        const std::uint64_t hash = sand_.stateHash();
+        message.stateHash = said_[message.step.number] = say_(link, message.step.number, hash);
+        lied_ = lied_ || message.stateHash != hash;
         guest.send(message);
     }
 
@@ -131,6 +134,7 @@ private:
     sand::Replica sand_;
     std::map<std::uint64_t, std::uint64_t> said_;  // hashes that were sent, by step
     std::optional<sand::Edit> edit_;               // edit for the next step
+    bool lied_ = false;                            // sent a wrong hash; its sand counts as wrong until it gets a state
 
     std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0}, shares_{0};
     std::atomic<std::uint64_t> shown_{0};
