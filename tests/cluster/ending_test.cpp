@@ -9,10 +9,11 @@ namespace {
 /// Intended and unintended ends of sessions. Each session must end, and no process may be left running.
 class Ending : public SessionTest {
 protected:
-    /// Starts a session that would run for minutes, with a hand in its sand.
-    std::unique_ptr<support::ChildProcess> runningSession() {
+    /// Starts a session that would run for minutes, with a hand in its sand. A rank that is missing for longer than
+    /// `limit` [s] ends it; the usual limit is longer than any frame takes on a busy machine.
+    std::unique_ptr<support::ChildProcess> runningSession(int limit = 30) {
         auto session = start({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--steps", "100000",
-                              "--out", out(), "--frame-timeout", "3"});
+                              "--out", out(), "--frame-timeout", std::to_string(limit)});
         expectFrames(*session);
         expectHand(*session);
         family_ = session->family();
@@ -52,14 +53,14 @@ TEST_F(Ending, AKilledMpirunLeavesNothingRunning) {
 }
 
 TEST_F(Ending, AStoppedMasterIsNamedAndTheJobEnds) {
-    const auto session = runningSession();
+    const auto session = runningSession(10);
     kill(support::findProgram(family_, "sandwall-master").value(), SIGSTOP);
     EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
     std::vector<nlohmann::json> endings = session->events("waiting");
     std::erase_if(endings, [](const nlohmann::json& event) { return !event["ends_job"]; });
     ASSERT_EQ(endings.size(), 1U) << "more than one rank reported the end of the job\n" << session->output();
-    EXPECT_TRUE(support::holds(endings[0], {{"by", 1}, {"ranks", {0}}, {"limit", 3}})) << endings[0];
-    EXPECT_GE(endings[0]["seconds"], 3);
+    EXPECT_TRUE(support::holds(endings[0], {{"by", 1}, {"ranks", {0}}, {"limit", 10}})) << endings[0];
+    EXPECT_GE(endings[0]["seconds"], 10);
     expectNothingLeft();
 }
 
