@@ -162,8 +162,8 @@ class AnotherVersion(unittest.TestCase):
         self.assertEqual(load("summary")["properties"]["version"]["const"], session_results.VERSION)
 
     def test_a_script_refuses_it_in_one_line(self):
-        self.assertIn("summary.json: version 2 of the summary, these scripts read version 1", self.refused('{"version": 2}'))
-        self.assertIn("summary.json: version 0 of the summary, these scripts read version 1", self.refused('{"frames": 60}'))
+        self.assertIn("summary.json: the summary has version 2, but these scripts read version 1", self.refused('{"version": 2}'))
+        self.assertIn("summary.json: the summary has version 0, but these scripts read version 1", self.refused('{"frames": 60}'))
         self.assertIn("summary.json: is not JSON", self.refused("{"))
 
 
