@@ -17,7 +17,7 @@ tests_of() { sed -n 's/^# tests: //p' "$1"; }
 programs_of() { sed -n 's/^# programs: //p' "$1"; }
 
 build() { cmake --build "$copy/build/release" --parallel "$(nproc)" --target "$@" >"$copy/build.log" 2>&1; }
-run() { (cd "$copy" && timeout 300 "build/release/bin/$1" --gtest_filter="$2" >run.log 2>&1); }
+run() { (cd "$copy" && timeout --kill-after=10 300 "build/release/bin/$1" --gtest_filter="$2" >run.log 2>&1); }
 change() { patch --directory "$copy" --strip 1 --fuzz 0 --silent --no-backup-if-mismatch "${@:2}" <"$1"; }
 
 # The copies keep the times of their sources, so that only changed files are built again. A mutation that an interrupted run

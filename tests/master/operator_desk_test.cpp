@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <functional>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "tests/master/no_steps.hpp"
 #include "tests/support/control_client.hpp"
@@ -42,22 +45,26 @@ protected:
                                                         return json{{"frame", 42}};
                                                     }});
     }
-    /// Sends a line, and calls obey() until the desk has taken it.
+    /// Sends a line from another thread. The future has the answer.
     std::future<json> send(const std::string& line) {
         return std::async(std::launch::async, [this, line] { return support::askSession(folder_, line); });
     }
     json await(std::future<json>& answer) {
-        while (answer.wait_for(std::chrono::milliseconds(1)) != std::future_status::ready) {
-            desk_->obey({});  // limited by the time-out of the test
-        }
+        obeyUntil([&] { return answer.wait_for(std::chrono::milliseconds(1)) == std::future_status::ready; });
         return answer.get();
     }
     json ask(const std::string& line) {
         std::future<json> answer = send(line);
         return await(answer);
     }
+    /// Calls obey() until `done`. After a minute it closes the desk, so that waiting clients return, and throws.
     void obeyUntil(const std::function<bool()>& done) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
         while (!done()) {
+            if (std::chrono::steady_clock::now() > end) {
+                desk_.reset();
+                throw std::runtime_error("the desk did not do within a minute what this test waits for");
+            }
             desk_->obey({});
         }
     }
