@@ -20,6 +20,17 @@ namespace {
 
 using namespace haptic_bridge;
 
+/// Returns a scene whose sand rises by a twentieth to the east, so that a hand feels other sand at another place.
+scene::Scene ramp() {
+    scene::Scene scene = samples::flatScene(60, 60);
+    for (int y = 0; y < 60; ++y) {
+        for (int x = 0; x < 60; ++x) {
+            scene.terrain.setHeight(x, y, x * sand::kUnitsPerCell / 20);
+        }
+    }
+    return scene;
+}
+
 /// A hand with an arm over 60 x 60 cells, with its steps and its recorder: a server without threads and link.
 class Recorded : public testing::Test {
 protected:
@@ -30,8 +41,8 @@ protected:
         recorder_ = std::make_unique<TickRecorder>(
             TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_);
     }
-    /// Runs a link with steps of 16 ticks. The arm draws, lifts, is away for a while, and once sends values that are
-    /// not finite.
+    /// Runs a link with steps of 16 ticks. The arm begins in the sand, far from the sand's first probe. Then it draws,
+    /// lifts, is away for a while, and once sends values that are not finite.
     void sit(int steps) {
         hand_->restart();
         recorder_->begin();
@@ -41,7 +52,7 @@ protected:
             takeSurface(terrain_, hand_->where(), surface_);
             for (int tick = 0; tick < 16; ++tick) {
                 ++ticks_;
-                const double turn = static_cast<double>(ticks_) * 0.004;
+                const double turn = 1.2 + static_cast<double>(ticks_) * 0.004;
                 state_.reading.place = {0.05 * std::cos(turn), 0.05 * std::sin(turn), 0.01 * std::sin(3 * turn)};
                 state_.reading.present = ticks_ % 100 != 99;
                 if (ticks_ % 130 == 0) {
@@ -76,7 +87,7 @@ protected:
     [[nodiscard]] std::string written() const { return folder_.read("ticks.csv"); }
 
     const test::Folder folder_{};
-    const scene::Scene scene_ = samples::flatScene(60, 60);
+    const scene::Scene scene_ = ramp();
     test::FakeArm::State state_;
     std::unique_ptr<HapticTick> hand_;
     std::unique_ptr<TickRecorder> recorder_;
