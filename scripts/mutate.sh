@@ -20,9 +20,11 @@ build() { cmake --build "$copy/build/release" --parallel "$(nproc)" --target "$@
 run() { (cd "$copy" && timeout --kill-after=10 300 "build/release/bin/$1" --gtest_filter="$2" >run.log 2>&1); }
 change() { patch --directory "$copy" --strip 1 --fuzz 0 --silent --no-backup-if-mismatch "${@:2}" <"$1"; }
 
-# The copies keep the times of their sources, so that only changed files are built again. A mutation that an interrupted run
-# left in the copy is overwritten.
+# The copies keep the times of their sources, so that only changed files are built again. A file of the copy that is newer
+# than its source was changed by a mutation of a run before: its object files may hold the mutation, so it is touched.
+mapfile -t mutated < <(git ls-files | while read -r file; do [[ ! "$copy/$file" -nt "$file" ]] || echo "$copy/$file"; done)
 git ls-files -z | xargs -0 cp --parents --preserve=timestamps --target-directory "$copy"
+((${#mutated[@]} == 0)) || touch "${mutated[@]}"
 # The build is not a unity build, because a mutation changes one file. -O1 compiles in half the time of the release build.
 # Warnings are off, because a mutation may leave a name unused.
 cmake --preset release -S "$copy" -B "$copy/build/release" -DCMAKE_UNITY_BUILD=OFF \
