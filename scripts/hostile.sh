@@ -47,7 +47,8 @@ resident_meanwhile() {
         printf '%s%s' "${seen[$((last * quarter / 4))]}" "$([[ $quarter == 4 ]] || echo ' → ')"
     done
 }
-master_of() { pgrep -n -f "sandwall-master .*--out $folder/$1( |\$)"; }
+# The command line of mpirun holds that of the master, but does not begin with it.
+master_of() { pgrep -n -f "^[^ ]*/sandwall-master .*--out $folder/$1( |\$)"; }
 
 # start_session NAME HOST:PORT: starts a session with its own standard input; end_session stops it over this input.
 start_session() {
@@ -56,8 +57,12 @@ start_session() {
     scripts/sandwall run --wall "$wall" --scene "$scene" --haptic "$2" "${link[@]}" --out "$folder/$1" --no-pictures \
         <"$folder/$1.in" >"$folder/$1.log" 2>&1 &
     session=$!
+    # On a busy machine mpirun takes many seconds to start the master.
+    until master=$(master_of "$1"); do
+        kill -0 "$session"
+        sleep 0.2
+    done
     sleep 5
-    master=$(master_of "$1")
     before=$(resident "$master")
 }
 
