@@ -5,16 +5,21 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <string>
 #include <utility>
 
 namespace host {
 
 /// Prints one line for a person on standard error, with the name of this program in front:
-/// `sandwall-relax: warning: dem.asc: ...`. Any thread.
+/// `sandwall-relax: warning: dem.asc: ...`. Throws nothing if standard error cannot be written; the line is then lost.
+/// Any thread.
 template <class... T>
 void printLine(fmt::format_string<T...> format, T&&... arguments) {
     // Several programs on several hosts print into one session's log, so each line names its program.
-    fmt::print(stderr, "{}: {}\n", program_invocation_short_name, fmt::format(format, std::forward<T>(arguments)...));
+    const std::string line =
+        fmt::format("{}: {}\n", program_invocation_short_name, fmt::format(format, std::forward<T>(arguments)...));
+    // fmt::print would throw if standard error is a log on a full disk. A lost line must not end a session.
+    [[maybe_unused]] const std::size_t written = std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
 }  // namespace host

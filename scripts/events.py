@@ -8,6 +8,8 @@ import os
 import sys
 import time
 
+import console
+
 VARIABLE = "SANDWALL_EVENTS"
 TAG = "@sandwall "
 
@@ -32,7 +34,7 @@ def parse(line):
 def emit(name, **fields):
     """Writes an event to standard error if the user asks for events."""
     if wanted():
-        print(TAG + json.dumps({"event": name, **fields}), file=sys.stderr, flush=True)
+        console.ERROR.line(TAG + json.dumps({"event": name, **fields}))
 
 
 def read(path):

@@ -5,6 +5,7 @@ import pathlib
 import shutil
 import subprocess
 
+import console
 from rank_hosts import BadInput
 
 PATTERN = "frame_%06d.png"  # the names that the master gives to the pictures
@@ -19,7 +20,7 @@ def encode(folder, frames_per_second):
     folder = pathlib.Path(folder)
     frames = sum(1 for _ in folder.glob(FRAMES))
     if shutil.which("ffmpeg") is None:
-        print(f"{frames} pictures in {folder}; for film.mp4 run apt-get install ffmpeg, then this command again")
+        console.OUT.line(f"{frames} pictures in {folder}; for film.mp4 run apt-get install ffmpeg, then this command again")
         return
     # Every player reads H.264 with colours at half the resolution, which needs even sizes. ffmpeg runs in the folder,
     # because a per cent sign in its path would be read as a number.
@@ -30,4 +31,4 @@ def encode(folder, frames_per_second):
         (folder / "film.mp4").unlink(missing_ok=True)
         said = (made.stderr.strip().split("\n")[-1]) or f"exit status {made.returncode}"
         raise BadInput(f"{folder}/film.mp4: ffmpeg failed: {said}; the {frames} pictures are whole")
-    print(f"{folder}/film.mp4: {frames} frames")
+    console.OUT.line(f"{folder}/film.mp4: {frames} frames")

@@ -9,9 +9,9 @@ import ctypes
 import os
 import pathlib
 import re
-import sys
 import time
 
+import console
 import events
 
 KEPT_TRIES = 8
@@ -86,19 +86,12 @@ class Stream:
 
     def hides(self, rank, line):
         """Returns whether a line is mpirun's explanation of a failure that a line of Sandwall already reports."""
-        if rank is not None or self.shown is not sys.stderr:
+        if rank is not None or self.shown is not console.ERROR:
             return False
         if BANNER.fullmatch(line):
             self.in_banner = not self.in_banner
             return True
         return self.in_banner or not line or MPIRUNS_OWN.match(line) is not None
-
-    def show(self, line):
-        try:
-            self.shown.buffer.write(line + b"\n")
-            self.shown.buffer.flush()
-        except (BrokenPipeError, ValueError):
-            pass  # the reader of our output has gone; the file has the line
 
 
 class JobLog:
@@ -110,8 +103,8 @@ class JobLog:
 
     def __init__(self, folder, number):
         self.path = pathlib.Path(folder) / f"try_{number}"
-        self.out = Stream(f"{self.path}.out", sys.stdout)
-        self.err = Stream(f"{self.path}.err", sys.stderr)
+        self.out = Stream(f"{self.path}.out", console.OUT)
+        self.err = Stream(f"{self.path}.err", console.ERROR)
         self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
         self.mpiruns = b""  # the last lines of mpirun itself on standard error
         self.ending = None  # the first event `waiting` that ends the job
@@ -128,11 +121,11 @@ class JobLog:
                 if event := events.parse(line):
                     self.read_event(event)
                     if events.wanted():
-                        stream.show(line)
+                        stream.shown.line(line)
                     continue
                 self.read(rank, line, stream)
                 if not stream.hides(rank, line):
-                    stream.show(line)
+                    stream.shown.line(line)
 
     def read_event(self, event):
         name = event.get("event")

@@ -5,11 +5,11 @@ import os
 import pathlib
 import signal
 import subprocess
-import sys
 import threading
 import time
 
 import events
+from console import say
 from job_log import LIBC
 from rank_hosts import BadInput
 
@@ -141,8 +141,7 @@ class Job:
             return status
         now = time.monotonic()
         if stop.count > 0 and not self.asked:
-            print("sandwall: stopping; finishing journal and pictures; press Ctrl-C again to kill",
-                  file=sys.stderr, flush=True)
+            say("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")
             self.stop()
         if self.deadline is None and self.log and self.log.ending:
@@ -223,4 +222,4 @@ class Input:
         elif line == "stop":
             self.stop.add()
         else:
-            print(f"sandwall: '{line}' is ignored, because the session is being started again", file=sys.stderr, flush=True)
+            say(f"'{line}' is ignored, because the session is being started again")

@@ -8,12 +8,13 @@ import os
 import pathlib
 import shutil
 import signal
-import sys
 import tempfile
 import time
 
+import console
 import events
 import job_log
+from console import say
 from processes import HapticServer, Input, Job
 from rank_hosts import BadInput
 
@@ -22,10 +23,6 @@ FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
 SERVER_HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
 JOURNAL = "session.journal"
-
-
-def say(line):
-    print(f"sandwall: {line}", file=sys.stderr, flush=True)
 
 
 def signal_name(number):
@@ -309,7 +306,7 @@ class Supervisor:
             lines.append(f"  {when}  {failure.text}; shown: {failure.shown()}")
             lines += [f"            | {line}" for line in failure.last_lines]
         lines.append(f"  output of all tries: {self.logs}; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
-        print("\n".join(lines), file=sys.stderr, flush=True)
+        console.ERROR.line("\n".join(lines))
         events.emit("given_up", why=why, failures=[{"what": failure.text, "rank": failure.rank, "how": failure.how, "frame": failure.frame,
                                                     "step": failure.step} for failure in self.failures])
         try:
