@@ -13,6 +13,7 @@ import time
 
 import console
 import events
+from console import say
 
 KEPT_TRIES = 8
 LAST_LINES = 16  # of each rank, for a report
@@ -30,11 +31,22 @@ EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)"
 BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # Open MPI prints it for a process that a signal ends
 
 
+def new_file(path):
+    """Makes a file for the output of a job and returns its descriptor. If the disk takes no file, the file is in memory."""
+    path = pathlib.Path(path)
+    try:
+        path.unlink(missing_ok=True)  # a pipe or link of this name must not be opened
+        return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+    except OSError as error:
+        say(f"{path}: cannot be made ({error.strerror}); the output of this try is shown and not kept")
+        return os.memfd_create(path.name)
+
+
 class Stream:
     """One file of a job's output, which is read while it grows."""
 
     def __init__(self, path, shown):
-        self.file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND | os.O_CLOEXEC, 0o644)
+        self.file = new_file(path)
         self.shown = shown
         self.offset = 0
         self.reserved = 0

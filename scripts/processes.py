@@ -22,10 +22,16 @@ LONGEST_LINE = 1024  # bytes of a typed line; the master reads no longer lines
 MARK = "SANDWALL_JOB"  # name of a variable in the environment of a job's processes
 
 
-def die_with_parent():
-    """Runs in a child process before exec. The kernel kills the child when the launcher ends for any reason."""
-    PR_SET_PDEATHSIG = 1
-    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+def die_with(parent):
+    """Returns a function that runs in a child process before exec. The kernel kills the child when `parent` ends for any reason."""
+    def ask():
+        PR_SET_PDEATHSIG = 1
+        LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+        # The parent may have ended before prctl. The signal would then never come.
+        if os.getppid() != parent:
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    return ask
 
 
 class StopSignals:
@@ -59,7 +65,7 @@ class HapticServer:
         self.port_file.unlink(missing_ok=True)
         command = [*self.command_at(f"127.0.0.1:{self.port}", self.starts), "--port-file", str(self.port_file)]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                        start_new_session=True, preexec_fn=die_with_parent)
+                                        start_new_session=True, preexec_fn=die_with(os.getpid()))
 
     def listens(self):
         """Returns whether the server listens since its last start."""

@@ -52,7 +52,7 @@ class Session:
     def start(self, *more):
         self.launcher = subprocess.Popen([*self.command, *more], stdin=subprocess.DEVNULL, stdout=self.log, stderr=self.log,
                                          env={**os.environ, events.VARIABLE: "1"},
-                                         preexec_fn=processes.die_with_parent)
+                                         preexec_fn=processes.die_with(os.getpid()))
 
     def status(self):
         """Returns the answer to `ctl status`, or None while no master answers."""

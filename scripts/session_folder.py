@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Locks a session's folder, so that one launcher uses it at a time."""
+"""A session's folder: makes it, checks that only this user may write to it, and locks it for one launcher at a time."""
 
 import contextlib
+import errno
 import fcntl
 import os
 import pathlib
+import stat
 import time
 
 from rank_hosts import BadInput
@@ -16,16 +18,74 @@ class InUse(Exception):
     """Another launcher uses the folder."""
 
 
+def make(path):
+    """Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss."""
+    path = pathlib.Path(os.path.abspath(path))
+    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    for folder in reversed(missing):
+        folder.mkdir(mode=0o755, exist_ok=True)
+        descriptor = os.open(folder.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            os.fsync(descriptor)
+        except OSError:
+            pass  # a file system that cannot sync a folder
+        finally:
+            os.close(descriptor)
+
+
+def why_unsafe(path):
+    """Returns why a session must not use the folder, or None. The programs have the same check, host::whyUnsafeFolder().
+
+    Another user who may write to the folder could replace files while a session runs.
+    """
+    link, folder = os.lstat(path), os.stat(path)
+    if link.st_uid != os.geteuid():
+        return "is a link of another user" if stat.S_ISLNK(link.st_mode) else "belongs to another user"
+    if folder.st_uid != os.geteuid():
+        return "leads to a folder of another user"
+    return "other users may write to it" if folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH) else None
+
+
+def require_safe(path):
+    """Throws BadInput if why_unsafe() has a reason."""
+    if why := why_unsafe(path):
+        advice = "run chmod go-w on it, or choose another --out" if why.startswith("other users") else "choose another --out"
+        raise BadInput(f"{path}: {why}; {advice}")
+
+
+def open_regular(path, flags, mode=0o644):
+    """Returns the descriptor of a regular file. Throws OSError for all else, and never waits, for example for a pipe's reader."""
+    descriptor = os.open(path, flags | os.O_CLOEXEC | os.O_NONBLOCK | os.O_NOCTTY, mode)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "is not a regular file", str(path))
+    return descriptor
+
+
+def read_text(path):
+    """Returns the text of a regular file. Throws OSError for all else, and ValueError if it is not UTF-8."""
+    with open(open_regular(path, os.O_RDONLY), encoding="utf-8") as file:
+        return file.read()
+
+
+def write_text(path, text):
+    """Writes a regular file. Throws OSError for all else."""
+    with open(open_regular(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
 @contextlib.contextmanager
 def held(out, resume=False):
     """Holds a lock on the folder `out`. The kernel releases the lock when the process ends for any reason.
 
     If the folder cannot be made or written, the master reports it. With `resume` this function throws BadInput, because
-    the launcher would otherwise restart the master again and again. Throws InUse if another launcher holds the lock.
+    the launcher would otherwise restart the master again and again. Throws InUse if another launcher holds the lock, and
+    BadInput if other users may write to the folder.
     """
     path = pathlib.Path(out)
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        make(path)
+        require_safe(path)
         descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError:
         yield

@@ -136,7 +136,7 @@ def main():
     command = [str(ROOT / "scripts/sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--device", args.device,
                "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
     with open(out / "session_soak.log", "wb") as log:
-        launcher = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=processes.die_with_parent)
+        launcher = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=processes.die_with(os.getpid()))
         try:
             tracks = follow(launcher, args.minutes, args.period, warm_up)
         finally:

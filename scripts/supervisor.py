@@ -14,6 +14,7 @@ import time
 import console
 import events
 import job_log
+import session_folder
 from console import say
 from processes import HapticServer, Input, Job
 from rank_hosts import BadInput
@@ -67,7 +68,7 @@ class Failure:
 def taken(path):
     """Returns the content of the master's failure.json, or {} if the file does not exist. Removes it, so that it is read once."""
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = json.loads(session_folder.read_text(path))
         path.unlink()
         return found if isinstance(found, dict) else {}
     except (OSError, ValueError):
@@ -310,6 +311,6 @@ class Supervisor:
         events.emit("given_up", why=why, failures=[{"what": failure.text, "rank": failure.rank, "how": failure.how, "frame": failure.frame,
                                                     "step": failure.step} for failure in self.failures])
         try:
-            (self.logs / "report.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+            session_folder.write_text(self.logs / "report.txt", "\n".join(lines) + "\n")
         except OSError:
             pass  # the report is on standard error already

@@ -10,6 +10,7 @@ from unittest import mock
 from supervisor_fixture import Supervised
 
 import console
+import job_log
 
 
 class FullDisk(Supervised):
@@ -50,6 +51,19 @@ class FullDisk(Supervised):
     def test_a_session_that_is_given_up_keeps_its_status(self):
         self.tries("dies 1 host 9", "dies 1 host 9")
         self.assertEqual(self.ended_into(self.full(), self.full(), "--restarts", "1"), 1)
+
+
+class LogWithoutDisk(unittest.TestCase):
+    def test_a_job_runs_although_no_file_can_be_made_for_its_output(self):
+        said = mock.patch("job_log.say")
+        said.start()
+        self.addCleanup(said.stop)
+        log = job_log.JobLog("/nowhere", 1)
+        self.addCleanup(log.close)
+        event = '@sandwall {"event":"progress","frame":7,"step":6,"fps":60.0,"skew_us":9.0,"hand":"no hand"}'
+        subprocess.run(["sh", "-c", f"echo '[1,0]<stderr>:{event}' >&2"], stdout=log.out.file, stderr=log.err.file, check=True)
+        log.follow(ended=True)
+        self.assertEqual((log.frame, log.step), (7, 6))
 
 
 class MissingLines(unittest.TestCase):

@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests which folders and files the launcher uses for a session, and that its programs do not survive it."""
+
+import os
+import pathlib
+import stat
+import subprocess
+import tempfile
+import unittest
+from unittest import mock
+
+from launcher_fixture import ROOT
+from supervisor_fixture import Supervised
+
+import processes
+import session_folder
+
+
+class Folder(Supervised):
+    def setUp(self):
+        super().setUp()
+        self.tries("exit 0")
+        self.out = self.folder / "out"
+        self.out.mkdir()
+
+    def test_a_folder_that_others_may_write_to_is_refused(self):
+        for mode in (0o775, 0o757, 0o777):
+            self.out.chmod(mode)
+            self.assertEqual(self.refused(["-"]), "sandwall: out: other users may write to it; run chmod go-w on it, or choose another --out\n")
+        self.out.chmod(0o755)
+        self.assertEqual(self.ended(["-"])[0], 0)
+
+    def test_a_link_to_such_a_folder_is_refused(self):
+        self.out.rename(self.folder / "real")
+        self.out.symlink_to(self.folder / "real")
+        self.assertEqual(self.ended(["-"])[0], 0)
+        (self.folder / "real").chmod(0o777)
+        self.assertIn("out: other users may write to it", self.refused(["-"]))
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can give a folder to another user")
+    def test_a_folder_or_link_of_another_user_is_refused(self):
+        os.chown(self.out, 1, 1)
+        self.assertEqual(self.refused(["-"]), "sandwall: out: belongs to another user; choose another --out\n")
+        self.out.rename(self.folder / "real")
+        self.out.symlink_to(self.folder / "real")
+        self.assertEqual(self.refused(["-"]), "sandwall: out: leads to a folder of another user; choose another --out\n")
+        os.chown(self.folder / "real", 0, 0)
+        os.lchown(self.out, 1, 1)
+        self.assertEqual(self.refused(["-"]), "sandwall: out: is a link of another user; choose another --out\n")
+
+    def test_a_film_is_refused_too(self):
+        self.out.chmod(0o777)
+        journal = self.write("session.journal", "")
+        command = [str(ROOT / "scripts" / "sandwall"), "film", journal, "--wall", self.write("wall", "-\n"), "--out", str(self.out)]
+        ended = subprocess.run(command, env=self.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=60)
+        self.assertEqual((ended.returncode, ended.stderr.count("\n")), (2, 1), ended.stderr)
+        self.assertIn("out: other users may write to it", ended.stderr)
+
+    def test_new_folders_survive_a_power_loss_and_are_writable_for_this_user_alone(self):
+        synced = []
+        made = self.folder / "a" / "b" / "c"
+        with mock.patch("os.fsync", lambda descriptor: synced.append(os.readlink(f"/proc/self/fd/{descriptor}"))):
+            before = os.umask(0o002)
+            self.addCleanup(os.umask, before)
+            with session_folder.held(made):
+                pass
+        self.assertEqual(synced, [str(self.folder), str(self.folder / "a"), str(self.folder / "a" / "b")])
+        for folder in (made, made.parent, made.parent.parent):
+            self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o755, folder)
+
+    def test_a_pipe_in_the_folder_does_not_stop_the_launcher(self):
+        self.tries("progress 7 6; dies 1 host 9", "exit 0")
+        os.mkfifo(self.out / "failure.json")
+        (self.out / "log").mkdir()
+        os.mkfifo(self.out / "log" / "report.txt")
+        status, printed, error = self.ended(["-"], "--resume")
+        self.assertEqual((status, printed), (0, "a line of progress\n"), error)
+        self.tries("dies 1 host 9", "dies 1 host 9")
+        (self.folder / "tries").unlink()
+        self.assertEqual(self.ended(["-"], "--resume", "--restarts", "1")[0], 1)
+
+
+class Orphans(Supervised):
+    def test_a_child_whose_parent_ended_before_it_could_ask_for_the_signal_ends(self):
+        read, write = os.pipe()
+        parent = os.fork()
+        if parent == 0:  # the launcher, which ends while its child begins
+            dying = os.getpid()
+            if os.fork() == 0:
+                while os.getppid() == dying:
+                    pass
+                try:
+                    processes.die_with(dying)()
+                finally:
+                    os.write(write, b"survived")
+                    os._exit(0)
+            os._exit(0)
+        os.close(write)
+        os.waitpid(parent, 0)
+        self.assertEqual(os.read(read, 100), b"")
+        os.close(read)
+
+    def test_an_mpirun_whose_launcher_ends_at_once_gets_the_end_of_its_input(self):
+        self.tries('kill -KILL $PPID; cat > "$folder/input"; echo ended > "$folder/end"')
+        launcher = self.begin(["-"])
+        launcher.wait(60)
+        self.wait_for("end", (self.folder / "end").exists)
+        self.assertEqual((self.folder / "input").read_text(), "")
+
+
+class ReadText(unittest.TestCase):
+    def test_only_regular_files_are_read(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "text").write_text("sand")
+            self.assertEqual(session_folder.read_text(folder / "text"), "sand")
+            os.mkfifo(folder / "pipe")
+            for other in (folder / "pipe", folder, folder / "none"):
+                with self.assertRaises(OSError):
+                    session_folder.read_text(other)
+
+
+if __name__ == "__main__":
+    unittest.main()
