@@ -2,6 +2,7 @@
 """Checks every machine of a wall before a show. Prints one line per check; a red line says what to do."""
 
 import concurrent.futures
+import errno
 import json
 import os
 import pathlib
@@ -10,10 +11,12 @@ import shutil
 import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 
 import rank_hosts
+import session_folder
 from rank_hosts import HERE, BadInput
 
 ANSWER_SECONDS = 20
@@ -242,12 +245,23 @@ class Doctor:
 def check_out(host, out):
     """Adds whether `out` on this machine can be written and has room for journal and pictures."""
     place = pathlib.Path(out).absolute()
-    while not place.exists():
-        place = place.parent
-    free = shutil.disk_usage(place).free >> 20
-    if not place.is_dir() or not os.access(place, os.W_OK | os.X_OK):
-        host.add(False, "disk", f"{place}: cannot be written; choose another --out")
-    elif free < OUT_MEGABYTES:
+    try:
+        while not place.exists():
+            place = place.parent
+        if place == pathlib.Path(out).absolute():
+            session_folder.require_safe(place)
+        free = shutil.disk_usage(place).free >> 20
+        # os.access is not enough: it allows root everything, also in folders of the kernel.
+        with tempfile.TemporaryFile(dir=place):
+            pass
+    except BadInput as complaint:
+        host.add(False, "disk", str(complaint))
+        return
+    except OSError as error:
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+            host.add(False, "disk", f"{place}: cannot be written ({error.strerror}); choose another --out")
+            return
+    if free < OUT_MEGABYTES:
         host.add(False, "disk", f"{free} MiB free in {place}; make room for {OUT_MEGABYTES} MiB")
     else:
         host.add(True, "disk", f"{free} MiB free in {place}")

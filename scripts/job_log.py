@@ -124,6 +124,7 @@ class JobLog:
         self.frame = self.step = None  # the last frame and step that an event reported as shown
         self.told = 0.0  # time of that event by the monotonic clock [s]
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
+        self.linked = None  # Unix time [s] of the last event about a hand that was linked or streams
         self.refused = False  # whether the last attempt to link ended with a refusal by server or master
 
     def follow(self, ended=False):
@@ -147,6 +148,8 @@ class JobLog:
             if event["hand"] in ("hand linked", "hand streams"):
                 self.hand = time.monotonic()
                 self.refused = False
+        elif name == "link" and event["state"] in ("linked", "streaming"):
+            self.linked = time.time()
         elif name == "link" and event["state"] == "refused":
             self.hand, self.refused = None, True  # the server answers, so it does not hang, and a restart would not help
         elif name == "without_hand" and event["reason"] == "no_server":

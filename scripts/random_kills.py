@@ -74,9 +74,13 @@ class Session:
         raise Violation(f"{what}: not within {PATIENCE_SECONDS} s; see {self.log.name}")
 
     def recoveries(self):
-        """Returns the recoveries that the master has recorded. It records each one after its first frame."""
+        """Returns the recoveries that the master has recorded. It records each one after its first frame.
+
+        Leaves out those of the haptic server, which the launcher records.
+        """
         try:
-            return [json.loads(line) for line in (self.out / "recoveries.jsonl").read_text().splitlines()]
+            lines = (self.out / "recoveries.jsonl").read_text().splitlines()
+            return [found for found in map(json.loads, lines) if found["state_hash"] is not None]
         except FileNotFoundError:
             return []
 

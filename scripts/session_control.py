@@ -3,13 +3,20 @@
 
 import json
 import os
+import pathlib
 import socket
 
+import session_folder
 from rank_hosts import BadInput
 
 SOCKET = "control"
 PATIENCE_SECONDS = 120  # a capture of a large wall takes long
 LONGEST_ANSWER = 1 << 16
+RESTARTING = "restarting"  # file in OUT/log with the failure, from the failure to the first frame after it
+
+VERBS = ("capture", "eye-separation METRES", "force on|off|scale SHARE", "hide LAYER", "load NAME", "material KEY VALUE", "pattern NAME|none|next",
+         "pause", "reset", "resume", "save NAME", "settle", "show LAYER", "status", "stereo MODE", "stop",
+         "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right]", "undo")
 
 
 def connect(session, patience=PATIENCE_SECONDS):
@@ -26,12 +33,26 @@ def connect(session, patience=PATIENCE_SECONDS):
     except PermissionError:
         raise BadInput(f"{session}: belongs to another user; only that user may command the session") from None
     except (FileNotFoundError, ConnectionRefusedError):
-        raise BadInput(f"{session}: no session is running in this folder") from None
+        raise BadInput(f"{session}: {why_silent(session)}") from None
     except OSError as error:
         raise BadInput(f"{session}: cannot be reached ({error})") from None
     finally:
         os.close(folder)
     return peer
+
+
+def why_silent(session):
+    """Returns why no master answers in the folder. Between two tries a launcher still holds the folder's lock."""
+    try:
+        if session_folder.is_held(session):
+            try:
+                failure = session_folder.read_text(pathlib.Path(session) / "log" / RESTARTING).strip()
+                return f"the session is being started again, because {failure}; try again in a moment"
+            except (OSError, ValueError):
+                return "the session is being started; try again in a moment"
+    except OSError:
+        pass  # a folder that this user may not read, or a file system without locks
+    return "no session is running in this folder"
 
 
 def ask(session, line, patience=PATIENCE_SECONDS):
@@ -50,6 +71,9 @@ def ask(session, line, patience=PATIENCE_SECONDS):
 
 
 def ctl(args):
+    if args.words in (["help"], ["--help"], ["-h"]):
+        print("\n".join(VERBS))
+        return 0
     line = " ".join(args.words)
     if "\n" in line:
         raise BadInput("a command must be one line")
@@ -70,10 +94,8 @@ def ctl(args):
 def add_parser(commands, remainder):
     """Adds `ctl` to the launcher's commands. `remainder` is argparse.REMAINDER."""
     parser = commands.add_parser("ctl", help="command a running session",
-                                 description="Commands a session that runs on this machine; docs/operator.md. Commands: status, pause, resume, reset, undo, settle, "
-                                             "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right], tool RADIUS, material KEY VALUE, "
-                                             "save NAME, load NAME, stereo MODE, pattern NAME|none|next, "
-                                             "show LAYER, hide LAYER, eye-separation METRES, capture, force on|off|scale SHARE, stop.")
+                                 description="Commands a session that runs on this machine; docs/operator.md. "
+                                             f"Commands: help, {', '.join(VERBS)}.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="command and its arguments")

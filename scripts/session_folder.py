@@ -99,6 +99,26 @@ def held(out, resume=False):
         os.close(descriptor)
 
 
+def is_held(path):
+    """Returns whether a launcher holds the lock on the folder."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_SH | fcntl.LOCK_NB)
+        return False
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+
+
+def append_line(path, line):
+    """Appends a line to a regular file. Begins on a line of its own if a crash has cut the last line off. Throws OSError."""
+    with open(open_regular(path, os.O_RDWR | os.O_CREAT | os.O_APPEND), "ab", buffering=0) as file:
+        size = os.fstat(file.fileno()).st_size
+        torn = size > 0 and os.pread(file.fileno(), 1, size - 1) != b"\n"
+        file.write((b"\n" if torn else b"") + line.encode() + b"\n")
+
+
 def lock(descriptor, out):
     deadline = time.monotonic() + PATIENCE
     while True:

@@ -14,6 +14,7 @@ import time
 import console
 import events
 import job_log
+import session_control
 import session_folder
 from console import say
 from processes import HapticServer, Input, Job
@@ -24,6 +25,7 @@ FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
 SERVER_HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
 JOURNAL = "session.journal"
+RECOVERIES = "recoveries.jsonl"
 
 
 def signal_name(number):
@@ -164,7 +166,10 @@ class Supervisor:
         self.server_due = None  # time at which the server is started again [s]
         self.server_hung = False
         self.server_loads = False  # whether the server was restarted and does not listen yet
+        self.server_failure = None  # the failure after which the server is not linked yet
+        self.restarting = False  # whether the job has failed and has not shown a frame since then
         self.gave_up = False
+        self.logs = None  # folder of the logs, from prepare_logs(); unused without --restarts
 
     def run(self):
         with tempfile.TemporaryDirectory(prefix="sandwall-") as folder:
@@ -176,6 +181,7 @@ class Supervisor:
                 self.logs = self.prepare_logs(folder) if self.supervised else None
                 return self.tries()
             finally:
+                self.mark_restart(None)
                 if self.server:
                     self.server.stop()
 
@@ -209,6 +215,7 @@ class Supervisor:
             log.close()
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):
                 return FAILED
+            self.mark_restart(failure)
             # A journal that was there before belongs to another session, which must not be continued.
             ours = self.resume or self.journal_identity() not in (None, before)
             words = ["--resume", *failure.words()] if ours else []
@@ -228,6 +235,8 @@ class Supervisor:
         self.input.job = self.job
         self.input.listen()
         while (status := self.job.look(self.stop)) is None:
+            if log and log.frame is not None:
+                self.mark_restart(None)
             if self.supervised and self.server and not self.job.asked:
                 self.look_after_server()
         if self.supervised:
@@ -239,23 +248,56 @@ class Supervisor:
         """Starts the haptic server again on its port if it has ended. The master connects to it again by itself."""
         status = self.server.process.poll()
         if status is None:
+            self.tell_linked_server()
             self.end_hung_server()
         elif self.server_due is not None:
             if time.monotonic() >= self.server_due:
                 self.server_due = None
                 self.server.start()
                 self.server_loads = True
-                self.job.log.hand, self.job.log.refused = None, False  # the values belong to the previous server
+                log = self.job.log
+                log.hand, log.refused, log.linked = None, False, None  # the values belong to the previous server
         else:
             hung = "was hung" if self.server_hung else how_ended(status)
             failure = Failure(f"the haptic server {hung}", how="hung" if self.server_hung else ending_of(status))
             failure.frame, failure.step = self.job.log.frame, self.job.log.step
             self.server_hung = False
             if self.may_go_on(failure, showed_a_frame=True):
+                self.server_failure = failure
                 self.server_due = time.monotonic() + self.allowance.wait()
             else:
                 self.gave_up = True
                 self.job.stop()
+
+    def tell_linked_server(self):
+        """Writes the recovery of a restarted server when its hand is linked. The master writes the recoveries of the job."""
+        failure, log = self.server_failure, self.job.log
+        if failure is None or log.linked is None:
+            return
+        self.server_failure = None
+        # The wall has continued meanwhile, so the values about a replay are null.
+        recovery = {"failure": failure.text, "failed_rank": None, "failed_how": failure.how, "seconds_to_next_frame": None,
+                    "seconds_to_link": log.linked - failure.when, "step": log.step or failure.step or 0,
+                    "frame": log.frame or failure.frame or 0, "state_hash": None,
+                    "checkpoint_step": None, "replayed_steps": None, "cut_bytes": None}
+        try:
+            session_folder.append_line(self.out / RECOVERIES, json.dumps(recovery))
+        except OSError as error:
+            say(f"{self.out / RECOVERIES}: cannot be written ({error.strerror})")
+
+    def mark_restart(self, failure):
+        """Leaves the failure for `sandwall ctl` until the job has shown a frame again, when `failure` is None."""
+        marker = self.logs / session_control.RESTARTING if self.logs else None
+        if marker is None or (failure is None and not self.restarting):
+            return
+        self.restarting = failure is not None
+        try:
+            if failure:
+                session_folder.write_text(marker, failure.text + "\n")
+            else:
+                marker.unlink(missing_ok=True)
+        except OSError:
+            pass  # ctl then reports a start without the reason
 
     def end_hung_server(self):
         """Kills a running server without a link for SERVER_HUNG_SECONDS, because it will not recover by itself."""

@@ -141,6 +141,21 @@ class Doctor(LauncherTest):
         self.assertEqual(found[self.name, "master"], ("RED", "build 00000000000000ff, the ranks have 0123456789abcdef; "
                                                       "cmake --build build/release"))
 
+    def test_a_folder_that_cannot_be_written_is_red_for_that_reason(self):
+        # Even root can make no file in these places. Both report 0 bytes free, which is not the reason.
+        for out in ("/proc/self/fdinfo", "/sys/kernel"):
+            ended = subprocess.run([*self.arguments(["-"]), "--out", out], env=self.environment, text=True, capture_output=True,
+                                   timeout=200, stdin=subprocess.DEVNULL)
+            self.assertRegex(ended.stdout, rf"(?m)RED +disk +{out}: cannot be written \(.*\); choose another --out$")
+
+    def test_a_folder_to_which_others_may_write_is_red(self):
+        shared = self.folder / "shared"
+        shared.mkdir()
+        shared.chmod(0o777)
+        ended = subprocess.run([*self.arguments(["-"]), "--out", str(shared)], env=self.environment, text=True, capture_output=True,
+                               timeout=200, stdin=subprocess.DEVNULL)
+        self.assertRegex(ended.stdout, r"(?m)RED +disk +.*/shared: other users may write to it; run chmod go-w on it")
+
     def test_a_list_of_hosts_is_tried_without_a_wall(self):
         hosts = self.write("hosts", "sound1 slots=2\nnarrow1\n")
         ended = subprocess.run([str(ROOT / "scripts" / "sandwall"), "doctor", hosts, "--out", str(self.folder)],

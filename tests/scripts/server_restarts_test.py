@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests how scripts/sandwall run starts the haptic server again after it has ended or hung."""
 
+import json
 import tempfile
 import unittest
 from unittest import mock
@@ -43,6 +44,25 @@ until [ $(wc -l < "$folder/servers") = 2 ]; do sleep 0.05; done; exit 0""")
         self.assertIn("/ticks.csv ", first)
         self.assertIn("/ticks_2.csv ", second)
         self.assertIn("sandwall: the haptic server was killed by SIGSEGV; starting again (1 of ", error)
+
+    def test_its_restart_is_a_recovery_as_soon_as_the_hand_is_linked(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "recoveries.jsonl").write_text('{"torn": ')
+        self.tries("""progress 1 1; kill -SEGV $(cat "$folder/server.pid")
+until [ $(wc -l < "$folder/servers") = 2 ]; do sleep 0.05; done
+cp "$folder/out/recoveries.jsonl" "$folder/before"; progress 31 30
+event 0 '{"event":"link","state":"linked","epoch":3,"server":"x"}'
+until [ $(wc -l < "$folder/out/recoveries.jsonl") = 2 ]; do sleep 0.05; done; exit 0""")
+        status, _, error = self.ended(["-"], "--device", "script:gis", "--resume")
+        self.assertEqual(status, 0, error)
+        self.assertEqual((self.folder / "before").read_text(), '{"torn": ', "the hand is not linked yet")
+        torn, line = (self.folder / "out" / "recoveries.jsonl").read_text().splitlines()
+        self.assertEqual(torn, '{"torn": ')
+        recovery = json.loads(line)
+        self.assertGreaterEqual(recovery.pop("seconds_to_link"), 0)
+        self.assertEqual(recovery, {"failure": "the haptic server was killed by SIGSEGV", "failed_rank": None, "failed_how": "SIGSEGV",
+                                    "seconds_to_next_frame": None, "step": 30, "frame": 31, "state_hash": None,
+                                    "checkpoint_step": None, "replayed_steps": None, "cut_bytes": None})
 
     def test_a_job_that_is_started_again_finds_the_same_server(self):
         self.tries("progress 1 1; dies 1 host 9", "exit 0")
