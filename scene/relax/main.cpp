@@ -58,6 +58,7 @@ void checkKind(const Options& options, bool toMesh) {
     }
     require(options.scheme == "g" || options.scheme == "settle", "--scheme", "g or settle for a TIN", options.scheme);
     require(options.bedrock.empty(), "--bedrock", "left out for a TIN, which has no rock", options.bedrock);
+    require(!points || !options.lengths, "--lengths", "left out for points, which are not tested", options.in);
     require(options.threads == 1, "--threads", "left out for a TIN, whose sweeps have one", options.threads);
     if (points) {
         require(!options.maxError && !options.vertices, "--max-error and --vertices",
@@ -119,5 +120,7 @@ int main(int argc, char** argv) {
     line.option("--max-error", options.maxError,
                 "largest vertical distance of the TIN from the raster's cells, in its unit of lengths");
     line.option("--vertices", options.vertices, "most vertices in the TIN of a raster");
+    line.flag("--lengths", options.lengths,
+              "the coordinates of the raster IN are lengths, even if they seem to be degrees");
     return host::runMain(line, argc, argv, [&] { return run(options); });
 }

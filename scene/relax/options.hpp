@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "scene/import/esri_grid.hpp"
+
 namespace scene::relax {
 
 /// Command line of sandwall-relax (docs/relax.md).
@@ -16,7 +18,11 @@ struct Options {
     int threads = 1;
     std::optional<double> maxError;  // of the TIN of a raster [raster's unit]
     std::optional<int> vertices;     // of the TIN of a raster
+    bool lengths = false;            // the raster has lengths, even if they seem to be degrees
 };
+
+/// Throws base::InputError if the lengths of IN seem to be degrees, unless `lengths` is set.
+void requireLengths(const EsriGrid& raster, const Options& options);
 
 /// Both functions read IN, write OUT and print the report line. They throw base::InputError.
 void relaxGrid(const Options& options);

@@ -121,6 +121,47 @@ TEST_F(RelaxInput, BedrockThatDoesNotMatchIsRefused) {
     refused("ncols 2\nnrows 2\nxllcorner 7\nyllcorner 0\ncellsize 1\n0 0\n0 0\n", "from (7, 0), but in.asc");
 }
 
+/// Returns a slope of 12 x 12 cells: from the corner, each row is `step` higher than the row to the south of it.
+std::string slopeAt(const std::string& corner, const std::string& cell, double step) {
+    std::string text = "ncols 12\nnrows 12\n" + corner + "\ncellsize " + cell + "\n";
+    for (int row = 11; row >= 0; --row) {
+        for (int column = 0; column < 12; ++column) {
+            // The slope eastwards is as steep as northwards, so that the median slope is that of every face.
+            text += fmt::format("{} ", 2400 + step * (row + column));
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+// A cell of 0.000833 degrees is 93 m long from south to north. A rise of 2 m from cell to cell is a slope of 1.2
+// degrees. Taken for a length, the cell makes it a slope of 89.98 degrees, and all of the terrain would slide flat.
+TEST_F(RelaxInput, DegreesWithoutACoordinateSystemAreRefusedWithTheCommandThatMakesMetres) {
+    const std::string corner = "xllcorner -105.56\nyllcorner 40.09";
+    const std::string command =
+        "gdalwarp -s_srs EPSG:4326 -t_srs EPSG:32613 -r bilinear in.asc metres.tif; or insist "
+        "on lengths with --lengths";
+    write("in.asc", slopeAt(corner, "0.000833", 2));
+    expectRefused("in.asc out.asc --talus 30", command);
+    expectRefused("in.asc out.ply --talus 30 --max-error 1", command);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out.asc"));
+    EXPECT_EQ(relax("in.asc out.asc --talus 30 --lengths --sweeps 1").status, 0) << "the user insists";
+    expectRefused("points.csv out.ply --talus 30 --lengths", "--lengths");
+}
+
+// tan(80 degrees) = 5.6713. A step of 0.005 on cells of 0.000833 is 80.54 degrees, one of 0.0045 is 79.5 degrees.
+TEST_F(RelaxInput, LengthsThatAreNoDegreesAreNotRefused) {
+    const auto status = [&](const std::string& corner, const std::string& cell, double step) {
+        write("in.asc", slopeAt(corner, cell, step));
+        return relax("in.asc out.asc --talus 30 --sweeps 1").status;
+    };
+    EXPECT_EQ(status("xllcorner -105.56\nyllcorner 40.09", "0.000833", 0.005), 2);
+    EXPECT_EQ(status("xllcorner -105.56\nyllcorner 40.09", "0.000833", 0.0045), 0) << "the slopes can be real";
+    EXPECT_EQ(status("xllcorner 179.995\nyllcorner 40.09", "0.000833", 0.005), 0) << "beyond 180 degrees east";
+    EXPECT_EQ(status("xllcorner 10\nyllcorner 89.995", "0.000833", 0.005), 0) << "beyond the pole";
+    EXPECT_EQ(status("xllcorner 478000\nyllcorner 4437000", "0.000833", 0.005), 0) << "no place on the globe";
+}
+
 TEST_F(RelaxInput, WhatCannotBeWrittenIsFoundOutBeforeTheWork) {
     expectRefused("in.asc nowhere/out.asc --talus 30", "nowhere/out.asc: cannot be written; check path");
     expectRefused("in.asc . --talus 30", ".: cannot be written");
