@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cstdio>
 #include <string_view>
 
@@ -13,12 +14,14 @@
 
 int main(int argc, char** argv) {
     // Options about this program and this host are answered before a job, and need no MPI.
-    const std::string_view question = argc > 1 ? argv[1] : "";
+    const bool probes = std::any_of(argv + std::min(argc, 1), argv + argc, [](const std::string_view word) {
+        return word == "--probe" || word.starts_with("--probe=");
+    });
     if (host::answersVersion(argc, argv, "sandwall-render-node",
                              {{"algorithm", sand::kAlgorithmVersion}, {"state", sand::kStateVersion}})) {
         return 0;
     }
-    if (question == "--probe") {
+    if (probes) {
         return render_node::probeMain(argc, argv);
     }
     host::CommandLine line(

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "walls/wall.hpp"
 
 namespace walls {
@@ -11,5 +14,8 @@ namespace walls {
 /// The result depends only on the wall at the start of the session and on the mode, so that all ranks agree. Throws
 /// base::InputError, with one line, if these outputs cannot show the mode.
 [[nodiscard]] Wall shownOnItsOutputs(const Wall& wall, Stereo stereo);
+
+/// Returns the modes that shownOnItsOutputs() accepts, except the wall's own, as names in the order of Stereo.
+[[nodiscard]] std::vector<std::string> otherModesOf(const Wall& wall);
 
 }  // namespace walls

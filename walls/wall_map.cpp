@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <queue>
 #include <utility>
@@ -17,23 +19,70 @@ constexpr int kWidestMap = 12;  // [tile]; so many columns fit into a hundred le
 
 using Cell = std::pair<int, int>;  // row from the top, column
 
+/// Returns how far a screen is turned in its own plane, as the viewer sees it [degree]: counter-clockwise, from -180 to
+/// 180. Returns 0 for a screen at the viewer's side, whose rows lead away from the viewer.
+double turnOf(const Wall& wall, const Screen& screen) {
+    constexpr double kSide = 0.5;  // shortest part of `right` that the viewer sees
+    const double along = glm::dot(screen.right(), wall.viewer.right);
+    const double upward = screen.right().y;
+    return std::hypot(along, upward) < kSide ? 0 : glm::degrees(std::atan2(upward, along));
+}
+
+/// Returns the number of quarter turns counter-clockwise, 0 to 3, that are nearest to `degrees`.
+int quartersOf(double degrees) { return (static_cast<int>(std::lround(degrees / 90)) + 4) % 4; }
+
+/// Returns a line for a turned screen; an empty text if its rows are level.
+std::string turnLine(double degrees, const std::string& name) {
+    constexpr double kLevel = 1;  // [degree]
+    return std::abs(degrees) < kLevel
+               ? ""
+               : fmt::format("  {} is turned by {:.0f} degrees {}\n", name, std::abs(degrees),
+                             degrees < 0 && degrees > kLevel - 180 ? "clockwise" : "counter-clockwise");
+}
+
+/// Returns the tile of the grid that the viewer faces most. The grid has a tile.
+const Tile& middleOf(const Wall& wall) {
+    const glm::dvec3 forward = glm::cross(glm::dvec3(0, 1, 0), wall.viewer.right);
+    const Tile* best = nullptr;
+    for (const Tile& tile : wall.tiles) {
+        if (tile.row > 0 &&
+            (best == nullptr || glm::dot(tile.screen.normal(), forward) < glm::dot(best->screen.normal(), forward))) {
+            best = &tile;
+        }
+    }
+    return *best;
+}
+
 /// Returns the boxes of the grid as the viewer sees them. Omits the columns of a wide grid beyond kWidestMap.
-std::string gridMap(const Grid& grid) {
-    const int columns = std::min<int>(grid.columns, kWidestMap);
+std::string gridMap(const Wall& wall) {
+    const Grid& grid = *wall.grid;
+    const double turn = turnOf(wall, middleOf(wall).screen);
+    const int quarters = quartersOf(turn);
+    const int rows = quarters % 2 == 0 ? grid.rows : grid.columns;
+    const int allColumns = quarters % 2 == 0 ? grid.columns : grid.rows;
+    const int columns = std::min(allColumns, kWidestMap);
+    // The rank of the box in this row and column of the map.
+    const auto rankAt = [&](int row, int column) {
+        const std::array<Cell, 4> turned{Cell{row, column}, Cell{column, grid.columns - 1 - row},
+                                         Cell{grid.rows - 1 - row, grid.columns - 1 - column},
+                                         Cell{grid.rows - 1 - column, row}};
+        const Cell cell = turned.at(static_cast<std::size_t>(quarters));
+        return cell.first * grid.columns + cell.second + 1;
+    };
     std::string rule = "  ";
     for (int column = 0; column < columns; ++column) {
         rule += "+------";
     }
-    rule += columns < grid.columns ? "+ ...\n" : "+\n";
+    rule += columns < allColumns ? "+ ...\n" : "+\n";
     std::string map = rule;
-    for (int row = 0; row < grid.rows; ++row) {
+    for (int row = 0; row < rows; ++row) {
         map += "  ";
         for (int column = 0; column < columns; ++column) {
-            map += fmt::format("|{:^6}", row * grid.columns + column + 1);
+            map += fmt::format("|{:^6}", rankAt(row, column));
         }
         map += "|\n" + rule;
     }
-    return map;
+    return map + turnLine(turn, "the grid");
 }
 
 Cell beyond(Cell cell, Edge edge) {
@@ -48,6 +97,14 @@ Cell beyond(Cell cell, Edge edge) {
             break;
     }
     return {cell.first - 1, cell.second};
+}
+
+/// Returns the edge of a screen that the viewer sees at `edge` of a screen with level rows, after quarter turns.
+Edge turned(Edge edge, int quarters) {
+    constexpr std::array<Edge, 4> kCounterClockwise{Edge::right, Edge::top, Edge::left, Edge::bottom};
+    const auto* const at = std::find(kCounterClockwise.begin(), kCounterClockwise.end(), edge);
+    const auto index = static_cast<std::size_t>(at - kCounterClockwise.begin());
+    return kCounterClockwise.at((index + static_cast<std::size_t>(quarters)) % kCounterClockwise.size());
 }
 
 /// Returns the index of the explicit screen without a place that the viewer faces most, or the number of tiles if all
@@ -79,6 +136,7 @@ std::map<std::size_t, Cell> unfolded(const Wall& wall) {
     for (std::size_t front = frontOf(wall, placed); front < wall.tiles.size(); front = frontOf(wall, placed)) {
         // Starts a row below all others. Leaves one row free for a screen that joins above.
         place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0});
+        const int quarters = quartersOf(turnOf(wall, wall.tiles[front].screen));
         std::queue<std::size_t> next({front});
         for (; !next.empty(); next.pop()) {
             for (const Seam& seam : seams) {
@@ -87,7 +145,8 @@ std::map<std::size_t, Cell> unfolded(const Wall& wall) {
                     continue;
                 }
                 const std::size_t other = forth ? seam.second : seam.first;
-                const Cell cell = beyond(placed[next.front()], forth ? seam.edgeOfFirst : seam.edgeOfSecond);
+                const Edge edge = forth ? seam.edgeOfFirst : seam.edgeOfSecond;
+                const Cell cell = beyond(placed[next.front()], turned(edge, quarters));
                 if (wall.tiles[other].row == 0 && !placed.contains(other) && !taken.contains(cell)) {
                     place(other, cell);
                     next.push(other);
@@ -119,11 +178,14 @@ std::string screenMap(const Wall& wall) {
         }
         map += fmt::format("{0}\n{1}\n{0}\n", rule, middle);
     }
+    for (const Tile& tile : wall.tiles) {
+        map += tile.row == 0 ? turnLine(turnOf(wall, tile.screen), tile.name) : "";
+    }
     return map;
 }
 
 }  // namespace
 
-std::string textMap(const Wall& wall) { return (wall.grid ? gridMap(*wall.grid) : "") + screenMap(wall); }
+std::string textMap(const Wall& wall) { return (wall.grid ? gridMap(wall) : "") + screenMap(wall); }
 
 }  // namespace walls

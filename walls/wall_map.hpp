@@ -10,7 +10,7 @@ namespace walls {
 
 /// Returns a map of the wall in text. It shows the grid as the viewer sees it, and below it the explicit screens. The
 /// screens are unfolded along the edges where they join, like a flattened paper room. A box has the rank and, for
-/// screens, the name.
+/// screens, the name. Turned grids and screens are shown in the nearest quarter turn, with a line about their angle.
 [[nodiscard]] std::string textMap(const Wall& wall);
 
 }  // namespace walls

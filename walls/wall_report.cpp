@@ -9,6 +9,7 @@
 
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"
+#include "walls/stereo_change.hpp"
 #include "walls/wall_checklist.hpp"
 #include "walls/wall_map.hpp"
 
@@ -89,10 +90,12 @@ std::string describe(const Wall& wall) {
     std::string text =
         fmt::format("{}: {} render rank{}, {}, {} output{}, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
                     wall.ranks() == 1 ? "" : "s", mode, outputs, outputs == 1 ? "" : "s", canvas.width, canvas.height);
-    text +=
-        fmt::format("viewer: eye {}, eyes {:.1f} mm apart; drawn from {} to {} m; {} frames per second; head {}\n\n",
-                    point(wall.viewer.eye), wall.viewer.eyeSeparation * 1000, wall.clip.near, wall.clip.far,
-                    wall.refreshHz, wall.tracking.empty() ? "not tracked" : "from " + wall.tracking);
+    text += fmt::format("viewer: eye {}, eyes {:.1f} mm apart; drawn from {} to {} m; {} frames per second; head {}\n",
+                        point(wall.viewer.eye), wall.viewer.eyeSeparation * 1000, wall.clip.near, wall.clip.far,
+                        wall.refreshHz, wall.tracking.empty() ? "not tracked" : "from " + wall.tracking);
+    const std::vector<std::string> modes = otherModesOf(wall);
+    text += fmt::format("stereo: during a session it can switch to {}\n\n",
+                        modes.empty() ? "no other mode" : fmt::format("{}", fmt::join(modes, ", ")));
     text += textMap(wall) + "\n" + checklist(wall);
     text += fmt::format("\n{:>6}  {:<10} {:>11} {:>15} {:>9} {:>11} {:>13}  {}\n", "rank", "tile", "pixels", "metres",
                         "mm/pixel", "distance m", "degrees", "lower left, outputs with their eyes, places");

@@ -46,6 +46,17 @@ protected:
     }
 };
 
+TEST_F(Probe, TakesItsOptionsInAnyOrder) {
+    const std::string file = placedWall("windows = [[10, 20]]");
+    for (const char* options :
+         {"--probe 1 --gl osmesa --json", "--gl osmesa --json --probe 1", "--json --probe=1 --gl=osmesa"}) {
+        const support::Ran ran = support::runCommand(
+            fmt::format("env -u DISPLAY timeout 120 {}/sandwall-render-node {} < {}", SANDWALL_BIN_DIR, options, file));
+        EXPECT_EQ(ran.status, 0) << options << ": " << ran.output;
+        EXPECT_NE(ran.output.find("\"backend\":\"osmesa\""), std::string::npos) << options << ": " << ran.output;
+    }
+}
+
 TEST_F(Probe, ARankWithoutAPlaceDrawsInMemory) {
     const std::string file = placedWall("windows = [[10, 20]]");
     for (const std::string rank : {"0", "1"}) {

@@ -146,6 +146,61 @@ TEST(TextMap, HasABoxForEveryTileOfAGrid) {
               "  +------+------+------+------+\n");
 }
 
+/// Returns the 2 x 3 grid of a wall whose rows lead into the direction `right` of the room, above it `up`.
+Wall turnedGrid(glm::dvec3 right, glm::dvec3 up) {
+    Wall wall = config("tiled_3x4.toml");
+    wall.grid->rows = 2;
+    wall.grid->columns = 3;
+    wall.grid->right = right;
+    wall.grid->up = up;
+    wall.tiles = tilesOf(*wall.grid, wall.stereo);
+    return wall;
+}
+
+TEST(TextMap, ShowsATurnedGridAsTheViewerSeesIt) {
+    const std::string rule2 = "  +------+------+\n", rule3 = "  +------+------+------+\n";
+    EXPECT_EQ(textMap(turnedGrid({0, 1, 0}, {-1, 0, 0})),
+              rule2 + "  |  3   |  6   |\n" + rule2 + "  |  2   |  5   |\n" + rule2 + "  |  1   |  4   |\n" + rule2 +
+                  "  the grid is turned by 90 degrees counter-clockwise\n");
+    EXPECT_EQ(textMap(turnedGrid({0, -1, 0}, {1, 0, 0})), rule2 + "  |  4   |  1   |\n" + rule2 +
+                                                              "  |  5   |  2   |\n" + rule2 + "  |  6   |  3   |\n" +
+                                                              rule2 + "  the grid is turned by 90 degrees clockwise\n");
+    EXPECT_EQ(textMap(turnedGrid({-1, 0, 0}, {0, -1, 0})),
+              rule3 + "  |  6   |  5   |  4   |\n" + rule3 + "  |  3   |  2   |  1   |\n" + rule3 +
+                  "  the grid is turned by 180 degrees counter-clockwise\n");
+    const double c = std::cos(0.35), s = std::sin(0.35);  // 20 degrees
+    EXPECT_EQ(textMap(turnedGrid({c, s, 0}, {-s, c, 0})), rule3 + "  |  1   |  2   |  3   |\n" + rule3 +
+                                                              "  |  4   |  5   |  6   |\n" + rule3 +
+                                                              "  the grid is turned by 20 degrees counter-clockwise\n");
+}
+
+TEST(TextMap, UnfoldsTurnedScreensAsTheViewerSeesThem) {
+    Wall wall = config("flex_cave.toml");
+    for (Tile& tile : wall.tiles) {  // the whole room, turned by a quarter about the direction of view
+        const auto turned = [](glm::dvec3 p) { return glm::dvec3(-p.y, p.x, p.z); };
+        tile.screen = {turned(tile.screen.lowerLeft), turned(tile.screen.lowerRight), turned(tile.screen.upperLeft)};
+    }
+    EXPECT_EQ(textMap(wall),
+              "  +---------+\n"
+              "  | 3 right |\n"
+              "  +---------+\n"
+              "  +---------++---------+\n"
+              "  | 2 front || 4 floor |\n"
+              "  +---------++---------+\n"
+              "  +---------+\n"
+              "  | 1 left  |\n"
+              "  +---------+\n"
+              "  front is turned by 90 degrees counter-clockwise\n"
+              "  floor is turned by 90 degrees counter-clockwise\n");
+}
+
+TEST(Report, NamesTheModesToWhichTheWallCanSwitch) {
+    EXPECT_NE(
+        describe(config("tiled_3x4.toml")).find("\nstereo: during a session it can switch to mono, left, right\n"),
+        std::string::npos);
+    EXPECT_NE(describe(config("desktop.toml")).find("\nstereo: during a session it can switch to "), std::string::npos);
+}
+
 TEST(Drawing, HasEveryTileAndTheSandInBothViews) {
     for (const std::string& name : configNames()) {
         const Wall wall = config(name);

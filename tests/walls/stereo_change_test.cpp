@@ -59,7 +59,9 @@ TEST(StereoChange, WhatCannotBeShownIsSaidWithWhatWouldBeNeeded) {
         return std::string("nothing");
     };
     EXPECT_EQ(complaint("tiled_3x4.toml", Stereo::anaglyphColour),
-              "anaglyph needs 1 output per tile, and tile 'r1c1' has 2; end the session and start it with --stereo");
+              "anaglyph needs 1 output per tile, and tile 'r1c1' has 2; this wall can switch to mono, left, right; for "
+              "others, end the session and start it with --stereo");
+    EXPECT_EQ(walls::otherModesOf(sampleWall("tiled_3x4.toml")), (std::vector<std::string>{"mono", "left", "right"}));
     const std::string wide = complaint("anaglyph.toml", Stereo::sideBySide);
     EXPECT_EQ(wide.find("side_by_side needs frames of "), 0U) << wide;
 }
