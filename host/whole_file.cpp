@@ -5,11 +5,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
+
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 
 namespace host {
 
-WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(path) {
+WholeFile::WholeFile(const std::filesystem::path& path, Other other) : path_(path), target_(path) {
     std::error_code none;
     const bool there = std::filesystem::exists(path, none);
     // Renaming would replace a file that must not be written to.
@@ -17,13 +20,22 @@ WholeFile::WholeFile(const std::filesystem::path& path) : path_(path), target_(p
         fail();
     }
     if (there && !std::filesystem::is_regular_file(path, none)) {
+        if (other == Other::refused) {
+            throw base::InputError(fmt::format("{}: is not a regular file; remove it", path_.string()));
+        }
         stream_.open(target_, std::ios::binary);
     } else {
         if (there) {
             target_ = std::filesystem::canonical(path, none);  // keeps a link a link
         }
         beside_ = target_.string() + fmt::format(".{}.part", ::getpid());
-        stream_.open(beside_, std::ios::binary | std::ios::trunc);
+        // A pipe or link of this name is removed, because opening a pipe would wait for a reader.
+        if (const int made = makeFile(beside_, 0666); made >= 0) {
+            ::close(made);
+            stream_.open(beside_, std::ios::binary | std::ios::trunc);
+        } else {
+            stream_.setstate(std::ios::failbit);
+        }
     }
     if (!stream_) {
         fail();
@@ -51,7 +63,9 @@ void WholeFile::keepSynced() {
         fail();
     }
     keep();
-    syncFolderOf(target_);
+    if (!syncFolderOf(target_)) {
+        fail();
+    }
 }
 
 void WholeFile::keep() {
@@ -72,13 +86,15 @@ void WholeFile::keep() {
     }
 }
 
-void syncFolderOf(const std::filesystem::path& file) {
+bool syncFolderOf(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor >= 0) {
-        (void)::fsync(descriptor);
-        ::close(descriptor);
+    if (descriptor < 0) {
+        return true;  // a folder may be used without the right to read it
     }
+    const bool failed = ::fsync(descriptor) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+    ::close(descriptor);
+    return !failed;
 }
 
 void WholeFile::fail() const {

@@ -10,11 +10,16 @@ namespace host {
 /// File that is written completely or not at all. keep() replaces the previous file at its path.
 ///
 /// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it.
-/// A path that is not a plain file, such as a pipe, is written to directly. Throws base::InputError in one line if the
-/// path cannot be written. To test whether a path can be written, create a WholeFile and destroy it.
+/// Throws base::InputError in one line if the path cannot be written. To test whether a path can be written, create a
+/// WholeFile and destroy it.
 class WholeFile {
 public:
-    explicit WholeFile(const std::filesystem::path& path);
+    /// What to do with a path that is not a regular file, such as a pipe.
+    enum class Other {
+        written,  // it is written to directly, which may wait for a reader; for files that a user names
+        refused   // for the files of a running session, which must not wait
+    };
+    explicit WholeFile(const std::filesystem::path& path, Other other = Other::written);
     ~WholeFile();
     WholeFile(const WholeFile&) = delete;
     WholeFile& operator=(const WholeFile&) = delete;
@@ -33,7 +38,8 @@ private:
     std::ofstream stream_;
 };
 
-/// Syncs the folder of `file`, so that created and removed names survive a power loss. Some file systems cannot do it.
-void syncFolderOf(const std::filesystem::path& file);
+/// Syncs the folder of `file`, so that created and removed names survive a power loss. Returns false if the disk fails.
+/// Returns true on file systems that cannot sync a folder.
+bool syncFolderOf(const std::filesystem::path& file);
 
 }  // namespace host

@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 
 namespace master {
 namespace {
@@ -88,11 +88,12 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
 }
 
 void tell(const std::vector<std::string>& lines, const std::filesystem::path& file) {
-    std::ofstream kept(file, std::ios::app);
+    std::string text;
     for (const std::string& line : lines) {
         host::printLine("{}", line);
-        kept << line << '\n';
+        text += line + '\n';
     }
+    (void)host::appendText(file, text);  // the lines are on standard error already
 }
 
 }  // namespace master

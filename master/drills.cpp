@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/drills.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <set>
+#include <sstream>
 
+#include "base/byte_stream.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 
 namespace master {
 namespace {
@@ -20,17 +21,9 @@ namespace {
 constexpr const char* kDone = "drills.done";
 
 void keep(const std::string& text, const std::filesystem::path& file) {
-    const std::string line = text + "\n";
-    const int descriptor = open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    const bool kept = descriptor >= 0 &&
-                      write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size()) &&
-                      fdatasync(descriptor) == 0;
-    if (!kept) {
+    if (!host::appendText(file, text + "\n")) {
         host::printLine("{}: cannot be written ({}); after a restart the drill happens again", file.string(),
                         std::strerror(errno));
-    }
-    if (descriptor >= 0) {
-        close(descriptor);
     }
 }
 
@@ -43,7 +36,9 @@ std::vector<Drill> withoutDone(std::vector<Drill> drills, const std::filesystem:
         return drills;
     }
     std::set<std::string> done;
-    std::ifstream stream(folder / kDone);
+    const host::RegularFile opened(folder / kDone);
+    const std::optional<base::Bytes> text = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
+    std::istringstream stream(text ? std::string(text->begin(), text->end()) : "");
     for (std::string line; std::getline(stream, line);) {
         done.insert(line);
     }

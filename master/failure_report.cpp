@@ -23,7 +23,7 @@ bool writeFailure(const FailureReport& failure, const std::filesystem::path& fol
     host::emitEvent("failure",
                     {{"failure", host::Json{json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)}}});
     try {
-        host::WholeFile file(folder / "failure.json");
+        host::WholeFile file(folder / "failure.json", host::WholeFile::Other::refused);
         file.stream() << json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
         file.keepSynced();
         return true;

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 
 namespace master {
@@ -17,6 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::int64_t kSeldomNs = 250'000'000;  // so that a flood of incidents does not become a flood of files
+constexpr std::size_t kMostBytes = 1 << 16;      // of the file
 
 ordered_json jsonOf(const Incidents& incidents) {
     ordered_json json{{"divergences", incidents.divergences},
@@ -34,11 +37,12 @@ ordered_json jsonOf(const Incidents& incidents) {
 }
 
 Incidents incidentsOf(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    if (!stream) {
+    const host::RegularFile opened(file);
+    const std::optional<base::Bytes> text = opened.error().empty() ? opened.read(kMostBytes) : std::nullopt;
+    if (!text) {
         return {};
     }
-    const ordered_json json = ordered_json::parse(stream);
+    const ordered_json json = ordered_json::parse(*text);
     Incidents incidents{.divergences = json.at("divergences"),
                         .healed = json.at("healed"),
                         .serverDivergences = json.at("server_divergences"),
@@ -87,7 +91,7 @@ void IncidentFile::keepLast(const Incidents& sinceTheBeginning) {
 
 void IncidentFile::write(const Incidents& incidents) {
     try {
-        host::WholeFile whole(file_);
+        host::WholeFile whole(file_, host::WholeFile::Other::refused);
         whole.stream() << jsonOf(incidents).dump() << '\n';
         whole.keep();
         kept_ = incidents;

@@ -12,8 +12,8 @@
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 #include "host/version.hpp"
-#include "host/whole_file.hpp"
 #include "host/worker_pool.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
@@ -132,14 +132,11 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             "sandwall-master ... : -n {} sandwall-render-node",
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
-    std::error_code error;
-    if (std::filesystem::create_directories(options.out, error)) {
-        // Without this, a loss of power can remove the folder with its files.
-        host::syncFolderOf(std::filesystem::absolute(options.out));
-    }
-    if (error) {
+    try {
+        host::makeFolders(options.out);
+    } catch (const std::filesystem::filesystem_error& error) {
         throw base::InputError(
-            fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.message()));
+            fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.code().message()));
     }
     if (options.session.film) {
         if (!options.filmEye.empty()) {

@@ -5,11 +5,14 @@
 
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
 
+#include "base/byte_stream.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 
 namespace master {
 namespace {
@@ -22,13 +25,16 @@ const double kStarted = unixTime();
 
 std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / "recoveries.jsonl"; }
 
+/// Returns the text of the file, or an empty text if it cannot be read.
+std::string textOf(const std::filesystem::path& file) {
+    const host::RegularFile opened(file);
+    const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
+    return bytes ? std::string(bytes->begin(), bytes->end()) : "";
+}
+
 bool endsInsideALine(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
-    if (!stream || stream.tellg() <= 0) {
-        return false;
-    }
-    stream.seekg(-1, std::ios::end);
-    return stream.get() != '\n';
+    const std::string text = textOf(file);
+    return !text.empty() && text.back() != '\n';
 }
 
 }  // namespace
@@ -51,17 +57,15 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
     host::emitEvent("recovered",
                     {{"recovery", host::Json{json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)}}});
     const bool torn = endsInsideALine(fileIn(folder));  // a crash may have cut off the last line
-    std::ofstream stream(fileIn(folder), std::ios::app);
-    stream << (torn ? "\n" : "") << json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-    stream.close();
-    if (!stream) {
+    const std::string line = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
+    if (!host::appendText(fileIn(folder), (torn ? "\n" : "") + line)) {
         host::printLine("{}: cannot be written", fileIn(folder).string());
     }
 }
 
 std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
     std::vector<std::string> lines;
-    std::ifstream stream(fileIn(folder));
+    std::istringstream stream(textOf(fileIn(folder)));
     for (std::string line; std::getline(stream, line);) {
         if (ordered_json::accept(line)) {  // a crash may have cut off a line
             lines.push_back(line);

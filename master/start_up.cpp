@@ -6,6 +6,7 @@
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "scene/import/raster_memory.hpp"
@@ -62,6 +63,11 @@ void requireFolder(const std::filesystem::path& out) {
     std::error_code none;
     if (std::filesystem::exists(out, none) && !std::filesystem::is_directory(out, none)) {
         throw base::InputError(fmt::format("{}: is not a folder, and --out must be one; choose another", out.string()));
+    }
+    // scripts/session_folder.py has the same check and messages.
+    if (const std::string why = host::whyUnsafeFolder(out); !why.empty()) {
+        throw base::InputError(fmt::format("{}: {}; {}choose another --out", out.string(), why,
+                                           why.starts_with("other users") ? "run chmod go-w on it, or " : ""));
     }
 }
 

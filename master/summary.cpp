@@ -231,7 +231,7 @@ ordered_json slowestRank(const std::optional<lockstep::Drag>& drag, const std::v
 }
 
 void writeSummary(const Summary& summary, const std::filesystem::path& file) {
-    host::WholeFile whole(file);
+    host::WholeFile whole(file, host::WholeFile::Other::refused);
     whole.stream() << jsonOf(summary).dump(2) << '\n';
     whole.keep();
 }

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <optional>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/file_origin.hpp"
 
@@ -103,32 +103,30 @@ void forgetHalves(const fs::path& journal) {
 }
 
 void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std::size_t kept) {
-    std::error_code error;
-    fs::create_directories(folderOf(journal), error);
-    if (error) {
-        throw base::InputError(fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.message()));
+    try {
+        host::makeFolders(folderOf(journal));
+    } catch (const fs::filesystem_error& error) {
+        throw base::InputError(
+            fmt::format("{}: cannot be made ({})", folderOf(journal).string(), error.code().message()));
     }
     const base::Bytes bytes = checkpoint.encode();
-    host::WholeFile file(checkpointFile(journal, checkpoint.step));
+    host::WholeFile file(checkpointFile(journal, checkpoint.step), host::WholeFile::Other::refused);
     file.stream().write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     file.keepSynced();
     const std::vector<std::uint64_t> steps = checkpointsOf(journal);
     for (std::size_t i = kept; i < steps.size(); ++i) {
-        fs::remove(checkpointFile(journal, steps[i]), error);
+        std::error_code none;  // ignored, because an old checkpoint does no harm
+        fs::remove(checkpointFile(journal, steps[i]), none);
     }
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {
-    std::error_code error;
-    const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || error || size == 0) {
-        throw base::FormatError("cannot be read");
+    const host::RegularFile opened(file);
+    const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
+    if (!bytes || bytes->empty()) {
+        throw base::FormatError(opened.error().empty() ? "cannot be read" : opened.error());
     }
-    base::Bytes bytes(size);
-    stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-    bytes.resize(static_cast<std::size_t>(stream.gcount()));
-    return Checkpoint::decode(bytes);
+    return Checkpoint::decode(*bytes);
 }
 
 }  // namespace master

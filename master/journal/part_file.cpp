@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 
 namespace master {
@@ -56,34 +57,33 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
     // The file has another name until its beginning is whole. So after a crash a file with the journal's name is always
     // a journal.
     std::error_code none;
-    const bool plain = !std::filesystem::exists(path, none) || std::filesystem::is_regular_file(path, none);
-    const std::string beside = plain ? path.string() + ".part" : path.string();
+    if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
+        throw base::InputError(fmt::format("{}: is not a regular file; choose another --out", path.string()));
+    }
+    const std::string beside = path.string() + ".part";
     const auto refuse = [&path] {
         throw base::InputError(
             fmt::format("{}: cannot be made ({}); choose another --out", path.string(), std::strerror(errno)));
     };
-    PartFile file(path, ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644), 0);
+    PartFile file(path, host::makeFile(beside), 0);
     if (file.descriptor_ < 0) {
         refuse();
     }
     (void)lock(file.descriptor_);  // always succeeds, because the file is new
     try {
         file.write(begin);
-        if (plain && rename(beside.c_str(), path.c_str()) != 0) {
+        if (rename(beside.c_str(), path.c_str()) != 0 || !host::syncFolderOf(path)) {
             refuse();
         }
     } catch (const base::InputError&) {
-        if (plain) {
-            unlink(beside.c_str());
-        }
+        unlink(beside.c_str());
         throw;
     }
-    host::syncFolderOf(path);
     return file;
 }
 
 PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen, const Pause& pause) {
-    PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC), size);
+    PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK), size);  // does not wait for a pipe
     if (file.descriptor_ >= 0) {
         lockOrThrow(file.descriptor_, path, pause);
         // Otherwise records that another session has written since then would be cut off silently.
@@ -100,7 +100,7 @@ PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, st
 }
 
 void PartFile::requireNoWriter(const std::filesystem::path& path, const Pause& pause) {
-    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC), 0);
+    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK), 0);
     if (file.descriptor_ >= 0) {
         lockOrThrow(file.descriptor_, path, pause);
     }

@@ -66,6 +66,10 @@ void JournalReader::open(std::uint32_t part) {
     const fs::path file = partOf(place_.journal, part);
     std::error_code none;
     stream_.close();
+    // Opening a pipe would wait until a process writes to it.
+    if (fs::is_fifo(file, none)) {
+        throw base::InputError(fmt::format("{}: cannot be read; it is not a plain file", file.string()));
+    }
     stream_.open(file, std::ios::binary);
     if (!stream_ || fs::is_directory(file, none)) {
         throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
@@ -74,6 +78,9 @@ void JournalReader::open(std::uint32_t part) {
     size_ = stream_.tellg();
     if (size_ < 0) {
         throw base::InputError(fmt::format("{}: cannot be read; it is not a plain file", file.string()));
+    }
+    if (size_ == 0) {
+        throw base::InputError(fmt::format("{}: is empty", file.string()));
     }
     header_ = readHeader(stream_, size_, place_.chain, place_.offset);
     place_.session = header_.session;
@@ -106,8 +113,13 @@ void JournalReader::fail(const std::string& why) const {
 }
 
 bool JournalReader::goesOn() const {
-    std::ifstream next(partOf(place_.journal, place_.part + 1), std::ios::binary | std::ios::ate);
-    if (!next) {
+    const fs::path file = partOf(place_.journal, place_.part + 1);
+    std::error_code none;
+    std::ifstream next;
+    if (fs::is_regular_file(file, none)) {
+        next.open(file, std::ios::binary | std::ios::ate);
+    }
+    if (!next.is_open()) {
         return false;
     }
     try {

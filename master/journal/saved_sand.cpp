@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/journal/saved_sand.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -10,11 +9,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
+#include <optional>
 #include <span>
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
+#include "host/whole_file.hpp"
 #include "master/journal/file_origin.hpp"
 #include "sand/grid/snapshot.hpp"
 #include "sand/model/step.hpp"
@@ -92,7 +93,7 @@ public:
         // Two threads may save under the same name. The file of the later one stays.
         static std::atomic<unsigned> number{0};
         beside_ = fmt::format("{}.{}.part", target_.string(), ++number);
-        descriptor_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+        descriptor_ = host::makeFile(beside_);
         require(descriptor_ >= 0);
     }
     ~Unnamed() {
@@ -112,9 +113,11 @@ public:
         }
         require(fsync(descriptor_) == 0);
     }
+    /// Gives the file its name. The name survives a loss of power when the function returns.
     void name() {
         require(rename(beside_.c_str(), target_.c_str()) == 0);
         close(std::exchange(descriptor_, -1));
+        require(host::syncFolderOf(target_));
     }
 
 private:
@@ -150,11 +153,11 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
         throw base::InputError(fmt::format("{}: {} bytes of sand could not be loaded again, {} is the most",
                                            file.string(), saved.sand.size(), sand::kMaxSandBytes));
     }
-    std::error_code error;
-    std::filesystem::create_directories(file.parent_path(), error);
-    if (error) {
-        throw base::InputError(
-            fmt::format("{}: cannot be made ({}); nothing was saved", file.parent_path().string(), error.message()));
+    try {
+        host::makeFolders(file.parent_path());
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw base::InputError(fmt::format("{}: cannot be made ({}); nothing was saved", file.parent_path().string(),
+                                           error.code().message()));
     }
     Unnamed unnamed(file);
     unnamed.write(encode(saved));
@@ -162,20 +165,19 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
 }
 
 SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place, const sand::SurfaceReader& read) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::is_regular_file(file, error) ? file_size(file, error) : 0;
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || error || size == 0) {
-        throw base::InputError(fmt::format("{}: cannot be read; nothing was loaded", file.string()));
+    const host::RegularFile opened(file);
+    if (!opened.error().empty()) {
+        throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), opened.error()));
     }
     try {
-        if (size > sand::kMaxSandBytes + kMostAround) {
-            throw base::FormatError(fmt::format("{} bytes are more than sand can be", size));
+        if (opened.size() > sand::kMaxSandBytes + kMostAround) {
+            throw base::FormatError(fmt::format("{} bytes are more than sand can be", opened.size()));
         }
-        base::Bytes bytes(size);
-        stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-        bytes.resize(static_cast<std::size_t>(stream.gcount()));
-        SavedSand saved = decode(bytes);
+        const std::optional<base::Bytes> bytes = opened.read(sand::kMaxSandBytes + kMostAround);
+        if (!bytes || bytes->empty()) {
+            throw base::FormatError(bytes ? "is empty" : "cannot be read");
+        }
+        SavedSand saved = decode(*bytes);
         requireSamePlace(saved.place, place);
         // Decodes all of the sand before it is sent to the ranks, because a rank that applies a step cannot refuse it.
         (void)read(saved.sand);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/whole_file.hpp"
 #include "scene/scene.hpp"
 
 namespace master {
@@ -54,6 +55,8 @@ void keepPreviousJournal(const fs::path& journal) {
                                                error.message()));
         }
     }
+    // Without this, a loss of power could bring the earlier journal back under the name of this session's.
+    (void)host::syncFolderOf(journal);
 }
 
 JournalWriter::JournalWriter(const fs::path& file, const scene::Scene& scene, const std::string& buildId,

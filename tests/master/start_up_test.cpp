@@ -82,6 +82,16 @@ TEST(StartUp, RefusesARasterWhosePixelsDoNotFitTheMastersHost) {
 
 class StartUpFiles : public test::FolderTest {};
 
+TEST_F(StartUpFiles, AFolderToWhichOtherUsersMayWriteIsRefused) {
+    const std::filesystem::path out = folder_ / "out";
+    const auto refused = [&] { return test::refusalOf([&] { master::requireFolder(out); }); };
+    std::filesystem::create_directory(out);
+    std::filesystem::permissions(out, std::filesystem::perms::all);
+    EXPECT_EQ(refused(), out.string() + ": other users may write to it; run chmod go-w on it, or choose another --out");
+    std::filesystem::permissions(out, std::filesystem::perms::owner_all);
+    EXPECT_EQ(refused(), "nothing");
+}
+
 TEST_F(StartUpFiles, AFileInPlaceOfTheFolderForResultsIsRefused) {
     const std::filesystem::path out = folder_ / "out";
     const auto refused = [&] { return test::refusalOf([&] { master::requireFolder(out); }); };

@@ -9,6 +9,7 @@
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/blocked_child.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -52,6 +53,37 @@ TEST_F(SavedSandFile, GivesBackWhatWasSavedAndLeavesNothingBeside) {
     EXPECT_EQ(read.step, 1U);
     EXPECT_EQ(read.stateHash, saved.stateHash);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_ / "saves"), {}), 1);
+}
+
+TEST_F(SavedSandFile, APipeIsRefusedWithoutWaitingForItsWriter) {
+    std::filesystem::create_directory(folder_ / "saves");
+    support::makePipe(file_);
+    EXPECT_TRUE(
+        support::endsByItself([this] { expectComplaint(scene_, "is not a regular file; nothing was loaded"); }));
+    EXPECT_TRUE(support::endsByItself([this] { master::writeSavedSand(file_, sand()); })) << "it replaces the pipe";
+    EXPECT_EQ(complaint(scene_), "nothing");
+}
+
+TEST_F(SavedSandFile, IsWrittenWhereAKilledSessionLeftAPipeOrLink) {
+    const auto other = folder_ / "other";
+    std::ofstream(other) << "of another program";
+    std::filesystem::create_directory(folder_ / "saves");
+    // Each process counts its saves, so the names of its unfinished files begin at 1. Earlier tests may have saved too.
+    for (int number = 1; number <= 64; ++number) {
+        const auto half = file_.string() + "." + std::to_string(number) + ".part";
+        if (number % 2 == 0) {
+            support::makePipe(half);
+        } else {
+            std::filesystem::create_symlink(other, half);
+        }
+    }
+    EXPECT_TRUE(support::endsByItself([this] {
+        for (int turn = 0; turn < 2; ++turn) {
+            master::writeSavedSand(file_, sand());
+        }
+    }));
+    EXPECT_EQ(complaint(scene_), "nothing");
+    EXPECT_EQ(std::filesystem::file_size(other), 18U) << "the link was followed";
 }
 
 TEST_F(SavedSandFile, AnyByteThatChangedAndAnyThatIsMissingIsFound) {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "host/regular_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "host/whole_file.hpp"
+
+namespace host {
+namespace {
+
+constexpr mode_t kOthersMayWrite = S_IWGRP | S_IWOTH;
+
+/// Closes `descriptor` and returns false with this errno.
+bool refused(int descriptor, int error) {
+    close(descriptor);
+    errno = error;
+    return false;
+}
+
+}  // namespace
+
+RegularFile::RegularFile(const std::filesystem::path& path) {
+    // Without O_NONBLOCK, open() would wait until a process opens the other end of a pipe.
+    descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor_ < 0 || fstat(descriptor_, &about_) != 0) {
+        error_ = std::strerror(errno);
+    } else if (!S_ISREG(about_.st_mode)) {
+        error_ = "is not a regular file";
+    }
+}
+
+RegularFile::~RegularFile() {
+    if (descriptor_ >= 0) {
+        close(descriptor_);
+    }
+}
+
+std::uintmax_t RegularFile::size() const { return static_cast<std::uintmax_t>(about_.st_size); }
+
+std::string RegularFile::whyNotPrivate() const {
+    if (about_.st_uid != geteuid()) {
+        return "belongs to another user";
+    }
+    return (about_.st_mode & (S_IRWXG | S_IRWXO)) != 0 ? "other users may read or change it" : "";
+}
+
+std::optional<std::vector<std::uint8_t>> RegularFile::read(std::size_t most) const {
+    std::vector<std::uint8_t> bytes(std::min<std::uintmax_t>(most, size()));
+    std::size_t done = 0;
+    while (done < bytes.size()) {
+        const ssize_t count = pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+        if (count < 0 && errno != EINTR) {
+            return std::nullopt;
+        }
+        if (count == 0) {
+            break;  // the file has become shorter
+        }
+        done += count > 0 ? static_cast<std::size_t>(count) : 0;
+    }
+    bytes.resize(done);
+    return bytes;
+}
+
+int makeFile(const std::filesystem::path& path, mode_t mode) {
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+    const int made = open(path.c_str(), kFlags, mode);
+    if (made >= 0 || errno != EEXIST || unlink(path.c_str()) != 0) {
+        return made;
+    }
+    return open(path.c_str(), kFlags, mode);
+}
+
+bool appendText(const std::filesystem::path& path, std::string_view text) {
+    const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
+    struct stat about {};
+    if (descriptor < 0 || fstat(descriptor, &about) != 0) {
+        return descriptor >= 0 && refused(descriptor, errno);
+    }
+    if (!S_ISREG(about.st_mode)) {
+        return refused(descriptor, EINVAL);
+    }
+    const ssize_t count = write(descriptor, text.data(), text.size());
+    if (count != static_cast<ssize_t>(text.size())) {
+        return refused(descriptor, count < 0 ? errno : ENOSPC);
+    }
+    if (fdatasync(descriptor) != 0) {
+        return refused(descriptor, errno);
+    }
+    close(descriptor);
+    return true;
+}
+
+std::string whyUnsafeFolder(const std::filesystem::path& path) {
+    struct stat link {};
+    struct stat folder {};
+    if (lstat(path.c_str(), &link) != 0 || stat(path.c_str(), &folder) != 0) {
+        return "";
+    }
+    if (link.st_uid != geteuid()) {
+        return S_ISLNK(link.st_mode) ? "is a link of another user" : "belongs to another user";
+    }
+    if (folder.st_uid != geteuid()) {
+        return "leads to a folder of another user";
+    }
+    return (folder.st_mode & kOthersMayWrite) != 0 ? "other users may write to it" : "";
+}
+
+void makeFolders(const std::filesystem::path& path) {
+    std::vector<std::filesystem::path> made;
+    for (std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
+         !std::filesystem::exists(folder); folder = folder.parent_path()) {
+        // A path that ends with a slash has an empty last part.
+        if (folder.has_filename()) {
+            made.push_back(folder);
+        }
+    }
+    std::for_each(made.rbegin(), made.rend(), [](const std::filesystem::path& folder) {
+        std::filesystem::create_directory(folder);
+        std::error_code none;  // with a umask such as 002, the group of the user could write to the folder
+        std::filesystem::permissions(folder, std::filesystem::perms::group_write | std::filesystem::perms::others_write,
+                                     std::filesystem::perm_options::remove, none);
+        (void)syncFolderOf(folder);
+    });
+}
+
+}  // namespace host

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/stat.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace host {
+
+/// A regular file that is open for reading. Opening never waits: it refuses a pipe, which could wait without end for a
+/// writer, and also a device, a socket and a folder. Used by one thread.
+class RegularFile {
+public:
+    /// Opens `path`, and follows symbolic links. If that fails, error() is the reason.
+    explicit RegularFile(const std::filesystem::path& path);
+    ~RegularFile();
+    RegularFile(const RegularFile&) = delete;
+    RegularFile& operator=(const RegularFile&) = delete;
+
+    /// Returns why the file is not open, such as "is not a regular file"; an empty text if it is open.
+    [[nodiscard]] const std::string& error() const { return error_; }
+    [[nodiscard]] std::uintmax_t size() const;  // [byte], when it was opened
+    /// Returns why other users may read or change the file, or own it; an empty text if only this process's user may.
+    [[nodiscard]] std::string whyNotPrivate() const;
+    /// Returns the first `most` bytes, or all if the file is shorter. Returns nullopt if the disk fails.
+    [[nodiscard]] std::optional<std::vector<std::uint8_t>> read(std::size_t most) const;
+
+private:
+    int descriptor_ = -1;
+    struct stat about_ {};
+    std::string error_;
+};
+
+/// Makes a file for writing at `path`, with access `mode` minus the umask. Removes any other file of this name,
+/// which can be left by a process that was killed. Never follows a symbolic link and never waits. Returns the
+/// descriptor, or -1 with errno.
+[[nodiscard]] int makeFile(const std::filesystem::path& path, mode_t mode = 0644);
+/// Appends `text` to a file, which it makes if it does not exist. The text is on disk when the function returns.
+/// Refuses everything but a regular file, without waiting. Returns false with errno if it fails.
+[[nodiscard]] bool appendText(const std::filesystem::path& path, std::string_view text);
+
+/// Returns why a session must not use the folder `path`: it belongs to another user, or other users may write to it.
+/// The path may also be a link of another user. Such a user could replace files while a session runs. Returns an empty
+/// text if the folder is safe or does not exist.
+[[nodiscard]] std::string whyUnsafeFolder(const std::filesystem::path& path);
+
+/// Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss.
+/// Throws std::filesystem::filesystem_error.
+void makeFolders(const std::filesystem::path& path);
+
+}  // namespace host

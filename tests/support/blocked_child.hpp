@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <exception>
+#include <filesystem>
+
+namespace support {
+
+/// Makes a pipe with a name, to which no process writes. Opening it for reading waits without end.
+inline void makePipe(const std::filesystem::path& path) { ASSERT_EQ(mkfifo(path.c_str(), 0600), 0) << path; }
+
+/// Runs `work` in a child process, which SIGALRM ends if `work` waits without end. The 20 seconds are far more than any
+/// of these tests computes. Returns whether `work` ended by itself and without a failure.
+template <class Work>
+bool endsByItself(const Work& work) {
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(20);
+        try {
+            work();
+        } catch (const std::exception& error) {
+            ADD_FAILURE() << error.what();
+        }
+        _exit(testing::Test::HasFailure() ? 1 : 0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+}  // namespace support
