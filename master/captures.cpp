@@ -12,27 +12,26 @@
 #include "master/wall_pictures.hpp"
 
 namespace master {
-namespace {
-
-/// Makes and returns the folder capture_001, or the first later one that does not exist. So the pictures of an earlier
-/// session stay.
-std::filesystem::path newFolder(const std::filesystem::path& out) {
-    for (int number = 1;; ++number) {
-        std::filesystem::path folder = out / fmt::format("capture_{:03}", number);
-        std::error_code error;
-        if (std::filesystem::create_directory(folder, error) || error) {
-            return folder;  // if the folder could not be made, writing the first picture fails
-        }
+CaptureFolder::CaptureFolder(const std::filesystem::path& out) {
+    std::error_code error;
+    for (int number = 1; !made_ && !error; ++number) {
+        path_ = out / fmt::format("capture_{:03}", number);
+        made_ = std::filesystem::create_directory(path_, error);
     }
 }
 
-}  // namespace
+CaptureFolder::~CaptureFolder() {
+    if (made_ && !whole_) {
+        std::error_code none;
+        std::filesystem::remove_all(path_, none);
+    }
+}
 
 void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall,
                     const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog, BackgroundJobs& jobs) {
-    const std::filesystem::path folder = newFolder(out_);
+    const auto folder = std::make_shared<CaptureFolder>(out_);
     const BackgroundJobs::Result said{nlohmann::json({{"ok", true},
-                                                      {"folder", folder.filename().string()},
+                                                      {"folder", folder->path().filename().string()},
                                                       {"frame", frame},
                                                       {"step", sand.replica().stepNumber()},
                                                       {"state_hash", fmt::format("{:016x}", sand.hash())}})
@@ -41,11 +40,11 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
     std::function<void()> write;
     if (mayBeHeld(wall)) {
         auto held = std::make_shared<const HeldPictures>(holdWallPictures(cluster, wall, watchdog));
-        write = [held = std::move(held), folder] { writeHeldPictures(*held, folder); };
+        write = [held = std::move(held), folder] { writeHeldPictures(*held, folder->path()); };
     } else {
         std::exception_ptr refused;
         try {
-            writeWallPictures(cluster, wall, folder, watchdog);
+            writeWallPictures(cluster, wall, folder->path(), watchdog);
         } catch (const base::InputError&) {
             refused = std::current_exception();
         }
@@ -56,8 +55,9 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
         };
     }
     jobs.start(
-        [said, write = std::move(write)] {
+        [said, write = std::move(write), folder] {
             write();
+            folder->keep();
             return said;
         },
         std::exchange(clients_, {}), BackgroundJobs::Kind::capture);

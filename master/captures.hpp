@@ -14,6 +14,26 @@
 
 namespace master {
 
+/// The folder of one capture: capture_001, or the first later one that does not exist. So the pictures of an earlier
+/// session stay.
+class CaptureFolder {
+public:
+    /// Makes the folder. If that fails, writing the first picture into it fails too.
+    explicit CaptureFolder(const std::filesystem::path& out);
+    /// Removes the folder with all pictures, unless keep() was called.
+    ~CaptureFolder();
+    CaptureFolder(const CaptureFolder&) = delete;
+    CaptureFolder& operator=(const CaptureFolder&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    /// Called when all pictures are written.
+    void keep() { whole_ = true; }
+
+private:
+    std::filesystem::path path_;
+    bool made_ = false, whole_ = false;
+};
+
 /// Pictures of a running session that a client asks for. Each capture gets a folder of its own: OUT/capture_001,
 /// OUT/capture_002 and so on. Main thread only.
 class Captures {
