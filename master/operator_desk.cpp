@@ -151,6 +151,12 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
     edits_.requireRoomFor(edit);
     // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
     if (!session_.room(edits_.sandBytes(edit))) {
+        if (session_.room(edits_.sandBytes())) {
+            throw base::InputError(
+                fmt::format("the disk has no room for {} bytes of sand in the journal; the edit was "
+                            "refused: free disk space and try again",
+                            edits_.sandBytes(edit) - edits_.sandBytes()));
+        }
         tellWhoWaitsForRoom();
         throw base::InputError(
             "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "

@@ -52,7 +52,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       record_(options_.out, options_.record, scene, labels_),
       desk_(scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
             options_.desk,
-            {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoom(bytes, sand_); },
+            {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
       agreement_(ranks_, labels_, options_.out, measure_.ranks(),

@@ -63,6 +63,10 @@ bool SessionRecord::hasRoom(std::int64_t bytes, const MasterSand& sand) {
     return !full_;
 }
 
+bool SessionRecord::hasRoomForEdit(std::int64_t bytes, const MasterSand& sand) {
+    return !journal_ || journal_->hasRoomFor(kFrameBytes + bytes, endOf(sand));
+}
+
 void SessionRecord::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
     if (!journal_) {
         return;
@@ -137,6 +141,8 @@ void SessionRecord::describe(nlohmann::json& status) const {
     status["journal"] = journal_ && journal_->written();
     status["journal_policy"] = std::string(journalPolicyName(options_.journal.policy));
     status["journal_state"] = std::string(journal_ ? journal_->state() : "off");
+    status["checkpoints_failed"] = journal_ ? journal_->checkpointsFailed() : 0;
+    status["restarts"] = recoveriesOf(out_).size();
 }
 
 Summary::Journal SessionRecord::summary() const {

@@ -38,6 +38,8 @@ public:
     /// Returns whether the disk has room for the steps of a frame and for `bytes` of sand that is loaded. Also sets
     /// full().
     [[nodiscard]] bool hasRoom(std::int64_t bytes, const MasterSand& sand);
+    /// Returns whether the disk has room for an edit with `bytes` of sand. Leaves full() as it is.
+    [[nodiscard]] bool hasRoomForEdit(std::int64_t bytes, const MasterSand& sand);
     /// Returns whether the session takes no steps because the disk has no room.
     [[nodiscard]] bool full() const { return full_; }
 
@@ -67,7 +69,8 @@ public:
     [[nodiscard]] std::unique_ptr<sand::Replica> sandOfJournal(const MasterSand& sand,
                                                                const sand::grid::Erosion::Options& sweeps) const;
 
-    /// Adds the fields journal, journal_policy and journal_state to the answer `status` of `ctl status`.
+    /// Adds the fields journal, journal_policy, journal_state, checkpoints_failed and restarts to the answer `status`
+    /// of `ctl status`.
     void describe(nlohmann::json& status) const;
     [[nodiscard]] Summary::Journal summary() const;
 

@@ -13,6 +13,7 @@
 #include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/whole_file.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "scene/scene.hpp"
 
@@ -104,6 +105,7 @@ void JournalKeeper::setAside(std::uint64_t step) {
         }
     }
     forgetHalves(journal_);
+    (void)host::syncFolderOf(checkpointFile(journal_, step));  // the checkpoint must not come back after a loss of power
 }
 
 std::string_view JournalKeeper::state() const {
@@ -138,7 +140,7 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
         return false;
     }
     lastTry_ = now();
-    const bool room = hasRoom(bytes, sand);
+    const bool room = hasRoom(bytes + (standing_ ? kResumeBytes : 0), sand);
     if (room && standing_) {
         const double seconds = now() - stoodSince_;
         host::printLine("the disk has room for the journal again; the sand continues after {:.0f} s", seconds);
@@ -147,6 +149,14 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
         standing_ = false;
     }
     return room;
+}
+
+bool JournalKeeper::hasRoomFor(std::int64_t bytes, const JournalEnd& sand) {
+    if (!writer_ || options_.policy != JournalPolicy::required) {
+        return true;
+    }
+    std::string why;
+    return !standing_ && writer_->makeRoom(bytes, sand, why) != JournalWriter::Room::none;
 }
 
 void JournalKeeper::giveUp(const std::string& why) {

@@ -54,8 +54,13 @@ public:
 
     /// Returns whether the session may take steps of at most `bytes` bytes. It may not if the policy is required and
     /// the disk has no room for them. Called before every frame. Tries a full disk again about once per second. `now`
-    /// is the sand that the wall shows.
+    /// is the sand that the wall shows. When the sand is stopped, it continues only if there is room for kResumeBytes
+    /// more, because otherwise it would stop again after a few steps.
     [[nodiscard]] bool mayTake(std::int64_t bytes, const JournalEnd& now);
+    /// Returns whether there is room for `bytes` bytes more, for example of sand that an operator asks to load.
+    /// Returns false while the sand is stopped. The answer does not stop the sand.
+    [[nodiscard]] bool hasRoomFor(std::int64_t bytes, const JournalEnd& now);
+    static constexpr std::int64_t kResumeBytes = 1 << 20;  // [byte], of steps in about three minutes of digging
     /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that their edits
     /// set. Throws DiskFailure if the disk refuses them and the policy is required.
     void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);

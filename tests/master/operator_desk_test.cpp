@@ -39,7 +39,7 @@ protected:
                       master::OperatorDesk::Session{sand_, requests,
                                                     [this](std::int64_t bytes) {
                                                         asked_ = bytes;
-                                                        return room_;
+                                                        return room_ && bytes <= most_;
                                                     },
                                                     [] {
                                                         return json{{"frame", 42}};
@@ -83,6 +83,7 @@ protected:
     test::NoSteps source_;
     Requests requests_;
     bool room_ = true;
+    std::int64_t most_ = std::int64_t{1} << 62;  // room on the disk [byte]
     std::int64_t asked_ = -1;
     std::optional<master::OperatorDesk> desk_;
 };
@@ -119,6 +120,17 @@ TEST_F(Desk, RefusesEditsForWhichTheDiskHasNoRoom) {
     EXPECT_EQ(desk_->edits().size(), 1U) << "the server may have it already";
     show(sand::Edit::reset);
     EXPECT_EQ(desk_->edits().size(), 0U);
+}
+
+TEST_F(Desk, RefusesSandThatIsTooLargeForTheDiskAndAnswersNobodyElse) {
+    std::future<json> before = send("reset");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    ASSERT_EQ(ask("save large")["ok"], true);
+    most_ = 8;  // no sand is so small
+    EXPECT_EQ(ask("load large")["ok"], false);
+    EXPECT_EQ(before.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "the sand is not stopped";
+    show(sand::Edit::reset);
+    EXPECT_EQ(await(before), (json{{"ok", true}, {"step", 1}}));
 }
 
 TEST_F(Desk, RefusesWhatCannotBeDone) {

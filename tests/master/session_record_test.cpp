@@ -57,8 +57,14 @@ TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
     EXPECT_EQ(journal.end->hash, sand_.hash());
     nlohmann::json status;
     record.describe(status);
-    EXPECT_EQ(status,
-              (nlohmann::json{{"journal", true}, {"journal_policy", "required"}, {"journal_state", "written"}}));
+    EXPECT_EQ(status, (nlohmann::json{{"journal", true},
+                                      {"journal_policy", "required"},
+                                      {"journal_state", "written"},
+                                      {"checkpoints_failed", 0},
+                                      {"restarts", 0}}));
+    std::ofstream(folder_ / "recoveries.jsonl") << "{\"failure\": \"rank 1\"}\n{\"failure\": \"the haptic server\"}\n";
+    record.describe(status);
+    EXPECT_EQ(status["restarts"], 2);
     EXPECT_EQ(record.summary().parts, 1U);
 }
 
@@ -87,6 +93,8 @@ TEST_F(Record, TakesNoStepsForWhichTheDiskHasNoRoom) {
         master::SessionRecord record = open();
         show(record);
         EXPECT_TRUE(record.hasRoom(1 << 20, sand_));
+        EXPECT_FALSE(record.hasRoomForEdit(8 << 20, sand_));
+        EXPECT_FALSE(record.full()) << "the edit is refused, and the sand is not stopped";
         EXPECT_FALSE(record.hasRoom(8 << 20, sand_)) << "for sand that is larger than the disk";
         EXPECT_TRUE(record.full());
         EXPECT_EQ(record.stands(), 1U);

@@ -19,6 +19,7 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/blocked_child.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"
@@ -166,6 +167,28 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
     expectWhole(30);
 }
 
+TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
+    begin({.checkpointSeconds = 1e-9});
+    while (master::checkpointsOf(journal()).empty()) {
+        ASSERT_TRUE(showFrame());
+    }
+    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    keeper_.reset();
+    const std::uint64_t newest = master::checkpointsOf(journal()).front();
+    std::filesystem::remove(master::checkpointFile(journal(), newest));
+    support::makePipe(master::checkpointFile(journal(), newest));
+    EXPECT_TRUE(support::endsByItself([this] { expectWhole(terrain_.stepNumber()); })) << "a checkpoint";
+    EXPECT_TRUE(support::endsByItself(
+        [this, newest] { EXPECT_THROW(master::writeCheckpoint(journal(), {.step = newest}, 3), base::InputError); }));
+    support::makePipe(journal().string() + ".part");
+    EXPECT_TRUE(support::endsByItself([this] { begin({}); })) << "an unfinished journal";
+    std::filesystem::remove(journal());
+    support::makePipe(journal());
+    EXPECT_TRUE(support::endsByItself([this] { EXPECT_THROW(begin({}), base::InputError); })) << "a journal";
+    EXPECT_TRUE(
+        support::endsByItself([this] { EXPECT_THROW((void)master::readSession(journal(), ""), base::InputError); }));
+}
+
 // The journal has lost the step of the newest checkpoint, as after a crash.
 TEST_F(Keeper, RemovesCheckpointsOfStepsThatItsJournalDoesNotHold) {
     begin({.checkpointSeconds = 1e-9});
@@ -309,6 +332,64 @@ TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
         GTEST_SKIP() << "a small disk cannot be mounted on this machine";
     }
     EXPECT_EQ(status, 0);
+}
+
+// Room for a few steps must not start the sand again, because it would soon stop again.
+TEST_F(Keeper, ALittleRoomDoesNotEndTheStop) {
+    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        support::fill(folder_ / "filler");
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
+        int frames = 1;
+        while (showFrame(large)) {
+            ASSERT_LT(++frames, 1000);
+        }
+        const auto place = [this] { return master::JournalEnd{terrain_.stepNumber(), terrain_.stateHash()}; };
+        EXPECT_FALSE(keeper_->hasRoomFor(0, place())) << "a command right after the stop";
+        const auto filled = std::filesystem::file_size(folder_ / "filler");
+        std::filesystem::resize_file(folder_ / "filler", filled - (256 << 10));  // more than the steps of a frame need
+        for (int turn = 0; turn < 3; ++turn) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the keeper tries the disk once per second
+            EXPECT_FALSE(keeper_->mayTake(1 << 16, place()));
+            EXPECT_FALSE(keeper_->hasRoomFor(1 << 10, place()));
+        }
+        std::filesystem::resize_file(folder_ / "filler", filled - (2 << 20));
+        while (!showFrame()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_TRUE(keeper_->hasRoomFor(1 << 10, place()));
+        keeper_.reset();
+    });
+    if (status == 77) {
+        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Keeper, SandThatDoesNotFitStopsNothing) {
+    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, terrain_.stateHash()}));
+        EXPECT_EQ(keeper_->state(), "written");
+        EXPECT_TRUE(showFrame());
+        EXPECT_EQ(keeper_->stands(), 0U);
+        keeper_.reset();
+    });
+    if (status == 77) {
+        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
+    }
+    EXPECT_EQ(status, 0);
+}
+
+TEST_F(Keeper, AnEmptyJournalIsCalledEmpty) {
+    std::ofstream(journal()).flush();
+    try {
+        (void)master::readJournal(journal());
+        ADD_FAILURE() << "it was read";
+    } catch (const base::InputError& error) {
+        EXPECT_EQ(std::string(error.what()), journal().string() + ": is empty");
+    }
 }
 
 TEST_F(Keeper, AReadOnlyFolderIsNamed) {
