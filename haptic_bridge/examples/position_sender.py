@@ -116,10 +116,17 @@ def stream(master, rate, secret):
 
 
 def secret_of(file):
-    """Returns the secret of role move from `file`."""
+    """Returns the secret of role move from `file`. From then on this process makes no core dumps."""
+    if os.name == "posix":
+        import resource  # other systems have no such module
+        hard = resource.getrlimit(resource.RLIMIT_CORE)[1]
+        least = 0 if hard == 0 else 1  # with 1 the kernel also starts no program that collects cores
+        resource.setrlimit(resource.RLIMIT_CORE, (least, least))
     with open(file, encoding="ascii") as lines:
-        if os.name == "posix" and os.fstat(lines.fileno()).st_mode & 0o077:
-            sys.exit(f"{file}: other users may read it; run chmod 600 {file}")
+        about = os.fstat(lines.fileno())
+        if os.name == "posix" and (about.st_mode & 0o077 or about.st_uid != os.geteuid()):
+            sys.exit(f"{file}: belongs to another user, or other users may read it; make a new secret in a file of your own, "
+                     "and run chmod 600 on it")
         for words in map(str.split, lines):
             if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
                 return words[1].encode()

@@ -3,6 +3,7 @@
 
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
+#include "host/regular_file.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -34,6 +35,9 @@ LinkSecurity LinkOptions::forServer() const {
     LinkSecurity security = withSecrets(*this);
     if (certificate.empty() != key.empty() || (!tls && !certificate.empty())) {
         throw base::InputError("--tls-cert and --tls-key: give both or neither, and --tls with them");
+    }
+    if (!key.empty()) {
+        requirePrivate(host::RegularFile(key), key, "--tls-key");
     }
     try {
         security.tls = tls ? security.functions->tlsServer(certificate, key) : nullptr;

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/link/secret_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstring>
 
+#include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
+#include "host/core_dump.hpp"
+#include "host/regular_file.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -80,33 +77,29 @@ Secrets parseSecrets(std::string_view text, const std::string& file) {
     return secrets;
 }
 
+void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option) {
+    if (!opened.error().empty()) {
+        throw base::InputError(fmt::format("{}: cannot be read ({}); check {}", file, opened.error(), option));
+    }
+    if (const std::string why = opened.whyNotPrivate(); !why.empty()) {
+        throw base::InputError(
+            fmt::format("{}: {}; make a new secret in a file of your own, and run chmod 600 on it", file, why));
+    }
+}
+
 Secrets readSecrets(const std::string& file) {
-    // O_NONBLOCK is set because opening a pipe without a writer would wait. Pipes are refused below.
-    const int descriptor = open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (descriptor < 0) {
-        throw base::InputError(file + ": cannot be read (" + std::strerror(errno) + "); check --secret-file");
-    }
-    struct stat about {};
-    std::array<char, kMaxSecretFile + 1> bytes{};
-    ssize_t count = 0;
-    const bool known = fstat(descriptor, &about) == 0;
-    const bool regular = known && S_ISREG(about.st_mode);
-    if (regular) {
-        count = read(descriptor, bytes.data(), bytes.size());
-    }
-    close(descriptor);
-    if (!regular) {
-        throw base::InputError(file + ": is not a regular file; --secret-file takes a file with lines ROLE SECRET");
-    }
-    if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
-        throw base::InputError(file +
-                               ": other users may read or change it; run chmod 600 on it, and make a new secret");
-    }
-    if (count < 0 || static_cast<std::size_t>(count) > kMaxSecretFile) {
+    host::forbidCoreDumps();
+    const host::RegularFile opened(file);
+    requirePrivate(opened, file, "--secret-file");
+    if (opened.size() > kMaxSecretFile) {
         throw base::InputError(
             fmt::format("{}: is larger than {} bytes; a secret file has two lines at most", file, kMaxSecretFile));
     }
-    return parseSecrets({bytes.data(), static_cast<std::size_t>(count)}, file);
+    const std::optional<base::Bytes> bytes = opened.read(kMaxSecretFile);
+    if (!bytes) {
+        throw base::InputError(file + ": cannot be read; check the disk");
+    }
+    return parseSecrets({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, file);
 }
 
 }  // namespace haptic_bridge

@@ -7,6 +7,10 @@
 
 #include "haptic_bridge/link/protocol.hpp"
 
+namespace host {
+class RegularFile;
+}
+
 namespace haptic_bridge {
 
 /// Secrets by role. A peer must know the secret of its role.
@@ -25,8 +29,12 @@ inline constexpr std::size_t kMaxSecretFile = 4096;  // [byte]
 /// `file` and the line; its text never contains a secret.
 [[nodiscard]] Secrets parseSecrets(std::string_view text, const std::string& file);
 
-/// Reads the secrets in `file`. Throws base::InputError also if `file` is not a regular file, or if other users than
-/// its owner may read or change it.
+/// Throws base::InputError if `opened`, the file that `option` names, is not open, belongs to another user, or is one
+/// that other users may read or change.
+void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option);
+
+/// Reads the secrets in `file`. From then on this process makes no core dumps. Throws base::InputError also as
+/// requirePrivate() does.
 [[nodiscard]] Secrets readSecrets(const std::string& file);
 
 }  // namespace haptic_bridge

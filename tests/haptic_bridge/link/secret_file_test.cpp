@@ -2,6 +2,14 @@
 // Tests of accepted secret files, and of the messages about all others.
 #include "haptic_bridge/link/secret_file.hpp"
 
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+
 #include "base/input_error.hpp"
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
 
@@ -48,7 +56,7 @@ TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnersAlone) {
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     const std::string large = secretFile("large", std::string(kMaxSecretFile + 1, '#'));
     for (const auto& [file, word] : std::vector<std::pair<std::string, std::string>>{{open, "other users may read"},
-                                                                                     {pipe, "not a regular file"},
+                                                                                     {pipe, "is not a regular file"},
                                                                                      {folder_.file("none"), "cannot"},
                                                                                      {large, "larger than"}}) {
         try {
@@ -59,6 +67,53 @@ TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnersAlone) {
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
         }
     }
+}
+
+TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnUser) {
+    if (geteuid() != 0) {
+        GTEST_SKIP() << "only root can give a file to another user";
+    }
+    const std::string file = secretFile("theirs", "move 0123456789abcdef\n");
+    ASSERT_EQ(chown(file.c_str(), 1, 1), 0);
+    LinkOptions options;
+    options.secretFile = file;
+    EXPECT_THROW((void)options.forClient(Role::move), base::InputError);
+    options.secretFile = secretFile("ours", "move 0123456789abcdef\n");
+    options.tls = true;
+    options.certificate = options.key = file;
+    try {
+        (void)options.forServer();
+        ADD_FAILURE() << "the key of another user was read";
+    } catch (const base::InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("belongs to another user"), std::string::npos) << error.what();
+    }
+}
+
+/// Runs `work` in a child process that may dump core into `folder`, and crashes it. Returns whether it dumped core.
+template <class Work>
+bool dumpsCore(const std::string& folder, const Work& work) {
+    const pid_t child = fork();
+    if (child == 0) {
+        const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
+        if (chdir(folder.c_str()) != 0 || setrlimit(RLIMIT_CORE, &all) != 0) {
+            _exit(0);
+        }
+        work();
+        signal(SIGABRT, SIG_DFL);
+        abort();
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFSIGNALED(status) && WCOREDUMP(status);
+}
+
+TEST_F(LinkSecurityTest, NoCoreDumpHoldsASecret) {
+    const std::string file = secretFile("secret", "move 0123456789abcdef\n");
+    const std::string folder = std::filesystem::path(file).parent_path();
+    if (!dumpsCore(folder, [] {})) {
+        GTEST_SKIP() << "this machine allows no core dumps";
+    }
+    EXPECT_FALSE(dumpsCore(folder, [&] { (void)readSecrets(file); }));
 }
 
 }  // namespace
