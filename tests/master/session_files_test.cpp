@@ -24,13 +24,16 @@ protected:
             support::makePipe(folder_ / name);
         }
     }
+
+    const std::vector<master::Drill> drills_{
+        master::Drill{"die", {.kind = lockstep::Fault::Kind::die, .rank = 2, .frame = 5}}};
 };
 
 TEST_F(SessionFiles, APipeIsNotReadWhenASessionIsResumed) {
     EXPECT_TRUE(support::endsByItself([this] {
         EXPECT_EQ(master::IncidentFile(folder_, true).before(), master::Incidents{});
         EXPECT_TRUE(master::recoveriesOf(folder_).empty());
-        EXPECT_EQ(master::withoutDone({{"die", {}}}, folder_, true).size(), 1U);
+        EXPECT_EQ(master::withoutDone(drills_, folder_, true).size(), 1U);
     }));
 }
 
@@ -41,7 +44,7 @@ TEST_F(SessionFiles, APipeIsNotWrittenToWhileFramesWait) {
         master::tell({"a divergence"}, folder_ / "divergence.txt");
         EXPECT_FALSE(master::writeFailure({"hung", 1, "host", "tile", "message"}, folder_));
         EXPECT_THROW(master::writeSummary({}, folder_ / "summary.json"), base::InputError);
-        (void)master::beginDrills({{"die", {.kind = lockstep::Fault::Kind::die, .rank = 2, .frame = 5}}}, 5, folder_);
+        (void)master::beginDrills(drills_, 5, folder_);
     }));
 }
 

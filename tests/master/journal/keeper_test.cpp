@@ -178,8 +178,11 @@ TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
     std::filesystem::remove(master::checkpointFile(journal(), newest));
     support::makePipe(master::checkpointFile(journal(), newest));
     EXPECT_TRUE(support::endsByItself([this] { expectWhole(terrain_.stepNumber()); })) << "a checkpoint";
-    EXPECT_TRUE(support::endsByItself(
-        [this, newest] { EXPECT_THROW(master::writeCheckpoint(journal(), {.step = newest}, 3), base::InputError); }));
+    EXPECT_TRUE(support::endsByItself([this, newest] {
+        master::Checkpoint again;
+        again.step = newest;
+        EXPECT_THROW(master::writeCheckpoint(journal(), again, 3), base::InputError);
+    }));
     support::makePipe(journal().string() + ".part");
     EXPECT_TRUE(support::endsByItself([this] { begin({}); })) << "an unfinished journal";
     std::filesystem::remove(journal());
