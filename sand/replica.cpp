@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/replica.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstdlib>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,6 +15,27 @@
 
 namespace sand {
 namespace {
+
+/// Most cells below the tool, summed over the sub-steps of one step. They take seconds. A hand stays far below it: a
+/// tool of 200 cells may cross the longest field within one step.
+constexpr std::int64_t kMostWork = std::int64_t{1} << 32;
+
+/// Returns the cells below `tool`, summed over the sub-steps of `path`, as if all of them were over the field.
+std::int64_t workOf(const HeldTool& tool, const std::vector<ProbePoint>& path, const Rules& rules) {
+    const CellRect below = TurnedShape(tool.shape, tool.heading).cellsChanged(0, 0);
+    const std::int64_t cells = std::int64_t{std::min(below.x1 - below.x0, rules.columns)} *
+                               std::min(below.y1 - below.y0, rules.rows);  // at most 2^28
+    std::int64_t substeps = 0;                                             // at most 2^24
+    for (std::size_t i = 1; i < path.size(); ++i) {
+        const ProbePoint &from = path[i - 1], &to = path[i];
+        const std::int32_t longest =
+            std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)});  // at most 2^25
+        substeps += longest / kProbePerCell + 1;
+    }
+    return cells * substeps;
+}
+
+constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
 
 /// Finaliser of MurmurHash3. Every bit of the input affects every bit of the result.
 std::uint64_t mix(std::uint64_t value) {
@@ -37,7 +61,8 @@ Replica::Replica(const Replica& other)
       stepNumber_(other.stepNumber_),
       probe_(other.probe_),
       heading_(other.heading_),
-      engaged_(other.engaged_) {}
+      engaged_(other.engaged_),
+      leftOut_(other.leftOut_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
@@ -62,6 +87,42 @@ void Replica::apply(const Step& step) {
         throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
                                std::to_string(stepNumber_));
     }
+    leftOut_.clear();
+    try {
+        applyToSand(step);
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
+        skip(step, error.what());
+    }
+}
+
+void Replica::skip(const Step& step, const char* why) {
+    leftOut_ = std::string("skipped: ") + why;
+    stepNumber_ = step.number;
+    // The sand may be half changed, and holds no copy of itself from before the step.
+    if (!restoreKept()) {
+        surface_->reset();
+    }
+    surface_->forget();
+    engaged_ = false;
+}
+
+bool Replica::restoreKept() {
+    try {
+        if (canUndo()) {
+            surface_->putBackKept();
+            return true;
+        }
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception&) {  // the sand from before the stroke was wrong already
+        return false;
+    }
+    return false;
+}
+
+void Replica::applyToSand(const Step& step) {
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
     const HeldTool toolBefore = tool();
@@ -76,7 +137,11 @@ void Replica::apply(const Step& step) {
             // hovered.
             std::vector<ProbePoint> path{wasEngaged ? probe_ : step.path.front()};
             path.insert(path.end(), step.path.begin(), step.path.end());
-            surface_->drag(tool(), path);
+            if (workOf(tool(), path, rules_) <= kMostWork) {
+                surface_->drag(tool(), path);
+            } else {
+                leftOut_ = "its path was left out: it is too long for so large a tool";
+            }
         }
         probe_ = step.path.back();
     } else if (turned && wasEngaged && step.engaged) {
@@ -127,8 +192,9 @@ bool Replica::putBack(const Edit& edit) {
     } else if (edit.kind == Edit::load && edit.sand) {
         try {
             surface_->replace(*surface_->reader()(*edit.sand));
-        } catch (const base::FormatError&) {
-            return false;  // same in every replica; the program that requested the load has checked the bytes
+        } catch (const base::FormatError& error) {  // in every replica alike
+            leftOut_ = std::string("its load was ignored: ") + error.what();
+            return false;
         }
     } else {
         return false;
@@ -197,6 +263,9 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
         throw base::FormatError("a state of version " + std::to_string(version));
     }
     const auto number = reader.get<std::uint64_t>();
+    if (number > kMostSteps) {
+        throw base::FormatError("a state after " + std::to_string(number) + " steps");
+    }
     ProbePoint probe;
     for (std::int32_t* coordinate : {&probe.x, &probe.y, &probe.z}) {
         *coordinate = reader.get<std::int32_t>();
@@ -213,7 +282,12 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
     const auto stroke = beforeStroke.empty() ? nullptr : read(beforeStroke);
     const auto sand = read(reader.rest());
-    // The statements below do not throw.
+    // The statements below throw nothing but std::bad_alloc.
+    if (stroke) {
+        surface_->keep(*stroke);
+    } else {
+        surface_->forget();
+    }
     rules_.tune(tuning);
     surface_->changeRules(rules_);
     surface_->replace(*sand);
@@ -221,10 +295,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     engaged_ = engaged;
     probe_ = probe;
     heading_ = heading;
-    surface_->forget();
-    if (stroke) {
-        surface_->keep(*stroke);
-    }
+    leftOut_.clear();
 }
 
 }  // namespace sand

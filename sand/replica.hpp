@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "sand/grid/erosion.hpp"
@@ -50,7 +51,18 @@ public:
     ///
     /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
     /// then runs its sweeps.
+    ///
+    /// The tool passes through the sand without moving it if the path is so long, and the tool so large, that the step
+    /// would take minutes. No hand makes such a step.
+    ///
+    /// If the sand throws an exception, the step is skipped: it counts as applied, and the sand is that from before the
+    /// last stroke, or that of the scene if no such sand is kept. Every replica skips it alike, because state and step
+    /// alone decide. std::bad_alloc is the exception to this, because it depends on the host. It leaves the replica
+    /// unusable, so that its process must end.
     void apply(const Step& step);
+    /// Returns what the last apply() has left out, as one line: the load that it has ignored, the path that was too
+    /// long, or the whole step that it has skipped. Returns an empty text if it has left out nothing.
+    [[nodiscard]] const std::string& leftOut() const { return leftOut_; }
 
     [[nodiscard]] const Rules& rules() const { return rules_; }  // the scene's, with the operator's tuning
     [[nodiscard]] const Surface& surface() const { return *surface_; }
@@ -104,7 +116,8 @@ public:
     /// Returns the whole state as compressed bytes, from which another replica can continue.
     [[nodiscard]] base::Bytes encodeState() const { return copyState().encode(); }
     /// Replaces the whole state by what encodeState() wrote. Throws base::FormatError if the bytes are not a state of
-    /// kStateVersion for this field; the replica is then unchanged.
+    /// kStateVersion for this field; the replica is then unchanged. The memory that it allocates is bounded by the
+    /// scene and by the length of the bytes. After std::bad_alloc, call decodeState() again before other functions.
     void decodeState(std::span<const std::uint8_t> bytes);
 
     /// Flips bit `bit` (0 is the lowest) of one cell's height, or of the volume of a TIN's vertex in that cell's
@@ -116,6 +129,11 @@ private:
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.
     void press();
+    void applyToSand(const Step& step);
+    /// Ends a step whose application has failed.
+    void skip(const Step& step, const char* why);
+    /// Restores the sand that is kept for an undo. Returns false if no sand is kept, or if it is not possible sand.
+    bool restoreKept();
     /// Does a reset, an undo or a load. Returns false if the edit restores no sand.
     bool putBack(const Edit& edit);
 
@@ -126,6 +144,7 @@ private:
     ProbePoint probe_;
     Heading heading_;
     bool engaged_ = false;
+    std::string leftOut_;  // by the last apply()
 };
 
 }  // namespace sand

@@ -2,6 +2,7 @@
 #include "sand/grid/snapshot.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "sand/model/grid_codec.hpp"
@@ -12,6 +13,28 @@ namespace {
 constexpr int kTile = 64;  // [cell]
 
 int tilesIn(int cells) { return (cells + kTile - 1) / kTile; }
+
+/// Throws unless volume and outflow are possible for a field whose heights are within ±kMaxHeight.
+void requirePossible(const Snapshot& copy) {
+    const std::int64_t most =
+        std::int64_t{kMaxHeight} * copy.field.columns() * copy.field.rows();  // [unit · cell], at most 2^56
+    const bool possible = copy.outflow >= -2 * most && copy.outflow <= 2 * most;
+    if (!possible || std::abs(copy.field.volume() + copy.outflow) > most) {
+        throw base::FormatError("sand whose outflow is more than all of its sand");
+    }
+}
+
+/// Throws if the surface of the sand lies below rock. Sand of negative thickness would draw sand out of its neighbours
+/// until heights overflow.
+void requireAbove(const Ground& ground, const HeightField& field) {
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            if (ground.sand(x, y, field.height(x, y)) < 0) {
+                throw base::FormatError("rock above the sand that lies on it");
+            }
+        }
+    }
+}
 
 void copyCells(const HeightField& from, const CellRect& cells, HeightField& to) {
     for (int y = cells.y0; y < cells.y1; ++y) {
@@ -29,11 +52,16 @@ base::Bytes Snapshot::encode() const {
     return writer.take();
 }
 
-Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize) {
+Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize,
+                          const Ground* ground) {
     base::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
     Snapshot copy(HeightField(columns, rows, cellSize), {}, outflow);
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
+    requirePossible(copy);
+    if (ground != nullptr) {
+        requireAbove(*ground, copy.field);
+    }
     copy.inertia = Inertia::decode(reader, columns, rows);
     if (!reader.atEnd()) {
         throw base::FormatError("sand with further bytes behind it");
@@ -83,6 +111,7 @@ void Undo::keep(const HeightField& field, Inertia inertia, std::int64_t outflow)
 }
 
 void Undo::keep(const Snapshot& copy) {
+    kept_ = false;  // until all memory is there
     copy_.reset();
     keep(copy.field, copy.inertia, copy.outflow);
     touch(copy_->field.bounds());  // the field may differ from `copy` everywhere

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sand/grid/inertia.hpp"
+#include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 #include "sand/model/surface.hpp"
 
@@ -20,9 +21,11 @@ public:
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
     [[nodiscard]] base::Bytes encode() const override;
-    /// Reads what encode() wrote for a field of this size. Throws base::FormatError for invalid bytes, or if further
-    /// bytes follow.
-    static Snapshot decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize);
+    /// Reads what encode() wrote for a field of this size and `ground`, which may be null. Throws base::FormatError for
+    /// invalid bytes, for sand below rock, and if further bytes follow. Volume and outflow together must be within
+    /// ±kMaxHeight times the number of cells; steps keep that sum.
+    static Snapshot decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize,
+                           const Ground* ground = nullptr);
 
     HeightField field;
     Inertia inertia;

@@ -133,9 +133,9 @@ std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
 }
 
 SurfaceReader GridSurface::reader() const {
-    return [columns = field_.columns(), rows = field_.rows(),
-            cellSize = field_.cellSize()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, columns, rows, cellSize));
+    return [columns = field_.columns(), rows = field_.rows(), cellSize = field_.cellSize(),
+            ground = ground_](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, columns, rows, cellSize, ground.get()));
     };
 }
 

@@ -7,11 +7,6 @@
 #include <utility>
 
 namespace sand::tin {
-namespace {
-
-constexpr std::uint64_t kMostPlain = std::uint64_t{1} << 30;  // [byte], enough for about thirty million vertices
-
-}  // namespace
 
 void TinState::encode(base::ByteWriter& writer) const {
     writer.put(outflow);
@@ -19,14 +14,14 @@ void TinState::encode(base::ByteWriter& writer) const {
     imprint.encode(writer);
 }
 
-TinState TinState::decode(base::ByteReader& reader) {
+TinState TinState::decode(base::ByteReader& reader, std::size_t mostVertices) {
     TinState state;
     state.outflow = reader.get<std::int64_t>();
     state.nextToGo = reader.get<Vertex>();
     if (state.nextToGo < 0) {
         throw base::FormatError("a TIN whose coarsening continues at a negative vertex");
     }
-    state.imprint = Imprint::decode(reader);
+    state.imprint = Imprint::decode(reader, mostVertices);
     return state;
 }
 
@@ -36,14 +31,14 @@ Snapshot::Snapshot(const VertexSandParts& layer, TinState state) : holes_(layer.
     plain_ = writer.take();
 }
 
-Snapshot::Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std::int32_t depth,
-                   std::shared_ptr<const Holes> holes)
-    : holes_(std::move(holes)) {
+Snapshot::Snapshot(std::span<const std::uint8_t> packed, const SandLimits& limits)
+    : holes_(limits.holes), mostVertices_(limits.mostVertices) {
     base::ByteReader reader(packed);
-    state_ = TinState::decode(reader);
+    state_ = TinState::decode(reader, mostVertices_);
     const auto size = reader.get<std::uint64_t>();
-    if (size > kMostPlain) {
-        throw base::FormatError("a TIN of more than 2^30 bytes");
+    if (const std::uint64_t most = VertexSand::mostBytes(mostVertices_); size > most) {
+        throw base::FormatError("a TIN of " + std::to_string(size) + " bytes; " + std::to_string(mostVertices_) +
+                                " vertices take at most " + std::to_string(most));
     }
     const auto rest = reader.rest();
     plain_.resize(size);
@@ -51,8 +46,12 @@ Snapshot::Snapshot(std::span<const std::uint8_t> packed, std::int32_t width, std
         throw base::FormatError("a TIN that does not unpack to its size");
     }
     const VertexSand whole = layer();  // throws if the bytes are not a VertexSand
-    if (whole.triangles().width != width || whole.triangles().depth != depth) {
+    if (whole.triangles().width != limits.width || whole.triangles().depth != limits.depth) {
         throw base::FormatError("a TIN of another field");
+    }
+    const Wide sum = whole.volume() + state_.outflow;
+    if (sum > kMostSand || sum < -kMostSand) {
+        throw base::FormatError("a TIN whose outflow is more than all of its sand");
     }
 }
 
@@ -72,7 +71,7 @@ base::Bytes Snapshot::encode() const {
 
 VertexSand Snapshot::layer() const {
     base::ByteReader reader(plain_);
-    VertexSand layer = VertexSand::decode(reader, holes_);
+    VertexSand layer = VertexSand::decode(reader, holes_, mostVertices_);
     if (!reader.atEnd()) {
         throw base::FormatError("a TIN with further bytes after its end");
     }

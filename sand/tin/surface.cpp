@@ -40,11 +40,12 @@ TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start
       threshold_(rules.threshold),
       startThreshold_(rules.startThreshold),
       layer_(layerOf(*start_)),
+      startVertices_(layer_.triangles().places.size()),
       erosion_(layer_, threshold_, startThreshold_, rim_),
       hash_(layer_),
       beforeStroke_(layer_) {
     (void)layer_.takeChange();
-    reserve();
+    layerReplaced();
 }
 
 TinSurface::TinSurface(const TinSurface& other)
@@ -54,15 +55,22 @@ TinSurface::TinSurface(const TinSurface& other)
       threshold_(other.threshold_),
       startThreshold_(other.startThreshold_),
       layer_(Snapshot(other.layer_, other.state_).layer()),
+      startVertices_(other.startVertices_),
       state_(other.state_),
       erosion_(layer_, threshold_, startThreshold_, rim_),
       hash_(layer_),
       beforeStroke_(layer_) {
     (void)layer_.takeChange();
-    reserve();
+    layerReplaced();
     if (other.beforeStroke_.any()) {
         beforeStroke_.keep(other.beforeStroke_.copy());
     }
+}
+
+void TinSurface::layerReplaced() {
+    layer_.limitVertices(limits().mostVertices);
+    view_.emplace(SurfaceView{layer_.triangles(), layer_.heights(), detail_.spacing});
+    reserve();
 }
 
 void TinSurface::reserve() {
@@ -191,6 +199,10 @@ void TinSurface::settle() {
     sandMoved(moved_);
 }
 
+SandLimits TinSurface::limits() const {
+    return {start_->width, start_->depth, start_->holes, std::max(start_->mostVertices(), startVertices_)};
+}
+
 void TinSurface::reset() { replace(Snapshot(layerOf(*start_), {})); }
 
 void TinSurface::keep(const SurfaceCopy& copy) {
@@ -200,21 +212,24 @@ void TinSurface::keep(const SurfaceCopy& copy) {
 std::shared_ptr<const SurfaceCopy> TinSurface::copy() const { return std::make_shared<const Snapshot>(layer_, state_); }
 
 SurfaceReader TinSurface::reader() const {
-    return [width = start_->width, depth = start_->depth,
-            holes = start_->holes](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(bytes, width, depth, holes);
+    return [limits = limits()](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
+        return std::make_shared<const Snapshot>(bytes, limits);
     };
 }
 
 void TinSurface::replace(const SurfaceCopy& copy) {
     const auto& sand = dynamic_cast<const Snapshot&>(copy);
-    layer_ = sand.layer();
-    (void)layer_.takeChange();
-    state_ = sand.state();
+    // Allocates first, so that a surface without memory for this sand stays as it is.
+    VertexSand layer = sand.layer();
+    (void)layer.takeChange();
+    TileHash hash(layer);
+    TinState state = sand.state();
+    beforeStroke_.replaced(layer);
+    layer_ = std::move(layer);
+    state_ = std::move(state);
     erosion_ = Erosion(layer_, threshold_, startThreshold_, rim_);
-    hash_ = TileHash(layer_);
-    beforeStroke_.replaced(layer_);
-    reserve();
+    hash_ = std::move(hash);
+    layerReplaced();
     held_.reset();
     sawAll_ = false;
     coarsening_.forget();

@@ -62,12 +62,16 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
-    [[nodiscard]] SurfaceData data() const override { return TinData{view_}; }
+    [[nodiscard]] SurfaceData data() const override { return TinData{*view_}; }
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
     /// Returns the Displacement for `tool`, which is created again only if shape or heading differ from the last call.
     [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
+    /// Returns the limits of every sand that this surface can have.
+    [[nodiscard]] SandLimits limits() const;
+    /// Prepares a layer_ that has just been put in place.
+    void layerReplaced();
     /// Passes the changes of the mesh to erosion, hash, undo, coarsening and takeChange().
     void meshChanged();
     /// Reserves memory for further vertices, so that few steps have to move all vertices' data to a larger array.
@@ -83,11 +87,12 @@ private:
     Rim rim_;
     std::int32_t threshold_, startThreshold_;
     VertexSand layer_;
+    std::size_t startVertices_;  // of the start's mesh; constraints that cross may have added some
     TinState state_;
     Coarsening coarsening_;
     Erosion erosion_;
     TileHash hash_;
-    SurfaceView view_{layer_.triangles(), layer_.heights(), detail_.spacing};
+    std::optional<SurfaceView> view_;  // of layer_, created again when layer_ is replaced
     Undo beforeStroke_;
     std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything
     std::optional<Displacement> displacement_;  // for the tool of the last displacementOf()

@@ -33,7 +33,8 @@ Extremes extremesOf(const VertexSand& layer) {
 /// volume / star does not round beyond the extreme.
 std::int64_t volumeAt(const VertexSand& layer, Vertex vertex, double extreme, double inside) {
     const double volume = extreme * static_cast<double>(layer.stars()[index(vertex)]);
-    const double within = std::nextafter(volume, inside);
+    // An extreme of one vertex, over the star of another one, may exceed 64 bits. No vertex has more than 2^62.
+    const double within = std::clamp(std::nextafter(volume, inside), -0x1p62, 0x1p62);
     return static_cast<std::int64_t>(inside < 0 ? std::floor(within) : std::ceil(within));
 }
 
@@ -62,9 +63,13 @@ std::vector<Vertex> besideOf(const VertexSand& layer, Vertex vertex) {
 }
 
 /// Gives the surplus `over` to the neighbours: first evenly, as far as they have room, then as much as each has room
-/// left. The rest is shared evenly without regard to room, and the neighbours share it in their turn.
-void share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& extremes) {
+/// left. The rest is shared evenly without regard to room, and the neighbours share it in their turn. Returns false,
+/// and stops, at a volume that a vertex cannot hold.
+bool share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& extremes) {
     const std::vector<Vertex> beside = besideOf(layer, vertex);
+    if (!layer.hasRoom(vertex, -over)) {
+        return false;
+    }
     layer.add(vertex, -over);
     for (const int turn : {0, 1, 2}) {
         for (std::size_t i = 0; i < beside.size() && over != 0; ++i) {
@@ -77,14 +82,19 @@ void share(VertexSand& layer, Vertex vertex, std::int64_t over, const Extremes& 
                         : std::min<std::int64_t>(volumeAt(layer, beside[i], extremes.least, HUGE_VAL) - volume, 0);
                 part = over > 0 ? std::min(part, room) : std::max(part, room);
             }
+            if (!layer.hasRoom(beside[i], part)) {
+                return false;
+            }
             layer.add(beside[i], part);
             over -= part;
         }
     }
+    return true;
 }
 
 /// Lets vertices beyond the extremes share their surplus with their neighbours. The projection may end a little beyond
-/// the extremes, because it stops before it is exact. Returns false if a vertex is still beyond them after 64 rounds.
+/// the extremes, because it stops before it is exact. Returns false if a vertex is still beyond them after 64 rounds,
+/// or cannot hold its share.
 bool keepWithin(VertexSand& layer, const Extremes& extremes) {
     constexpr int kRounds = 64;
     for (int round = 0; round < kRounds; ++round) {
@@ -94,7 +104,9 @@ bool keepWithin(VertexSand& layer, const Extremes& extremes) {
             const std::int64_t over = layer.stars()[i] > 0 ? overOf(layer, vertex, extremes) : 0;
             if (over != 0) {
                 within = false;
-                share(layer, vertex, over, extremes);
+                if (!share(layer, vertex, over, extremes)) {
+                    return false;
+                }
             }
         }
         if (within) {
@@ -112,7 +124,8 @@ void giveBack(VertexSand& layer, const std::vector<std::int64_t>& volumes) {
     }
 }
 
-/// Replaces the sand by its projection. Leaves the sand unchanged if the projection does not stay within the extremes.
+/// Replaces the sand by its projection. Leaves the sand unchanged if the projection does not stay within the extremes,
+/// or exceeds kMostSand.
 void project(VertexSand& layer, double slope, Rim rim, Settled& result) {
     const Extremes extremes = extremesOf(layer);  // rim vertices from which sand falls are at 0 already
     const std::vector<std::int64_t> before = layer.volumes();
@@ -123,7 +136,7 @@ void project(VertexSand& layer, double slope, Rim rim, Settled& result) {
         layer.add(vertex, gain);
         outflow -= gain;
     }
-    if (!keepWithin(layer, extremes)) {
+    if (!keepWithin(layer, extremes) || layer.magnitude() > kMostSand) {
         giveBack(layer, before);
         return;
     }

@@ -83,8 +83,7 @@ Cells nominalCells(std::int32_t width, std::int32_t depth) {
 }
 
 double mostHeight(int columns, int rows) {
-    constexpr double kMostVolume = 4.6e18;  // 2^62 volume units; all their sums fit in 64 bits
-    return kMostVolume / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
+    return static_cast<double>(kMostSand) / (6.0 * columns * rows * kLatticePerCell * kLatticePerCell);
 }
 
 void TinStart::encode(base::ByteWriter& writer) const {
@@ -115,6 +114,10 @@ TinStart TinStart::decode(base::ByteReader& reader) {
     start.width = between(reader, 1, kLongest);
     start.depth = between(reader, 1, kLongest);
     start.meanHeight = between(reader, -kMaxHeight, kMaxHeight);
+    // The heights themselves are bounded, because the volumes of a hostile start would exceed 64 bits.
+    const double area = static_cast<double>(start.width) * start.depth;
+    const auto highest =
+        static_cast<std::int32_t>(std::min<double>(kMaxHeight, static_cast<double>(kMostSand) / (6 * area)));
     start.settings.spacing = between(reader, 1, kLongest);
     start.settings.widest = between(reader, 0, kLongest);
     start.settings.maxError = between(reader, 0, kMaxHeight);
@@ -124,7 +127,7 @@ TinStart TinStart::decode(base::ByteReader& reader) {
     for (std::size_t left = countOf(reader); left > 0; --left) {
         const std::int32_t x = between(reader, 0, start.width);
         start.places.push_back({x, between(reader, 0, start.depth)});
-        start.heights.push_back(between(reader, -kMaxHeight, kMaxHeight));
+        start.heights.push_back(between(reader, -highest, highest));
     }
     requireCorners(start);
     const auto last = static_cast<std::int32_t>(start.places.size()) - 1;
@@ -140,6 +143,11 @@ TinStart TinStart::decode(base::ByteReader& reader) {
         start.holes = decodeHoles(reader, start);
     }
     return start;
+}
+
+std::size_t TinStart::mostVertices() const {
+    constexpr std::size_t kCrossings = 4096;  // more than any sensible session has at its limit
+    return std::max(places.size(), static_cast<std::size_t>(settings.mostVertices)) + kCrossings;
 }
 
 std::uint64_t TinStart::digest() const {

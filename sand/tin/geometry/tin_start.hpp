@@ -21,6 +21,10 @@ namespace sand::tin {
 
 inline constexpr std::uint32_t kMostPlaces = 1 << 24;  // most vertices of a start
 
+/// Largest sum of the magnitudes of all volumes of a TIN [unit · probe unit² / 6]. It is a little below 2^62. Volume,
+/// outflow, and their sum therefore fit in 64 bits.
+inline constexpr std::int64_t kMostSand = 4'600'000'000'000'000'000;
+
 /// Settings that decide how finely a TIN follows its terrain and its tools. The state of the sand depends on these
 /// settings.
 struct Settings {
@@ -46,9 +50,12 @@ struct TinStart {
 
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError if the bytes are not a TinStart. Examples are a place outside the field, two vertices
-    /// in one place, and a constraint between vertices out of order. Other examples are holes out of order, and holes
-    /// in a field of cells that are not whole.
+    /// in one place, and a constraint between vertices out of order. Other examples are holes out of order, holes in a
+    /// field of cells that are not whole, and heights whose volumes could exceed kMostSand.
     static TinStart decode(base::ByteReader& reader);
+    /// Returns the most vertices that a replica of this start ever has. Refinement stops at Settings::mostVertices. The
+    /// surplus is for vertices where the outline of a tool crosses constraints.
+    [[nodiscard]] std::size_t mostVertices() const;
     /// Returns a number that is never 0. Equal digests mean that equal steps lead to equal sand.
     [[nodiscard]] std::uint64_t digest() const;
 };

@@ -167,6 +167,9 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
         const auto [c, d] = hit.edge;
         const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
         const Located where = find(crossing);
+        if (cornerAt(where) == 3 && static_cast<std::size_t>(vertexCount_) >= mostVertices) {
+            break;  // a state with more vertices could not be decoded
+        }
         const VertexPair split = edgeAt(where);  // edge at the crossing, which insertAt() splits too
         const Vertex middle = insertAt(where, crossing, kNobody);
         bend(split.first, split.second, middle);

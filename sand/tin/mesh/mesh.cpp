@@ -84,6 +84,8 @@ void Mesh::reserve(std::size_t vertices) {
     triangulation_->reserve(vertices - std::min(vertices, triangles().places.size()));
 }
 
+void Mesh::limitVertices(std::size_t most) { triangulation_->mostVertices = most; }
+
 bool Mesh::remove(Vertex vertex) {
     requireAlive(vertex);
     if (vertex < 4) {

@@ -45,6 +45,8 @@ public:
     /// Reserves memory for `vertices` vertices in all, so that no insertion up to this number moves the mesh in
     /// memory.
     void reserve(std::size_t vertices);
+    /// Limits the mesh to `most` vertices for constrain(). insert() and restore() ignore the limit.
+    void limitVertices(std::size_t most);
     /// Removes a vertex and the constraints that end in it. For a vertex on the rim, its two rim edges become one. For
     /// a vertex on a straight part of a hole's outline, its two outline edges become one. The corners of the
     /// field stay. A vertex at which an outline turns or ends stays too. Returns false if the vertex stays.
@@ -62,6 +64,9 @@ public:
     /// the other, the vertex is this end. Otherwise the vertex is at the lattice place nearest to the crossing. Both
     /// constraints bend to this vertex. Further constraints that they then cross bend in the same way. Returns an empty
     /// path if `from` equals `to`.
+    ///
+    /// Stops at the first crossing whose vertex would exceed the limit of limitVertices(). Edges of the path from there
+    /// on are then not constrained.
     Path constrain(Vertex from, Vertex to);
     /// Makes the edge between two vertices an ordinary one again. Edges of the rim and of a hole's outline stay
     /// constrained. Two vertices without a common edge change nothing.

@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -87,6 +88,7 @@ public:
     ChangeRecord changes;
     ChangeRecord differences;
     bool noteDifferences = false;
+    std::size_t mostVertices = std::numeric_limits<std::size_t>::max();  // for Mesh::limitVertices()
 
 private:
     [[nodiscard]] const Triangle& triangle(std::int32_t slot) const {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "sand/model/tuning.hpp"
 
@@ -19,10 +20,11 @@ void encodePoint(const ProbePoint& point, base::ByteWriter& writer) {
     writer.put(point.z);
 }
 
-/// Reads a number of entries. Throws if so many entries of at least `bytesEach` bytes do not fit in the rest.
-std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach) {
+/// Reads a number of entries. Throws if there are more than `most`, or if so many entries of at least `bytesEach` bytes
+/// do not fit in the rest.
+std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach, std::size_t most) {
     const std::uint64_t count = reader.getVarint();
-    if (count > reader.rest().size() / bytesEach) {
+    if (count > most || count > reader.rest().size() / bytesEach) {
         throw base::FormatError("an imprint of " + std::to_string(count) + " points or edges in " +
                                 std::to_string(reader.rest().size()) + " bytes");
     }
@@ -95,6 +97,7 @@ void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices)
             }
         }
     }
+    edges.resize(std::min(edges.size(), mostEdges(static_cast<std::size_t>(maxVertices))));
 }
 
 void Imprint::takeOutOf(Mesh& mesh) {
@@ -102,9 +105,12 @@ void Imprint::takeOutOf(Mesh& mesh) {
     std::transform(edges.begin(), edges.end(), edges.begin(),
                    [](const auto& edge) { return std::pair<Vertex, Vertex>(std::minmax(edge.first, edge.second)); });
     std::sort(edges.begin(), edges.end());
-    const auto isOurs = [&](Vertex vertex) {
-        return std::any_of(points.begin(), points.end(), [&](const Point& point) { return point.vertex == vertex; });
-    };
+    // Sorted, because a state from outside may list as many points and edges as the mesh has vertices.
+    std::vector<Vertex> ours;
+    std::transform(points.begin(), points.end(), std::back_inserter(ours),
+                   [](const Point& point) { return point.vertex; });
+    std::sort(ours.begin(), ours.end());
+    const auto isOurs = [&ours](Vertex vertex) { return std::binary_search(ours.begin(), ours.end(), vertex); };
     // Edges whose ends are ours go with their ends. In a state from outside, an edge may name vertices that do not
     // exist.
     const Triangles& there = mesh.triangles();
@@ -148,20 +154,20 @@ void Imprint::encode(base::ByteWriter& writer) const {
     }
 }
 
-Imprint Imprint::decode(base::ByteReader& reader) {
+Imprint Imprint::decode(base::ByteReader& reader, std::size_t most) {
     Imprint imprint;
     if (reader.get<std::uint8_t>() == 0) {
         return imprint;
     }
     imprint.stand = decodeStand(reader);
-    for (std::uint64_t count = decodeCount(reader, 12); count > 0; --count) {
+    for (std::uint64_t count = decodeCount(reader, 12, most); count > 0; --count) {
         Point point{};
         point.vertex = reader.get<Vertex>();
         point.place.x = reader.get<std::int32_t>();
         point.place.y = reader.get<std::int32_t>();
         imprint.points.push_back(point);
     }
-    for (std::uint64_t count = decodeCount(reader, 8); count > 0; --count) {
+    for (std::uint64_t count = decodeCount(reader, 8, mostEdges(most)); count > 0; --count) {
         const auto a = reader.get<Vertex>();
         imprint.edges.emplace_back(a, reader.get<Vertex>());
     }

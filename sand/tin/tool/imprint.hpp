@@ -11,6 +11,7 @@
 #include "sand/model/tool_shape.hpp"
 #include "sand/tin/mesh/mesh.hpp"
 #include "sand/tin/tool/outline.hpp"
+#include "sand/tin/volume/vertex_sand.hpp"
 
 namespace sand::tin {
 
@@ -33,15 +34,18 @@ struct Imprint {
     std::vector<Point> points;                     // that were not vertices before
     std::vector<std::pair<Vertex, Vertex>> edges;  // that were not constrained before
 
-    /// Adds the outline to the mesh, unless the mesh would then have more than `maxVertices`.
+    /// Adds the outline to the mesh, unless the mesh would then have more than `maxVertices`. Lists at most
+    /// mostEdges(maxVertices) edges; further ones stay in the mesh when the tool leaves.
     void putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices);
     /// Removes the points and edges that putInto() has added. Edges that another outline has bent to its own edges
     /// stay.
     void takeOutOf(Mesh& mesh);
 
     void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError if the bytes are not an imprint.
-    static Imprint decode(base::ByteReader& reader);
+    /// Throws base::FormatError if the bytes are not an imprint, or list more than `most` points or mostEdges(most)
+    /// edges.
+    static Imprint decode(base::ByteReader& reader, std::size_t most = VertexSand::kMostNumbers);
+    static constexpr std::size_t mostEdges(std::size_t vertices) { return 4 * vertices; }
     friend bool operator==(const Imprint&, const Imprint&) = default;
 };
 

@@ -147,15 +147,28 @@ void Displacement::shareOut() {
     }
 }
 
+/// Returns whether every receiver can take its share, and the magnitude of all sand stays within kMostSand.
 bool Displacement::hasRoom(const VertexSand& layer) const {
-    return std::all_of(receivers_.begin(), receivers_.end(), [&](const Receiver& receiver) {
-        if (receiver.vertex == kNobody) {
-            return true;
-        }
-        const auto index = static_cast<std::size_t>(receiver.vertex);
-        const Volume raised = layer.volumes()[index] + receiver.share;
-        return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index]) && raised >= -kMostOfVertex;
-    });
+    const auto grown = [&layer](Vertex vertex, Volume by) {
+        const Volume before = layer.volumes()[static_cast<std::size_t>(vertex)], after = before + by;
+        return std::max(after, -after) - std::max(before, -before);
+    };
+    Volume magnitude = layer.magnitude();
+    for (const Cut& cut : cut_) {
+        magnitude += grown(cut.vertex, -Volume{cut.taken});
+    }
+    for (const Receiver& receiver : receivers_) {
+        magnitude += receiver.vertex == kNobody ? 0 : grown(receiver.vertex, receiver.share);
+    }
+    return magnitude <= kMostSand && std::all_of(receivers_.begin(), receivers_.end(), [&](const Receiver& receiver) {
+               if (receiver.vertex == kNobody) {
+                   return true;
+               }
+               const auto index = static_cast<std::size_t>(receiver.vertex);
+               const Volume raised = layer.volumes()[index] + receiver.share;
+               return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index]) &&
+                      raised >= -kMostOfVertex;
+           });
 }
 
 void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& done) {

@@ -7,6 +7,7 @@
 #include <compare>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -296,7 +297,7 @@ private:
             const double reach = 3 * static_cast<double>(part.area) / static_cast<double>(part.stars);
             const double bound =
                 (part.highest - part.lowest) * reach + 2 / static_cast<double>(part.smallestStar) + 0x1p-20;
-            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound});
+            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound, node.part});
         }
         return result;
     }
@@ -312,6 +313,43 @@ private:
 };
 
 }  // namespace
+
+void levelPieces(Remapped& result, const std::function<bool(const Remapped::Share&)>& fits) {
+    struct Sum {
+        Wide volume = 0, stars = 0, rest = 0;
+    };
+    std::map<std::uint32_t, Sum> sums;  // of the pieces that become level; nearly always empty
+    for (const Remapped::Share& share : result.shares) {
+        if (!fits(share)) {
+            sums.emplace(share.piece, Sum());
+        }
+    }
+    if (sums.empty()) {
+        return;
+    }
+    const auto forEach = [&](const auto& visit) {
+        for (Remapped::Share& share : result.shares) {
+            if (const auto found = sums.find(share.piece); found != sums.end()) {
+                visit(share, found->second);
+            }
+        }
+    };
+    forEach([](const Remapped::Share& share, Sum& sum) {
+        sum.volume += share.volume;
+        sum.stars += share.star;
+        sum.rest = sum.volume;
+    });
+    forEach([](Remapped::Share& share, Sum& sum) {
+        share.volume = dividedDown(sum.volume * share.star, sum.stars);
+        share.bound = std::numeric_limits<double>::infinity();
+        sum.rest -= share.volume;
+    });
+    forEach([](Remapped::Share& share, Sum& sum) {
+        const Wide unit = sum.rest > 0 ? 1 : 0;
+        share.volume += unit;
+        sum.rest -= unit;
+    });
+}
 
 Remapped remapVolumes(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
                       const std::vector<std::int64_t>& stars, const std::vector<double>& heights) {

@@ -2,6 +2,7 @@
 #include "sand/tin/volume/vertex_sand.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -13,6 +14,9 @@ namespace sand::tin {
 namespace {
 
 constexpr std::int64_t kVolumeLimit = std::int64_t{1} << 62;
+constexpr unsigned kHeightLimitBits = 32;  // every |height| is at most 2^32 [unit]
+
+Wide magnitudeOf(Wide volume) { return volume < 0 ? -volume : volume; }
 
 std::size_t at(Vertex vertex) { return static_cast<std::size_t>(vertex); }
 
@@ -67,16 +71,21 @@ Wide VertexSand::volume() const {
 }
 
 void VertexSand::setVolume(Vertex vertex, std::int64_t volume) {
+    magnitude_ += magnitudeOf(volume) - magnitudeOf(volumes_[at(vertex)]);
     volumes_[at(vertex)] = volume;
     heights_[at(vertex)] = stars_[at(vertex)] == 0 ? 0 : quotient(volume, stars_[at(vertex)]);
 }
 
-void VertexSand::add(Vertex vertex, std::int64_t volume) {
+bool VertexSand::hasRoom(Vertex vertex, std::int64_t volume) const {
     std::int64_t sum = 0;
-    if (__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) || sum >= kVolumeLimit || sum <= -kVolumeLimit) {
+    return !__builtin_add_overflow(volumes_[at(vertex)], volume, &sum) && sum < kVolumeLimit && sum > -kVolumeLimit;
+}
+
+void VertexSand::add(Vertex vertex, std::int64_t volume) {
+    if (!hasRoom(vertex, volume)) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
     }
-    setVolume(vertex, sum);
+    setVolume(vertex, volumes_[at(vertex)] + volume);
 }
 
 void VertexSand::setHeight(Vertex vertex, std::int32_t height) {
@@ -136,27 +145,44 @@ void VertexSand::remap() {
     if (difference.came.empty()) {
         return;
     }
-    const Remapped result = remapVolumes(difference, volumes_, stars_, heights_);
+    Remapped result = remapVolumes(difference, volumes_, stars_, heights_);
+    const Wide most = std::max<Wide>(magnitude_, kMostSand);
     const std::size_t count = mesh_.triangles().places.size();
     volumes_.resize(count, 0);
     stars_.resize(count, 0);
     heights_.resize(count, 0);
     for (const Vertex vertex : result.died) {
-        volumes_[at(vertex)] = stars_[at(vertex)] = 0;
+        setVolume(vertex, 0);
+        stars_[at(vertex)] = 0;
         heights_[at(vertex)] = 0;
         remapped_.push_back(vertex);
     }
+    levelPieces(result, [](const Remapped::Share& share) {
+        return magnitudeOf(share.volume) < kVolumeLimit && magnitudeOf(share.volume) <= static_cast<Wide>(share.star)
+                                                                                            << kHeightLimitBits;
+    });
+    take(result);
+    if (magnitude_ > most) {
+        // A level piece has the least magnitude that its volume allows, so that the sum is not larger than before.
+        levelPieces(result, [](const Remapped::Share&) { return false; });
+        take(result);
+    }
     for (const Remapped::Share& share : result.shares) {
-        if (share.volume >= kVolumeLimit || share.volume <= -kVolumeLimit) {
-            throw std::overflow_error("too much sand on vertex " + std::to_string(share.vertex));
-        }
-        stars_[at(share.vertex)] = share.star;
-        setVolume(share.vertex, static_cast<std::int64_t>(share.volume));
         remapped_.push_back(share.vertex);
         const double moved = std::abs(heights_[at(share.vertex)] - share.before);
         if (moved >= largest_.moved) {
             largest_ = {moved, share.bound};
         }
+    }
+}
+
+void VertexSand::take(const Remapped& result) {
+    for (const Remapped::Share& share : result.shares) {
+        if (magnitudeOf(share.volume) >= kVolumeLimit) {  // possible only if the sand before was beyond the limits
+            throw std::overflow_error("too much sand on vertex " + std::to_string(share.vertex));
+        }
+        stars_[at(share.vertex)] = share.star;
+        setVolume(share.vertex, static_cast<std::int64_t>(share.volume));
     }
 }
 

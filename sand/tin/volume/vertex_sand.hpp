@@ -8,9 +8,12 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "sand/tin/geometry/tin_start.hpp"
 #include "sand/tin/mesh/mesh.hpp"
 
 namespace sand::tin {
+
+struct Remapped;  // sand/tin/volume/remap.hpp
 
 /// All data that make up a VertexSand. They do not depend on its history.
 struct VertexSandParts {
@@ -34,9 +37,9 @@ struct VertexSandParts {
 /// A vertex's star is the sum of the doubled areas of its triangles [probe unit²]. Its height is volume / star [unit].
 /// One volume unit is therefore one height unit (cell size / 2^16) on a sixth of a squared probe unit.
 ///
-/// The |volume| of a vertex stays below 2^62. A height of 2^28 units over a star of 2^34 reaches that limit. Sums over
-/// all vertices use 128 bits. A change beyond the limit throws std::overflow_error; do not use the VertexSand after
-/// that.
+/// The |volume| of a vertex stays below 2^62, and its |height| at most 2^32. A height of 2^28 units over a star of 2^34
+/// reaches the first limit. add() and setHeight() throw std::overflow_error beyond the first limit. A change of the
+/// mesh never exceeds a limit that the sand before was within: the sand of a piece that would exceed it becomes level.
 ///
 /// Triangles in a hole (holes.hpp) are not ground, and count for no star. A vertex that has only such triangles has
 /// star 0, no sand and height 0. Not thread-safe.
@@ -53,9 +56,16 @@ public:
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
     [[nodiscard]] Wide volume() const;
     [[nodiscard]] Wide ground() const;  // sum of all stars [probe unit²]: six times the area
+    /// Returns the sum of the magnitudes of all volumes [volume unit]. A change of the mesh never raises it above
+    /// kMostSand.
+    [[nodiscard]] Wide magnitude() const { return magnitude_; }
 
     /// Reserves memory for `vertices` vertices in all.
     void reserve(std::size_t vertices);
+    /// Limits the number of vertices as Mesh::limitVertices() does.
+    void limitVertices(std::size_t most) { mesh_.limitVertices(most); }
+    /// Returns whether add() would accept this volume.
+    [[nodiscard]] bool hasRoom(Vertex vertex, std::int64_t volume) const;
     /// Adds `volume` to a living vertex; its height follows. Erosion and tools move sand between vertices with this.
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // of a living vertex; changes the total volume
@@ -79,9 +89,10 @@ public:
     /// The largest move of a vertex by a remap since the last call, and the bound for that move [unit]. The move of a
     /// new vertex counts from the previous surface.
     ///
-    /// The bound is (h − l) · 3 A / S + 2 / s + 2^-20. Here h and l are the highest and the lowest previous height of
-    /// the piece, and A is its doubled area. S is the sum of its vertices' stars, and s the smallest of them. The
-    /// second term covers the rounding of integers, and the third that of quotients.
+    /// The bound is (h − l) · 3 A / S + 2 / s + 2^-20. For a piece that became level it is infinite. Here h and l are
+    /// the highest and the lowest previous height of the piece, and A is its doubled area. S is the sum of its
+    /// vertices' stars, and s the smallest of them. The second term covers the rounding of integers, and the third that
+    /// of quotients.
     struct Remap {
         double moved = 0, bound = 0;
     };
@@ -93,16 +104,23 @@ public:
     [[nodiscard]] VertexSandParts parts() const;
     void encode(base::ByteWriter& writer) const { parts().encode(writer); }
     /// Reads what encode() wrote, and no further. Throws base::FormatError if encode() cannot have written the bytes,
-    /// or if the sand does not fit `holes`, which are not among the bytes.
-    static VertexSand decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr);
+    /// if the sand exceeds the limits, or if it does not fit `holes`, which are not among the bytes. Also throws if
+    /// there are more than `most` vertices. Allocates memory only for that many.
+    static VertexSand decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes = nullptr,
+                             std::size_t most = kMostNumbers);
+    /// Returns the most bytes that encode() writes for `most` vertices.
+    [[nodiscard]] static std::uint64_t mostBytes(std::size_t most);
+    static constexpr std::size_t kMostNumbers = std::size_t{1} << 30;  // vertices are 32-bit numbers
 
 private:
     void setVolume(Vertex vertex, std::int64_t volume);
     void remap();
+    void take(const Remapped& result);
 
     Mesh mesh_;
     std::vector<std::int64_t> volumes_, stars_;
     std::vector<double> heights_;
+    Wide magnitude_ = 0;
     Remap largest_;
     std::vector<Vertex> remapped_;  // since the last takeChange()
     bool knowsChange_ = false;      // whether takeChange() was called

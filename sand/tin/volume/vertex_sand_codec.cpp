@@ -11,6 +11,8 @@ namespace {
 
 using base::FormatError;
 
+constexpr std::size_t kEdgesPerVertex = 3;  // a mesh of n vertices has fewer than 3 n edges
+
 std::size_t livingEnd(const std::vector<Place>& places) {
     std::size_t end = places.size();
     while (end > 0 && places[end - 1] == VertexSandParts::kNowhere) {
@@ -18,6 +20,10 @@ std::size_t livingEnd(const std::vector<Place>& places) {
     }
     return end;
 }
+
+/// Room for the rounding of sweeps, whose sand is the only one that no check holds within kMostSand. Both together are
+/// below 2^62.
+constexpr std::int64_t kRounding = 10'000'000'000'000'000;
 
 std::int32_t getCoordinate(std::uint64_t value) {
     if (value > static_cast<std::uint64_t>(std::numeric_limits<std::int32_t>::max())) {
@@ -39,6 +45,9 @@ std::size_t getCount(base::ByteReader& reader, std::size_t bytesEach) {
 std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, std::size_t vertices) {
     std::vector<std::pair<Vertex, Vertex>> constraints;
     const std::size_t count = getCount(reader, 2);
+    if (count > kEdgesPerVertex * vertices) {
+        throw FormatError("a TIN with more constraints than edges");
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint64_t a = reader.getVarint();
         const std::uint64_t b = reader.getVarint();
@@ -88,10 +97,22 @@ void VertexSandParts::encode(base::ByteWriter& writer) const {
     }
 }
 
-VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes) {
+std::uint64_t VertexSand::mostBytes(std::size_t most) {
+    // A coordinate is at most 2^22 + 1, which takes 4 bytes, a volume 10 and a vertex of a constraint 5. The rest is
+    // for width, depth and the two counts.
+    constexpr std::uint64_t kVertex = 4 + 4 + 10, kConstraint = 5 + 5, kAround = 4 + 4 + 10 + 10;
+    return most * (kVertex + kEdgesPerVertex * kConstraint) + kAround;
+}
+
+VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<const Holes>& holes, std::size_t most) {
     const auto width = reader.get<std::int32_t>();
     const auto depth = reader.get<std::int32_t>();
-    std::vector<std::optional<Place>> places(getCount(reader, 1));
+    const std::size_t count = getCount(reader, 1);
+    if (count > most) {
+        throw FormatError("a TIN of " + std::to_string(count) + " vertices; this field has at most " +
+                          std::to_string(most));
+    }
+    std::vector<std::optional<Place>> places(count);
     std::vector<std::int64_t> volumes(places.size(), 0);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const std::uint64_t x = reader.getVarint();
@@ -107,14 +128,17 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
     try {
         VertexSand layer(Mesh::restore(width, depth, places, constraints, holes));
         for (std::size_t i = 0; i < volumes.size(); ++i) {
-            // Refuses heights beyond ±2^32 units. All heights of 32-bit integers are within.
-            const Wide most = static_cast<Wide>(layer.stars_[i]) << 32U;
-            if (volumes[i] > most || volumes[i] < -most) {
+            // All heights of 32-bit integers are within ±2^32.
+            const Wide highest = static_cast<Wide>(layer.stars_[i]) << 32U;
+            if (volumes[i] > highest || volumes[i] < -highest) {
                 throw FormatError("a vertex with too much sand");
             }
             if (places[i]) {
                 layer.add(static_cast<Vertex>(i), volumes[i]);
             }
+        }
+        if (layer.magnitude_ > kMostSand + kRounding) {
+            throw FormatError("a TIN with more sand than 64 bits can count");
         }
         if (layer.mesh_.constraints() != constraints) {
             throw FormatError("constraints that differ from those of the mesh");

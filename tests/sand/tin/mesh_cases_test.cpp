@@ -50,6 +50,22 @@ TEST(MeshCases, RefusesFieldsPlacesAndVerticesThatCannotBe) {
     EXPECT_EQ(whatIsWrong(mesh), "");
 }
 
+TEST(MeshCases, StopsAConstraintThatWouldNeedTooManyVertices) {
+    Mesh mesh(100, 100);
+    mesh.limitVertices(9);
+    const Vertex south = mesh.insert(Place{50, 0}), north = mesh.insert(Place{50, 100});
+    const Vertex west = mesh.insert(Place{0, 40}), east = mesh.insert(Place{100, 40});
+    EXPECT_EQ(mesh.constrain(south, north).vertices.size(), 2U);
+    EXPECT_EQ(mesh.constrain(west, east).vertices.size(), 3U) << "one crossing, for which there is room";
+    EXPECT_EQ(mesh.vertexCount(), 9);
+    const auto before = mesh.constraints();
+    EXPECT_EQ(mesh.constrain(0, 2).vertices.size(), 2U) << "no room for a crossing";
+    EXPECT_EQ(mesh.vertexCount(), 9);
+    EXPECT_EQ(mesh.constraints(), before);
+    EXPECT_EQ(whatIsWrong(mesh), "");
+    EXPECT_EQ(mesh.insert(Place{50, 40}), 8) << "the vertex of the crossing";
+}
+
 TEST(MeshCases, GivesTheSmallestFreeNumber) {
     Mesh mesh(10, 10);
     for (std::int32_t i = 1; i < 6; ++i) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "tests/sand/tin/mesh_checks.hpp"
@@ -145,6 +146,54 @@ TEST(VertexSand, RefusesMoreSandThanItCanCount) {
     EXPECT_THROW(layer.setHeight(0, 1 << 30), std::overflow_error);
     layer.setHeight(0, 1 << 20);
     EXPECT_THROW(layer.add(0, std::int64_t{1} << 62), std::overflow_error);
+}
+
+Wide magnitudeOf(const VertexSand& layer) {
+    Wide sum = 0;
+    for (const std::int64_t volume : layer.volumes()) {
+        sum += volume < 0 ? -Wide{volume} : Wide{volume};
+    }
+    return sum;
+}
+
+// Hostile sand may be as rough as 64 bits allow. A remap of rough heights may raise the sum of all magnitudes, which
+// must stay within 64 bits, or a single height, which must stay within 2^32.
+TEST(VertexSand, OfTheRoughestSandKeepsItsVolumeAndItsLimits) {
+    constexpr std::uint32_t kSeed = 8;
+    std::mt19937 random(kSeed);
+    int level = 0;
+    for (const std::int32_t side : {1 << 22, 1 << 8}) {
+        VertexSand layer = layerOf(side, side, 60, random);
+        for (int round = 0; round < 20; ++round) {
+            // The largest height of either sign that the limits allow, in every vertex.
+            const Wide most =
+                std::min<Wide>((sand::tin::kMostSand - magnitudeOf(layer)) / layer.ground(), Wide{1} << 32);
+            for (const Vertex vertex : livingVertices(layer.mesh())) {
+                const auto star = layer.stars()[static_cast<std::size_t>(vertex)];
+                const auto wanted = static_cast<std::int64_t>(most * star) * (random() % 2 == 0 ? 1 : -1);
+                layer.add(vertex, wanted - layer.volumes()[static_cast<std::size_t>(vertex)]);
+            }
+            ASSERT_TRUE(layer.magnitude() == magnitudeOf(layer));
+            const Wide volume = layer.volume();
+            for (int i = 0; i < 100; ++i) {
+                ASSERT_NO_THROW(editAtRandom(layer, random, 80)) << "seed " << kSeed << ", round " << round;
+                ASSERT_TRUE(layer.volume() == volume) << "seed " << kSeed << ", round " << round;
+                ASSERT_TRUE(layer.magnitude() == magnitudeOf(layer)) << "seed " << kSeed << ", round " << round;
+                ASSERT_TRUE(layer.magnitude() <= sand::tin::kMostSand) << "seed " << kSeed << ", round " << round;
+                for (const Vertex vertex : livingVertices(layer.mesh())) {
+                    ASSERT_LE(std::abs(layer.heights()[static_cast<std::size_t>(vertex)]), 0x1p32);
+                }
+                level += std::isinf(layer.takeLargestRemap().bound) ? 1 : 0;
+            }
+            const base::Bytes bytes = bytesOf(layer);
+            base::ByteReader reader(bytes);
+            ASSERT_EQ(bytesOf(VertexSand::decode(reader)), bytes) << "it can be decoded";
+            for (const Vertex vertex : livingVertices(layer.mesh())) {
+                layer.add(vertex, -layer.volumes()[static_cast<std::size_t>(vertex)]);
+            }
+        }
+    }
+    EXPECT_GT(level, 0) << "no remap came near a limit";
 }
 
 TEST(VertexSand, IsAFunctionOfTheEditsAndNotOfTheSlots) {
