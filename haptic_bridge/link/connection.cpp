@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/write.hpp>
+#include <new>
 #include <sstream>
 #include <utility>
 
@@ -90,11 +91,16 @@ void Connection::take(std::size_t count) {
         close("its greeting is too long", RefusalCode::limit);
         return;
     }
-    if (!tls_) {
-        reader_.feed(bytes);
-    } else if (const auto plain = unseal(bytes)) {
-        reader_.feed(*plain);
-    } else {
+    try {
+        if (!tls_) {
+            reader_.feed(bytes);
+        } else if (const auto plain = unseal(bytes)) {
+            reader_.feed(*plain);
+        } else {
+            return;
+        }
+    } catch (const std::bad_alloc&) {
+        refuseGarbage("a message for which this machine has no memory");
         return;
     }
     deliver();
@@ -201,12 +207,18 @@ void Connection::deliver() {
             }
         }
     } catch (const base::FormatError& error) {
-        const std::string why = std::string("it sent ") + error.what();
-        if (!handlers_.server) {
-            close(why, RefusalCode::garbage);
-            return;
-        }
-        refuse(RefusalCode::garbage, std::string("this is a Sandwall haptic server; you sent ") + error.what(), why);
+        refuseGarbage(error.what());
+    } catch (const std::bad_alloc&) {
+        refuseGarbage("a message for which this machine has no memory");
+    }
+}
+
+/// Ends the connection because of `what` the other side has sent.
+void Connection::refuseGarbage(const std::string& what) {
+    if (handlers_.server) {
+        refuse(RefusalCode::garbage, "this is a Sandwall haptic server; you sent " + what, "it sent " + what);
+    } else {
+        close("it sent " + what, RefusalCode::garbage);
     }
 }
 

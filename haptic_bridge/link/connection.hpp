@@ -88,6 +88,7 @@ private:
     [[nodiscard]] std::optional<base::Bytes> unseal(ByteSpan bytes);
     [[nodiscard]] bool speaksOtherwise(ByteSpan first);
     void refuse(RefusalCode code, const std::string& answer, const std::string& why);
+    void refuseGarbage(const std::string& what);
     void deliver();
     [[nodiscard]] bool mayDeliver();
     void push(base::Bytes bytes, bool isLong);

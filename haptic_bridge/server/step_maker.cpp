@@ -2,9 +2,26 @@
 #include "haptic_bridge/server/step_maker.hpp"
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 namespace haptic_bridge {
+namespace {
+
+/// Runs `decode`. Returns why the bytes of a master cannot be decoded, or an empty text.
+template <class Decode>
+std::string whyNot(const Decode& decode) {
+    try {
+        decode();
+        return {};
+    } catch (const std::bad_alloc&) {
+        return "this machine has no memory for it";
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
+}  // namespace
 
 StepMaker::StepMaker(const scene::Scene& scene, HandFeed& hand, Output output,
                      const sand::grid::Erosion::Options& sweeps, Clock clock)
@@ -35,10 +52,8 @@ void StepMaker::state(const base::Bytes& bytes) {
         return;
     }
     phase_ = Phase::idle;
-    try {
-        terrain_.decodeState(bytes);
-    } catch (const base::FormatError& error) {
-        output_.unusable(session_, std::string("the state does not fit this scene: ") + error.what());
+    if (const std::string why = whyNot([&] { terrain_.decodeState(bytes); }); !why.empty()) {
+        output_.unusable(session_, "the state does not fit this scene: " + why);
         return;
     }
     if (!asGranted()) {
@@ -76,6 +91,20 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     // The master's number is not trusted: shown_ never falls, and never passes the last step that was sent.
     shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
     clock_.frameShown(nowNs, frame.frameIntervalNs);
+}
+
+void StepMaker::edit(EditRequest request) {
+    if (!running()) {
+        return;
+    }
+    if (const auto& sand = request.edit.sand; sand) {
+        // Refuses the sand here, because a step that holds it can no longer be refused.
+        if (const std::string why = whyNot([&] { (void)terrain_.sandReader()(*sand); }); !why.empty()) {
+            output_.unusable(session_, "the sand of a load does not fit this scene: " + why);
+            return;
+        }
+    }
+    edit_ = std::move(request.edit);
 }
 
 void StepMaker::release() {

@@ -30,7 +30,7 @@ public:
     struct Output {
         std::function<void(std::uint32_t session)> ready;                          // Ready
         std::function<void(std::uint32_t session, NeedState need)> needState;      // NeedState
-        std::function<void(std::uint32_t session, std::string why)> unusable;      // a Refusal: the State does not fit
+        std::function<void(std::uint32_t session, std::string why)> unusable;      // a Refusal: its sand does not fit
         std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;  // an encoded StepMessage
     };
 
@@ -43,8 +43,8 @@ public:
     /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and
     /// waits for state() or catchUp().
     void start(std::uint32_t session, const Start& start);
-    /// Loads the sand of a State and begins the epoch. Reports `unusable` if this is not the sand of Start. Ignored
-    /// unless it was asked for.
+    /// Loads the sand of a State and begins the epoch. Reports `unusable` if this is not the sand of Start, or if this
+    /// machine has no memory for it. Ignored unless it was asked for.
     void state(const base::Bytes& bytes);
     /// Applies the steps of a CatchUp. Begins the epoch after the last CatchUp, or asks for a State if the steps do not
     /// lead to the sand of Start. Ignored unless it was asked for.
@@ -52,8 +52,9 @@ public:
     /// Takes a Shown that arrived at `nowNs` [ns]. The window moves to the step that the wall shows, and the step clock
     /// follows the wall's frames.
     void shown(const Shown& frame, std::int64_t nowNs);
-    /// Puts an edit into the next step. Replaces an edit that still waits.
-    void edit(EditRequest request) { edit_ = std::move(request.edit); }
+    /// Puts an edit into the next step. Replaces an edit that still waits. Reports `unusable` if the edit loads sand
+    /// that does not fit the scene, or that this machine has no memory for. Ignored while no epoch runs.
+    void edit(EditRequest request);
     /// Ends the epoch, because the master has left. The hand rests, and samples that still wait are dropped.
     void release();
 

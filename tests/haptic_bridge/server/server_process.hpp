@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -75,11 +76,15 @@ talus_deg = 34
 /// The server program, started and stopped by its process id. Its output goes to files in the folder.
 class ServerProcess {
 public:
-    ServerProcess(const Folder& folder, std::vector<std::string> arguments) : folder_(folder) {
+    /// `most` limits the memory that the program may map [byte]; 0: no limit.
+    ServerProcess(const Folder& folder, std::vector<std::string> arguments, rlim_t most = 0) : folder_(folder) {
         std::filesystem::remove(folder.file("port"));
         arguments.insert(arguments.begin(), SANDWALL_BIN_DIR "/sandwall-haptic-server");
         pid_ = fork();
         if (pid_ == 0) {
+            if (const rlimit limit{most, most}; most != 0) {
+                setrlimit(RLIMIT_AS, &limit);
+            }
             std::vector<char*> words;
             words.reserve(arguments.size() + 1);
             for (std::string& argument : arguments) {

@@ -5,6 +5,7 @@
 #include "tests/haptic_bridge/link/raw_peer.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/sand_of.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
@@ -169,9 +170,15 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     sand::Tuning tuning = scene_.rules.tuning();
     tuning.toolRadius *= 2;
     tuning.threshold /= 2;
-    // The bytes of the second load do not fit this field, so the load is ignored. They are as long as the sand of a
-    // large field.
-    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(base::Bytes(300'000, 7)),
+    // The first load is too long for an ordinary message, because rough sand and its fluxes can hardly be compressed.
+    std::mt19937 random(7);
+    scene::Scene rough = scene_;
+    rough.terrain = samples::randomField(scene_.rules.columns, scene_.rules.rows, sand::kMaxHeight, random);
+    sand::Replica sliding(rough);
+    sliding.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
+    const base::Bytes roughSand = sliding.copySand()->encode();
+    ASSERT_GT(roughSand.size(), haptic_bridge::kMaxMessage);
+    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(roughSand),
                                         sand::Edit::loaded(sand::Replica(scene_).copySand()->encode())};
     for (const sand::Edit& edit : asked) {
         client.request(edit);

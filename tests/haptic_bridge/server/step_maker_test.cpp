@@ -155,6 +155,19 @@ TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
     EXPECT_FALSE(steps_[2].step.edit.any());
 }
 
+// The sand of a load is decoded before it is in a step, because every rank has to apply a step.
+TEST_F(StepMakerTest, RefusesALoadThatIsNoSandOfItsScene) {
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    maker_.edit({sand::Edit::loaded({1, 2, 3})});
+    EXPECT_EQ(unusable_.size(), 1U);
+    step();
+    EXPECT_FALSE(steps_[0].step.edit.any());
+    maker_.edit({sand::Edit::loaded(maker_.sand().copySand()->encode())});
+    step();
+    EXPECT_EQ(unusable_.size(), 1U);
+    EXPECT_EQ(steps_[1].step.edit.kind, sand::Edit::load);
+}
+
 TEST_F(StepMakerTest, LiftsAToolThatTheMasterBeforeLeftInTheSand) {
     maker_.start(1, grantOf(sand::Replica(scene_)));
     hand_.samples = {{now_, {30 * 256, 30 * 256, 0}, true}};

@@ -4,6 +4,7 @@
 
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
@@ -84,9 +85,15 @@ TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
     ASSERT_TRUE(watcher.receive());
     // Loopback takes some megabytes before the server notices a peer that does not read. The steps load sand and still
     // fit an ordinary message.
+    std::mt19937 random(7);
+    scene::Scene rough = scene_;
+    rough.terrain = samples::randomField(scene_.rules.columns, scene_.rules.rows, 1 << 20, random);
+    const sand::Edit load = sand::Edit::loaded(sand::Replica(rough).copySand()->encode());
+    ASSERT_LT(load.sand->size(), kMaxMessage - 1000);
+    ASSERT_GT(load.sand->size(), kMaxMessage / 2);
     const auto cutOff = [&] { return server.errors().find("does not read what is sent") != std::string::npos; };
     for (int round = 0; round < 400 && !cutOff(); ++round) {
-        master.request(sand::Edit::loaded(base::Bytes(50'000, 7)));
+        master.request(load);
         ASSERT_TRUE(wall.follow(master, wall.terrain.stepNumber() + 10)) << master.link().message;
     }
     EXPECT_TRUE(cutOff()) << server.errors();
