@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <new>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -145,6 +146,8 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
             }
         } catch (const base::FormatError& error) {
             host::printLine("{}: {}; it is left out", file.string(), error.what());
+        } catch (const std::bad_alloc&) {
+            host::printLine("{}: this machine has no memory for it; it is left out", file.string());
         } catch (const OtherSand& error) {
             host::printLine("{}: it is left out: {}", file.string(), error.what());
         }

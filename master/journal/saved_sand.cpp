@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -184,6 +185,8 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         return saved;
     } catch (const base::FormatError& failure) {
         throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), failure.what()));
+    } catch (const std::bad_alloc&) {
+        throw base::InputError(fmt::format("{}: this machine has no memory for it; nothing was loaded", file.string()));
     }
 }
 
