@@ -27,7 +27,8 @@ ordered_json jsonOf(const Incidents& incidents) {
                       {"server_divergences", incidents.serverDivergences},
                       {"links", incidents.links},
                       {"reconnects", incidents.reconnects},
-                      {"stands", incidents.stands}};
+                      {"stands", incidents.stands},
+                      {"steps_left_out", incidents.stepsLeftOut}};
     for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
         const std::string kind(haptic_bridge::kRefusalNames[i]);
         json["refused_by_server"][kind] = incidents.refusedHere[i];
@@ -48,7 +49,8 @@ Incidents incidentsOf(const std::filesystem::path& file) {
                         .serverDivergences = json.at("server_divergences"),
                         .links = json.at("links"),
                         .reconnects = json.at("reconnects"),
-                        .stands = json.at("stands")};
+                        .stands = json.at("stands"),
+                        .stepsLeftOut = json.at("steps_left_out")};
     for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
         const std::string kind(haptic_bridge::kRefusalNames[i]);
         incidents.refusedHere[i] = json.at("refused_by_server").at(kind);

@@ -14,7 +14,8 @@ struct Incidents {
     std::uint64_t divergences = 0, healed = 0, serverDivergences = 0;  // see Summary
     std::uint64_t links = 0, reconnects = 0;                           // of the haptic link, see LinkCounters
     haptic_bridge::RefusalCounts refusedHere{}, refused{};             // of the haptic link, see LinkCounters
-    std::uint64_t stands = 0;  // times that the sand was stopped because the disk was full
+    std::uint64_t stands = 0;        // times that the sand was stopped because the disk was full
+    std::uint64_t stepsLeftOut = 0;  // see Summary
     friend bool operator==(const Incidents&, const Incidents&) = default;
 };
 

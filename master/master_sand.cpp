@@ -29,6 +29,9 @@ void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::Tim
     source.reached(replica_);
     for (const haptic_bridge::TimedStep& timed : steps) {
         replica_.apply(timed.step);
+        if (!replica_.leftOut().empty()) {
+            leftOut_.push_back({timed.step.number, replica_.leftOut()});
+        }
         edits_ += timed.step.edit.any() ? 1 : 0;
         source.reached(replica_);
     }

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lockstep/fault.hpp"
@@ -10,6 +12,12 @@
 #include "sand/replica.hpp"
 
 namespace master {
+
+/// What a step has not done, although the journal holds it. See sand::Replica::leftOut().
+struct LeftOut {
+    std::uint64_t step = 0;
+    std::string what;
+};
 
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.
 class MasterSand {
@@ -36,6 +44,8 @@ public:
     /// frame rate. `sinceSwap` is the time since the last swap [s].
     [[nodiscard]] std::uint32_t auditTiles(double sinceSwap) const;
 
+    /// Returns what the steps since the last call have left out.
+    [[nodiscard]] std::vector<LeftOut> takeLeftOut() { return std::exchange(leftOut_, {}); }
     /// Returns the number of steps with an edit since the session began.
     [[nodiscard]] std::uint64_t edits() const { return edits_; }
 
@@ -44,6 +54,7 @@ private:
     const lockstep::FaultsOfRank faults_;
     std::uint64_t hash_ = 0;
     std::uint64_t edits_ = 0;
+    std::vector<LeftOut> leftOut_;
 };
 
 }  // namespace master

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -11,6 +12,7 @@
 
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
+#include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "lockstep/session_message.hpp"
 #include "master/recovery.hpp"
@@ -108,6 +110,19 @@ void Session::keep(const lockstep::FrameMessage& frame) {
     }
 }
 
+/// A haptic server could send such steps in every frame. So the line is printed for the first one, and then whenever
+/// their number is a power of two.
+void Session::tellLeftOut() {
+    for (const LeftOut& one : sand_.takeLeftOut()) {
+        const std::uint64_t count = record_.before().stepsLeftOut + ++stepsLeftOut_;
+        if (std::has_single_bit(count)) {
+            host::printLine("step {}: {}; all ranks leave it out, and the session continues ({} such steps so far)",
+                            one.step, one.what, count);
+            host::emitEvent("step_left_out", {{"step", one.step}, {"what", one.what}, {"count", count}});
+        }
+    }
+}
+
 bool Session::showFrame(bool& more) {
     waitForFrame();
     desk_.obey(barrier_.arrivals());
@@ -120,6 +135,7 @@ bool Session::showFrame(bool& more) {
     const std::int64_t broadcast = monotonicNs();
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
+    tellLeftOut();
     const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
                                  0,           sand_.hash(),  viewProof_.hash(frame.view)};
     if (!agreement_.reach(mine, sand_, *steps_, clock_.next(held()))) {
@@ -144,6 +160,7 @@ Incidents Session::incidents() const {
     all.divergences += agreement_.divergences();
     all.healed += agreement_.healed();
     all.serverDivergences += serverDivergences_;
+    all.stepsLeftOut += stepsLeftOut_;
     all.stands += record_.stands();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
@@ -170,6 +187,7 @@ nlohmann::json Session::status() const {
                           {"divergences", all.divergences},
                           {"healed", all.healed},
                           {"server_divergences", all.serverDivergences},
+                          {"steps_left_out", all.stepsLeftOut},
                           {"edits", sand_.edits()},
                           {"can_undo", sand.canUndo()}};
     measure_.describe(status, labels_.names);
@@ -210,6 +228,7 @@ Summary Session::summary() {
     summary.divergences = all.divergences;
     summary.healed = all.healed;
     summary.serverDivergences = all.serverDivergences;
+    summary.stepsLeftOut = all.stepsLeftOut;
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
     summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
     summary.volumeFinal = sand.volume();

@@ -51,6 +51,7 @@ private:
 
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
+    void tellLeftOut();
     void waitForFrame();
     [[nodiscard]] Steps takeSteps();
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
@@ -82,6 +83,7 @@ private:
     Agreement agreement_;
     std::optional<Film> film_;
     std::uint64_t serverDivergences_ = 0;  // since this process started
+    std::uint64_t stepsLeftOut_ = 0;       // since this process started
 };
 
 }  // namespace master

@@ -120,6 +120,7 @@ ordered_json jsonOf(const Summary& summary) {
     json["healed"] = summary.healed;
     json["master_healed"] = summary.rankStatistics.empty() ? 0 : summary.rankStatistics.front().healed;
     json["server_divergences"] = summary.serverDivergences;
+    json["steps_left_out"] = summary.stepsLeftOut;
     json["volume_initial"] = summary.volumeInitial;
     json["volume_final"] = summary.volumeFinal;
     json["edits"] = summary.edits;

@@ -39,6 +39,7 @@ struct Summary {
     std::uint64_t divergences = 0;        // frames in which the ranks' sand differed
     std::uint64_t healed = 0;             // times that a rank was healed
     std::uint64_t serverDivergences = 0;  // frames in which the haptic server's sand differed
+    std::uint64_t stepsLeftOut = 0;       // steps with a sand::Replica::leftOut()
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     double seconds = 0;                                                  // from the first swap to the last
     lockstep::Statistics frameMs;                                        // from swap to swap

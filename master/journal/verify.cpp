@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 
 #include "base/input_error.hpp"
 #include "host/print_line.hpp"
@@ -49,6 +50,9 @@ public:
             }
             lastEpoch_ = std::max(lastEpoch_, step.epoch);
             terrain_.apply(step);
+            if (!terrain_.leftOut().empty() && leftOut_++ == 0) {
+                firstLeftOut_ = fmt::format(", the first is step {}: {}", step.number, terrain_.leftOut());
+            }
             compareCheckpoint();
         }
     }
@@ -103,6 +107,7 @@ private:
                                             : fmt::format("{} bytes of an incomplete record", reader_.tornBytes()));
         fmt::print("steps        {} without a gap, in frames {} to {}, epochs to {}, {} pieces of ticks\n",
                    terrain_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
+        fmt::print("left out     {} steps{}\n", leftOut_, firstLeftOut_);
         fmt::print("hashes       {} of {} equal to the replay's\n", hashes_ - differing_, hashes_);
         for (const auto& [step, found] : checkpoints_) {
             fmt::print("checkpoint   of step {}: {}\n", step, found.empty() ? "beyond the journal's end" : found);
@@ -119,6 +124,8 @@ private:
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
     std::uint64_t firstFrame_ = 0, lastFrame_ = 0;
     std::uint32_t lastEpoch_ = 0;
+    std::uint64_t leftOut_ = 0;  // steps
+    std::string firstLeftOut_;
     std::int64_t cutBytes_ = 0;
     std::optional<JournalEnd> end_;
 };

@@ -75,8 +75,8 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(before[0]["cut_bytes"], 8);
     EXPECT_GT(before[0]["checkpoint_step"], 0);
     const std::uint64_t end = before[0]["step"].get<std::uint64_t>() + 400;
-    nlohmann::json incidents{{"divergences", 3}, {"healed", 2},     {"server_divergences", 0},
-                             {"links", 5},       {"reconnects", 4}, {"stands", 1}};
+    nlohmann::json incidents{{"divergences", 3}, {"healed", 2}, {"server_divergences", 0}, {"links", 5},
+                             {"reconnects", 4},  {"stands", 1}, {"steps_left_out", 8}};
     for (const std::string_view kind : haptic_bridge::kRefusalNames) {
         incidents["refused_by_server"][std::string(kind)] = 6;
         incidents["refused"][std::string(kind)] = 7;

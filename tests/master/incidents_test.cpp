@@ -20,8 +20,13 @@ protected:
 };
 
 TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
-    master::Incidents some{
-        .divergences = 3, .healed = 2, .serverDivergences = 1, .links = 6, .reconnects = 4, .stands = 1};
+    master::Incidents some{.divergences = 3,
+                           .healed = 2,
+                           .serverDivergences = 1,
+                           .links = 6,
+                           .reconnects = 4,
+                           .stands = 1,
+                           .stepsLeftOut = 9};
     some.refusedHere[1] = 8;
     some.refused[0] = 7;
     some.refused.back() = 5;

@@ -5,7 +5,10 @@
 
 #include <random>
 
+#include "tests/fuzz/tin_scene.hpp"
 #include "tests/master/no_steps.hpp"
+#include "tests/support/hostile_sand.hpp"
+#include "tests/support/memory_limit.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -65,6 +68,26 @@ TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
     EXPECT_EQ(sand.hash(), right) << "the fault of another rank";
     sand.apply(2, {}, all, notes);
     EXPECT_NE(sand.hash(), right);
+}
+
+// A haptic server can send sand of 33 KB that claims 2^30 vertices.
+TEST(MasterSand, GoesOnAfterALoadThatClaimsTooMuch) {
+    const scene::Scene scene = fuzz::tinScene();
+    const base::Bytes dead = hostile_sand::ofDeadVertices(*scene.tin, std::uint64_t{1} << 30);
+    const std::string said = test::inTwoGiB([&] {
+        Notes notes;
+        master::MasterSand sand(scene, {}, {});
+        std::vector<TimedStep> steps(2);
+        steps[0].step = {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(dead)};
+        steps[1].step = {.epoch = 1, .number = 2, .engaged = false, .path = {}};
+        sand.apply(1, steps, 0, notes);
+        const std::vector<master::LeftOut> leftOut = sand.takeLeftOut();
+        if (sand.replica().stepNumber() != 2 || leftOut.size() != 1 || leftOut[0].step != 1 ||
+            !sand.takeLeftOut().empty()) {
+            throw std::runtime_error("not all steps were applied, or the load was not reported");
+        }
+    });
+    EXPECT_EQ(said, "done");
 }
 
 TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
