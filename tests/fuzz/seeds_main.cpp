@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, journal, checkpoint, state,
-// tin, head, wall.
+// steps, tin, head, wall.
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -133,6 +133,35 @@ void writeCheckpoints(Folder folder) {
     }
 }
 
+/// Returns the plain bytes of sand, as fuzz::packedSand() reads them.
+Bytes plainOf(const sand::Replica& terrain) {
+    base::ByteWriter plain;
+    if (const auto* tin = dynamic_cast<const sand::tin::TinSurface*>(&terrain.surface()); tin != nullptr) {
+        dynamic_cast<const sand::tin::Snapshot&>(*tin->copy()).state().encode(plain);
+        tin->layer().encode(plain);
+        return plain.take();
+    }
+    plain.put(terrain.outflow());
+    const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            plain.put(field.height(x, y));
+        }
+    }
+    plain.put(std::int32_t{3});
+    plain.put(std::uint8_t{0});
+    return plain.take();
+}
+
+/// Returns the plain bytes of a state, as fuzz::packedState() reads them. The sand of `before` is kept for an undo.
+Bytes plainStateOf(const sand::Replica& terrain, const sand::Replica& before) {
+    base::ByteWriter plain;
+    plain.putBytes(piece(terrain.copyState().head));
+    plain.putBytes(piece(plainOf(before)));
+    plain.putBytes(plainOf(terrain));
+    return plain.take();
+}
+
 void writeState(Folder folder) {
     const scene::Scene scene = samples::flatScene(24, 16);
     sand::Replica terrain(scene);
@@ -143,6 +172,35 @@ void writeState(Folder folder) {
     folder.add(terrain.copySand()->encode(), {1});
     folder.add(scene.encode(), {2});
     folder.add(terrain.copySand()->encode(), {3});
+    folder.add(plainStateOf(terrain, sand::Replica(scene)), {4});
+    folder.add(plainOf(terrain), {5});
+    folder.add(plainOf(terrain), {7});
+}
+
+/// Writes inputs of the fuzzer of steps: a kind of scene, a state, and steps with every edit.
+void writeSteps(Folder folder) {
+    std::array<scene::Scene, 5> scenes{samples::flatScene(24, 16), samples::flatScene(24, 16),
+                                       samples::flatScene(24, 16), fuzz::tinScene(), fuzz::tinScene()};
+    for (std::uint8_t kind = 0; kind < scenes.size(); ++kind) {
+        sand::Replica terrain(scenes[kind]);
+        const sand::Replica before = terrain;
+        terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
+        base::ByteWriter input;
+        input.putBytes(piece(plainStateOf(terrain, before)));
+        sand::Edit tuned = sand::Edit::tuned(scenes[kind].rules.tuning());
+        tuned.tuning.toolKind = sand::ToolKind::rectangle;
+        tuned.tuning.toolHalfWidth = tuned.tuning.toolRadius / 2;
+        for (const sand::Edit& edit :
+             {sand::Edit(), sand::Edit(sand::Edit::settle), tuned, sand::Edit(sand::Edit::undo),
+              sand::Edit::loaded(plainOf(before)), sand::Edit(sand::Edit::reset)}) {
+            sand::Step next = step(1);
+            next.edit = edit;
+            base::ByteWriter bytes;
+            encode(next, bytes);
+            input.putBytes(piece(bytes.take()));
+        }
+        folder.add(input.take(), {kind});
+    }
 }
 
 void writeTin(Folder folder) {
@@ -170,6 +228,10 @@ void writeTin(Folder folder) {
     walls.setWall(3, 3);
     sand::tin::follow(sand::HeightField(6, 6, 1), &walls, {.maxError = 1000}).start.encode(start);
     folder.add(start.take(), {2});
+    sand::Replica whole(scene);
+    const sand::Replica before = whole;
+    whole.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{1000, 1000, 200}, {2000, 1500, 100}}});
+    folder.add(plainStateOf(whole, before), {3});
 }
 
 void writeHead(Folder folder) {
@@ -195,6 +257,7 @@ int main(int count, char** words) {
     writeJournal({folder, "journal"}, folder / "scratch.journal");
     writeCheckpoints({folder, "checkpoint"});
     writeState({folder, "state"});
+    writeSteps({folder, "steps"});
     writeTin({folder, "tin"});
     writeHead({folder, "head"});
     Folder walls(folder, "wall");

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzzes a state that is sent to a replica, saved sand, and the scene at the start of a journal or of a master. The
-// input is compressed first if a bit of it asks for that. A flipped bit of compressed data would never reach the code
-// behind the decompression.
-#include <zstd.h>
-
+// Fuzzes a state that is sent to a replica, saved sand, and the scene at the start of a journal or of a master. If a
+// bit of the input asks for it, the cells of states and sand are plain bytes, which are compressed here. A flipped bit
+// of compressed data would never reach the code behind the decompression.
 #include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/plain_sand.hpp"
 #include "tests/support/sand_samples.hpp"
-
-namespace {
-
-base::Bytes compressed(fuzz::Input bytes) {
-    base::Bytes packed(ZSTD_compressBound(bytes.size()));
-    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
-    return packed;
-}
-
-}  // namespace
 
 SANDWALL_FUZZER(state) {
     if (size == 0) {
@@ -26,8 +15,14 @@ SANDWALL_FUZZER(state) {
     }
     static const scene::Scene kScene = samples::flatScene(24, 16);
     const fuzz::Input raw = fuzz::Input(data, size).subspan(1);
-    const base::Bytes packed = (data[0] & 4U) != 0 ? compressed(raw) : base::Bytes(raw.begin(), raw.end());
     fuzz::takeOrRefuse([&] {
+        base::Bytes packed(raw.begin(), raw.end());
+        if ((data[0] & 4U) != 0 && (data[0] & 3U) == 0) {
+            packed = fuzz::packedState(raw, kScene);
+        } else if ((data[0] & 4U) != 0) {
+            base::ByteReader plain(raw);
+            packed = fuzz::packedSand(plain, kScene);
+        }
         switch (data[0] & 3U) {
             case 0: {
                 sand::Replica terrain(kScene);

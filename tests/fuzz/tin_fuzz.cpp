@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuzzes a TIN in a state, in saved sand or in a scene: its layer, its start and the imprint of a tool. An accepted TIN
 // must be equal after it is encoded and decoded. Then its sand moves: digging, sliding and removing vertices.
-#include <zstd.h>
-
 #include <array>
 
+#include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "scene/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/plain_sand.hpp"
 #include "tests/fuzz/tin_scene.hpp"
 
 namespace {
@@ -15,18 +15,10 @@ namespace {
 using sand::ProbePoint;
 using sand::tin::TinSurface;
 
-/// Returns the bytes of a state. `plain` holds a TinState, and behind it a layer.
+/// Returns sand as a state has it. `plain` holds a TinState, and behind it the vertices.
 base::Bytes packed(fuzz::Input plain) {
     base::ByteReader reader(plain);
-    const auto state = sand::tin::TinState::decode(reader);
-    const auto rest = reader.rest();
-    base::ByteWriter writer;
-    state.encode(writer);
-    writer.put(static_cast<std::uint64_t>(rest.size()));
-    base::Bytes layer(ZSTD_compressBound(rest.size()));
-    layer.resize(ZSTD_compress(layer.data(), layer.size(), rest.data(), rest.size(), 1));
-    writer.putBytes(layer);
-    return writer.take();
+    return fuzz::packedTin(reader);
 }
 
 void require(bool good, const char* what) {
@@ -76,6 +68,16 @@ SANDWALL_FUZZER(tin) {
             case 1:
                 takeState(raw);
                 break;
+            case 3: {  // a whole state, with the sand that is kept for an undo
+                static const scene::Scene kScene = fuzz::tinScene();
+                sand::Replica replica(kScene);
+                replica.decodeState(fuzz::packedState(raw, kScene));
+                sand::Replica again(kScene);
+                again.decodeState(replica.encodeState());
+                require(again.stateHash() == replica.stateHash() && again.encodeState() == replica.encodeState(),
+                        "a whole state differs after it is encoded and decoded");
+                break;
+            }
             default: {
                 base::ByteReader reader(raw);
                 const auto start = sand::tin::TinStart::decode(reader);
