@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <csignal>
+#include <regex>
 
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
@@ -66,6 +69,29 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_GE(summary()["recoveries"].size(), 3U);
     EXPECT_GE(summary()["steps"], lastShown);
+    EXPECT_EQ(summary()["divergences"], 0);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
+}
+
+// Whether there is memory depends on the host. So a rank without memory for a step must end, and not leave the step
+// out.
+TEST_F(Recovery, ARankWithoutMemoryEndsAndTheSessionGoesOn) {
+    const std::string field = scene();
+    write("scene.toml", std::regex_replace(read("scene.toml"), std::regex("128"), "1024"));
+    const auto session = start({"--wall", wall(1, 2, "mono"), "--scene", field, "--out", out(), "--no-pictures",
+                                "--restarts", "100000", "--restart-window", "0.001"});
+    expectFrames(*session);
+    ask("save level");
+    // The rank keeps the memory that it has, which is too little for other heights.
+    const rlimit none{1, 1};
+    const pid_t rank = support::findProgram(session->family(), "sandwall-render-node").value();
+    ASSERT_EQ(prlimit(rank, RLIMIT_AS, &none, nullptr), 0);
+    (void)answer("load level");  // the session may end before it answers
+    expectSteps(*session, "recovered", 1);
+    session->signal(SIGINT);
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_GE(summary()["recoveries"].size(), 1U);
+    EXPECT_EQ(summary()["steps_left_out"], 0);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
