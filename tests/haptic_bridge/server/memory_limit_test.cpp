@@ -43,13 +43,16 @@ constexpr const char* kTinScene = R"(
 name = "small"
 [field]
 columns = 64
+width = 2.0
 [terrain]
 kind = "dunes"
-dune_height = 0.1
+height = 0.3
+dune_height = 0.15
 dune_length = 0.8
 [tin]
+max_error = 0.01
 [tool]
-radius = 0.04
+radius = 0.1
 [material]
 talus_deg = 34
 )";
