@@ -5,8 +5,10 @@
 
 #include <cstring>
 
+#include "base/float_environment.hpp"
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
+#include "host/print_line.hpp"
 
 namespace host {
 namespace {
@@ -53,6 +55,10 @@ void* loadModule(const Module& module, const std::vector<fs::path>& folders) {
                                module.ifNotLoaded);
     }
     requireSameBuild(handle, file);
+    if (const std::string was = base::repairFloats(); !was.empty()) {
+        printLine("{}: a library of it changed how this process computes: it {}; this was set back", file.string(),
+                  was);
+    }
     void* const symbol = dlsym(handle, module.symbol.c_str());
     if (symbol == nullptr) {
         throw base::InputError(file.string() + ": does not define " + module.symbol + "; " + module.ifNotLoaded);

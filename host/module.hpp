@@ -20,7 +20,8 @@ struct Module {
 [[nodiscard]] std::vector<std::filesystem::path> moduleFolders();
 
 /// Loads a module and returns the address of its symbol. The module stays loaded until the process ends, because
-/// libraries leave threads and thread-local memory behind.
+/// libraries leave threads and thread-local memory behind. If loading changed how the calling thread computes with
+/// floats (base/float_environment.hpp), sets this back and prints a line.
 ///
 /// Throws base::InputError if the module is in none of the folders, cannot be loaded, or is of another build.
 [[nodiscard]] void* loadModule(const Module& module,

@@ -8,6 +8,8 @@
 #include <latch>
 #include <stdexcept>
 
+#include "base/float_environment.hpp"
+
 namespace host {
 
 WorkerPool::WorkerPool(int threads) : threads_(threads), executor_(executor()) {
@@ -36,6 +38,7 @@ void WorkerPool::run(int count, const std::function<void(int)>& task) {
     std::latch done(helpers);
     for (int i = 0; i < helpers; ++i) {
         boost::asio::post(*helpers_, [&work, &done] {
+            (void)base::needDefaultFloats();  // the thread that made the pool may have loaded anything before
             work();
             done.count_down();
         });

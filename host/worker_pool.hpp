@@ -17,7 +17,8 @@ inline constexpr int kMostThreads = 256;
 /// Pool of threads that run tasks. It provides the base::Executor of a program.
 ///
 /// The thread that calls run() works too, so a pool of one has no further threads. Each free thread takes the next
-/// task. A task must not throw, and must not call run() of the same pool. Threads: one caller of run() at a time.
+/// task. A task must not throw, and must not call run() of the same pool. The threads of the pool compute with floats
+/// as the sand needs it (base/float_environment.hpp). Threads: one caller of run() at a time.
 class WorkerPool {
 public:
     /// Throws std::invalid_argument if `threads` is outside [1, kMostThreads].

@@ -48,7 +48,7 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
     base::ByteWriter writer;
-    for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer}) {
+    for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer, mine.otherFloats}) {
         writer.putText(text);
     }
     writer.putVarint(mine.shortcomings.size());
@@ -60,7 +60,7 @@ std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& 
     for (const base::Bytes& bytes : cluster.gather(writer.take())) {
         base::ByteReader reader(bytes);
         Readiness& rank = result.emplace_back();
-        for (std::string* text : {&rank.host, &rank.buildId, &rank.error, &rank.renderer}) {
+        for (std::string* text : {&rank.host, &rank.buildId, &rank.error, &rank.renderer, &rank.otherFloats}) {
             *text = reader.getText();
         }
         rank.shortcomings.resize(reader.getVarint());

@@ -41,6 +41,9 @@ struct Readiness {
     std::vector<std::string> shortcomings;
     // Number of first frames whose swap times do not count, because a hardware barrier has not settled yet.
     std::uint32_t framesToIgnore = 0;
+    // The float arithmetic of the rank's thread after its OpenGL driver was loaded, in words, if the sand needs another
+    // one. The rank has set it back. Empty if nothing was changed.
+    std::string otherFloats{};
 };
 
 /// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. Collective.

@@ -5,6 +5,7 @@
 
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
+#include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
@@ -85,6 +86,11 @@ void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vect
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
         for (const std::string& line : ranks[rank].shortcomings) {
             host::printLine("{}: {}", names[rank], line);
+        }
+        if (const std::string& was = ranks[rank].otherFloats; !was.empty()) {
+            host::printLine("{}: its OpenGL driver changed how the rank computes: it {}; the rank has set this back",
+                            names[rank], was);
+            host::emitEvent("floats", {{"rank", static_cast<int>(rank)}, {"was", was}});
         }
     }
 }

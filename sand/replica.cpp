@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/float_environment.hpp"
 #include "sand/surface_factory.hpp"
 
 namespace sand {
@@ -47,10 +48,13 @@ std::uint64_t mix(std::uint64_t value) {
 }  // namespace
 
 Replica::Replica(const Start& start, const grid::Erosion::Options& options)
+    : Replica(start, makeSurface(start, options)) {}
+
+Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
-      surface_(makeSurface(start, options)),
+      surface_(std::move(surface)),
       heading_(start.rules.toolHeading) {}
 
 Replica::Replica(const Replica& other)
@@ -83,6 +87,7 @@ std::int64_t Replica::leastBytes(int columns, int rows) {
 }
 
 void Replica::apply(const Step& step) {
+    (void)base::needDefaultFloats();  // a driver may change the rounding of its caller at any time
     if (step.number != stepNumber_ + 1) {
         throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
                                std::to_string(stepNumber_));
@@ -258,6 +263,7 @@ base::Bytes StateCopy::encode() const {
 }
 
 void Replica::decodeState(std::span<const std::uint8_t> bytes) {
+    (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);
     if (const auto version = reader.get<std::uint32_t>(); version != kStateVersion) {
         throw base::FormatError("a state of version " + std::to_string(version));

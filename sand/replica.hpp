@@ -30,12 +30,15 @@ struct StateCopy {
 /// One program's copy of the sand, and apply(), the function through which each step changes it.
 ///
 /// Replicas that begin with the same Start and apply the same steps are equal bit for bit. Compiler, number of threads
-/// and block size make no difference. Not thread-safe.
+/// and block size make no difference. apply() and decodeState() set the calling thread to compute with floats as the
+/// sand needs it (base/float_environment.hpp), and leave it so. Not thread-safe.
 class Replica {
 public:
     /// Creates the sand of `start`. `options` choose how a height field is swept; they never change the result, and a
     /// TIN ignores them. The replica replaces `options.ground` by the ground of `start`.
     explicit Replica(const Start& start, const grid::Erosion::Options& options = {});
+    /// Creates the replica of `start` whose sand is `surface`, which must be of the same field. Tests use it.
+    Replica(const Start& start, std::unique_ptr<Surface> surface);
     Replica(const Replica& other);
     Replica& operator=(const Replica& other);
     Replica(Replica&&) noexcept = default;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/surface_factory.hpp"
 
+#include "base/float_environment.hpp"
 #include "sand/grid/surface.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/surface.hpp"
@@ -8,6 +9,7 @@
 namespace sand {
 
 std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options) {
+    (void)base::needDefaultFloats();
     if (start.tin != nullptr) {
         return std::make_unique<tin::TinSurface>(start.rules, start.tin);
     }

@@ -4,9 +4,11 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "base/float_environment.hpp"
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
 #include "host/module.hpp"
+#include "host/print_line.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -22,6 +24,10 @@ void* loadDriver(const fs::path& file, const std::string& option) {
         throw base::InputError(
             fmt::format("{}: {}; give a driver's module, and its libraries where the loader finds them", option,
                         reason == nullptr ? file.string() + " cannot be loaded" : reason));
+    }
+    if (const std::string was = base::repairFloats(); !was.empty()) {
+        host::printLine("{}: the driver changed how this process computes: it {}; this was set back", file.string(),
+                        was);
     }
     return handle;
 }

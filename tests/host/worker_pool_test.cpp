@@ -4,13 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <latch>
+#include <memory>
 #include <random>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
+#include "base/float_environment.hpp"
 #include "sand/grid/erosion.hpp"
+#include "tests/support/other_floats.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -36,6 +41,24 @@ TEST(WorkerPool, WorksOnAllThreadsAtOnce) {
     std::latch begun(3);
     pool.run(3, [&](int) { begun.arrive_and_wait(); });
     EXPECT_TRUE(begun.try_wait());
+}
+
+TEST(WorkerPool, ItsThreadsComputeAsTheSandNeedsAlthoughTheirCreatorDoesNot) {
+    std::unique_ptr<WorkerPool> pool;
+    {
+        const test::OtherFloats other;
+        pool = std::make_unique<WorkerPool>(3);
+        pool->run(3, [](int) {});
+    }
+    std::latch begun(3);
+    std::array<std::string, 3> unusual;
+    pool->run(3, [&](int i) {
+        unusual[static_cast<std::size_t>(i)] = base::unusualFloats();
+        begun.arrive_and_wait();
+    });
+    for (const std::string& words : unusual) {
+        EXPECT_EQ(words, "");
+    }
 }
 
 TEST(WorkerPool, RefusesToBeNobodyOrAMob) {

@@ -5,7 +5,9 @@
 
 #include <random>
 
+#include "base/float_environment.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/other_floats.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -106,6 +108,16 @@ TEST(Replica, HoveringLeavesTheSandAlone) {
     terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     EXPECT_TRUE(terrain.settled());
+}
+
+// As after a call of a driver that was compiled with fast-math. Float products round otherwise, and with them fluxes.
+TEST(Replica, ComputesTheSameAlthoughItsCallerRoundsUp) {
+    const scene::Scene scene = samples::flatScene(96, 64);
+    Replica expected = dragged(scene, at(20, 32, 2), at(70, 32, 2), 60);
+    const test::OtherFloats other;
+    Replica terrain = dragged(scene, at(20, 32, 2), at(70, 32, 2), 60);
+    EXPECT_EQ(terrain.stateHash(), expected.stateHash());
+    EXPECT_EQ(base::unusualFloats(), "") << "until the next call of the driver";
 }
 
 TEST(Replica, RefusesStepsOutOfOrder) {
