@@ -90,7 +90,7 @@ void Client::Session::take(Link link, const PositionGreeting& greeting) {
     }
     countLink();
     shelf.dropPositions();
-    backOff_ = kFirstBackOff;
+    linkedNs_ = host::monotonicNs();
     shelf.tell(Link::streaming, fmt::format("{}: connected, '{}' streams positions; the master numbers the steps",
                                             peer_, greeting.name));
 }

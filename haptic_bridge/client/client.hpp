@@ -134,7 +134,7 @@ public:
     /// `linked`.
     void shareForce(double share);
     /// Returns the pieces of the server's tick track since the last call. The journal keeps them. Pieces that came
-    /// before the link ended can still be drained. About half an hour of pieces can wait; later pieces are dropped.
+    /// before the link ended can still be drained. kMaxTicks bytes can wait; later pieces are dropped.
     [[nodiscard]] std::vector<base::Bytes> drainTicks();
     /// Returns the positions of a streaming server since the last call, in order. When kMaxPositions wait, the network
     /// thread stops reading until this is called.
@@ -157,6 +157,7 @@ public:
     static constexpr std::int64_t kSilenceNs = 10'000'000'000;
     static constexpr std::size_t kMaxQueued = 1024;      // [step] that may wait
     static constexpr std::size_t kMaxPositions = 16384;  // [position] that may wait, 1 s of a device read at 16 kHz
+    static constexpr std::size_t kMaxTicks = 8 << 20;    // [byte] of tick pieces that may wait, 1.5 min of a hand
 
 private:
     class Session;

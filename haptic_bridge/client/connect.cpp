@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "haptic_bridge/client/connection_thread.hpp"
+#include "host/clock.hpp"
 
 namespace haptic_bridge {
 
@@ -17,6 +18,7 @@ using boost::system::error_code;
 namespace {
 
 constexpr std::chrono::milliseconds kConnectTimeout{3000};
+constexpr std::int64_t kLastingNs = 1'000'000'000;  // [ns]
 
 }  // namespace
 
@@ -90,6 +92,10 @@ void Client::Session::closed(const std::string& why) {
         return;
     }
     if (isUp(before)) {
+        // A server that ends each link at once is asked as rarely as one that does not answer.
+        const bool began = before == Link::linked || before == Link::streaming;
+        const bool lasted = began && host::monotonicNs() - linkedNs_ >= kLastingNs;
+        backOff_ = lasted ? kFirstBackOff : backOff_;
         shelf.tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer_, why));
     } else if (before != Link::refused) {
         failed(why);

@@ -149,7 +149,8 @@ void Client::Session::shareForce(double share) {
 void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && shelf.link() == Link::linked) {
-            connection_->expectLoads(request.edit.kind == sand::Edit::load);  // the load comes back in a step
+            grant_.asked(request.edit);
+            connection_->expectLoads(grant_.awaitsLoad());  // a load comes back in a step
             connection_->send(request);
         }
     });
@@ -251,7 +252,7 @@ void Client::Session::take(Link link, const Ready&) {
         return;
     }
     grant_.begun();
-    backOff_ = kFirstBackOff;
+    linkedNs_ = host::monotonicNs();
     const Start& start = grant_.start();
     shelf.tell(Link::linked,
                fmt::format("{}: linked, epoch {} from step {}", peer_, start.epoch, start.stepNumber + 1));

@@ -98,7 +98,8 @@ private:
     Grant grant_;
     ClockOffset clock_;
     Milliseconds backOff_{};
-    std::int64_t heardNs_ = 0;  // [ns], on the clock now_
+    std::int64_t heardNs_ = 0;   // [ns], on the clock now_
+    std::int64_t linkedNs_ = 0;  // [ns], on the host's clock: begin of the last link
     std::chrono::steady_clock::time_point silentUntil_;
     int pings_ = 0;
     bool everWelcomed_ = false, stopping_ = false;

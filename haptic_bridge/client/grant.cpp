@@ -34,8 +34,27 @@ Grant::Arrival Grant::arrived(const sand::Step& step) {
     if (step.number != lastStep_ + 1) {
         return Arrival::afterGap;
     }
+    if (step.edit.any()) {
+        const auto edit = std::find(asked_.begin(), asked_.end(), step.edit);
+        if (edit == asked_.end()) {
+            return Arrival::unasked;
+        }
+        asked_.erase(asked_.begin(), edit + 1);
+    }
     lastStep_ = step.number;
     return Arrival::next;
+}
+
+void Grant::asked(const sand::Edit& edit) {
+    if (asked_.size() == kMostAsked) {
+        asked_.pop_front();
+    }
+    asked_.push_back(edit);
+}
+
+bool Grant::awaitsLoad() const {
+    return std::any_of(asked_.begin(), asked_.end(),
+                       [](const sand::Edit& edit) { return edit.kind == sand::Edit::load; });
 }
 
 Shown Grant::bounded(const Shown& frame) const {

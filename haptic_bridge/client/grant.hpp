@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <vector>
 
 #include "haptic_bridge/link/protocol.hpp"
@@ -31,10 +32,17 @@ public:
         recent_ = {};
     }
 
-    enum class Arrival { next, stale, foreign, afterGap };
-    /// Classifies a step of the server by epoch and number. If it is the next step, it counts as the last one from now
-    /// on.
+    enum class Arrival { next, stale, foreign, afterGap, unasked };
+    /// Classifies a step of the server by epoch, number and edit. `unasked` is the next step with an edit that asked()
+    /// does not know. If it is the next step, it counts as the last one from now on, and its edit as done.
     [[nodiscard]] Arrival arrived(const sand::Step& step);
+    /// Notes that the server was asked for `edit`. One step may then hold it. The server may also replace it by an edit
+    /// that it is asked for later. Forgets the oldest of more than kMostAsked edits.
+    void asked(const sand::Edit& edit);
+    /// Returns whether a step that loads sand may come.
+    [[nodiscard]] bool awaitsLoad() const;
+
+    static constexpr std::size_t kMostAsked = 16;
     /// Limits the step number of `frame` to the steps of this grant. A frame that was drawn before the first step
     /// therefore reports no step of it.
     [[nodiscard]] Shown bounded(const Shown& frame) const;
@@ -43,6 +51,7 @@ private:
     Start start_;
     base::Bytes state_;
     StepRing recent_;
+    std::deque<sand::Edit> asked_;  // edits that are in no step yet, oldest first
     int handOvers_ = 0;
     std::uint64_t lastStep_ = 0;
 };

@@ -8,8 +8,8 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr std::size_t kMaxTests = 64;         // a wall that shows no frames answers no tests
-constexpr std::size_t kMaxTickPieces = 4096;  // half an hour of pieces; a session without a journal never drains them
+constexpr std::size_t kMaxTests = 64;    // a wall that shows no frames answers no tests
+constexpr std::size_t kPieceBytes = 64;  // [byte], overhead of a piece
 
 }  // namespace
 
@@ -113,13 +113,16 @@ bool Shelf::full() const {
 
 void Shelf::addTicks(base::Bytes piece) {
     const std::lock_guard lock(mutex_);
-    if (ticks_.size() < kMaxTickPieces) {
+    const std::size_t bytes = piece.size() + kPieceBytes;
+    if (tickBytes_ + bytes <= Client::kMaxTicks) {
+        tickBytes_ += bytes;
         ticks_.push_back(std::move(piece));
     }
 }
 
 std::vector<base::Bytes> Shelf::drainTicks() {
     const std::lock_guard lock(mutex_);
+    tickBytes_ = 0;
     return std::exchange(ticks_, {});
 }
 

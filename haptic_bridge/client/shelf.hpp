@@ -73,6 +73,7 @@ private:
     std::deque<Test> tests_;                   // tests that wait for a frame, as steps do
     std::vector<std::uint32_t> testsInFrame_;  // ids of tests to be answered after the next swap
     std::vector<base::Bytes> ticks_;
+    std::size_t tickBytes_ = 0;  // [byte] of ticks_
     std::vector<TimedPosition> positions_;
     std::uint64_t floods_ = 0;
     std::optional<Report> report_;

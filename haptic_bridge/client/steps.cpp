@@ -30,7 +30,12 @@ void Client::Session::take(Link link, StepMessage& message) {
         case Grant::Arrival::afterGap:
             connection_->close(fmt::format("step {} came after step {}", number, last));
             break;
+        case Grant::Arrival::unasked:
+            connection_->close(fmt::format("step {} holds an edit that the master has not asked for", number),
+                               RefusalCode::garbage);
+            break;
         case Grant::Arrival::next:
+            connection_->expectLoads(grant_.awaitsLoad());
             if (shelf.add(
                     TimedStep{std::move(message.step), message.serverTimeNs, message.stateHash, host::monotonicNs()})) {
                 connection_->pause();

@@ -11,7 +11,7 @@ namespace haptic_bridge {
 namespace {
 
 constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
-constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], largest capacity that an empty buffer keeps
+constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], largest capacity that a buffer keeps after a long message
 
 template <class Kind>
 constexpr std::uint8_t typeOf() {
@@ -34,11 +34,13 @@ bool MessageReader::mayBeLong(std::uint8_t type) const {
 
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {
     if (begin_ > 0) {
-        buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
-        begin_ = 0;
-        if (buffer_.empty() && buffer_.capacity() > kMaxKept) {
-            buffer_ = base::Bytes();  // frees the memory that a State needed
+        const auto rest = std::span<const std::uint8_t>(buffer_).subspan(begin_);
+        if (buffer_.capacity() > kMaxKept && rest.size() <= kMaxKept) {
+            buffer_ = base::Bytes(rest.begin(), rest.end());  // frees the memory of a long message
+        } else {
+            buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
         }
+        begin_ = 0;
     }
     const std::size_t end = buffer_.size();
     buffer_.resize(end + bytes.size());

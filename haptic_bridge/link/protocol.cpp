@@ -34,6 +34,21 @@ std::string getLine(base::ByteReader& reader) {
     return text;
 }
 
+/// Reads the reason of a Refusal or a Bye, and keeps at most kMaxReason bytes of it. A server that connects again and
+/// again must not fill the master's log.
+std::string getReason(base::ByteReader& reader) {
+    std::string reason = getLine(reader);
+    if (reason.size() > kMaxReason) {
+        std::size_t end = kMaxReason - 3;
+        while (end > 0 && (static_cast<unsigned char>(reason[end]) & 0xc0U) == 0x80) {  // in the middle of a character
+            --end;
+        }
+        reason.resize(end);
+        reason += "...";
+    }
+    return reason;
+}
+
 /// Reads an identity. If the protocol version differs, skips the rest of the message, because its layout is unknown.
 Identity getIdentity(base::ByteReader& reader) {
     if (reader.get<std::uint32_t>() != kMagic) {
@@ -225,7 +240,7 @@ void get(Refusal& refusal, base::ByteReader& reader) {
         throw base::FormatError("a refusal with code " + std::to_string(code));
     }
     refusal.code = static_cast<RefusalCode>(code);
-    refusal.text = getLine(reader);
+    refusal.text = getReason(reader);
 }
 void get(Start& start, base::ByteReader& reader) {
     start.epoch = reader.get<std::uint32_t>();
@@ -276,7 +291,7 @@ void get(Report& report, base::ByteReader& reader) {
         }
     });
 }
-void get(Bye& bye, base::ByteReader& reader) { bye.reason = getLine(reader); }
+void get(Bye& bye, base::ByteReader& reader) { bye.reason = getReason(reader); }
 void get(EditRequest& request, base::ByteReader& reader) {
     const auto edit = reader.get<std::uint8_t>();
     if (edit == 0 || edit >= sand::kEdits) {

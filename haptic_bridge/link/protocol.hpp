@@ -30,6 +30,7 @@ inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and paylo
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits, with the path of its step");
 inline constexpr std::size_t kMaxSceneName = 256;  // [byte], also for the name of a device
+inline constexpr std::size_t kMaxReason = 512;     // [byte] of the reason in a Refusal or a Bye; the rest is cut off
 inline constexpr std::size_t kMaxCatchUp = 16;     // [step] in one CatchUp; a step takes at most about 1.5 KiB
 
 /// Versions and scene of one side. Both sides must have the same before the server may send steps.

@@ -12,7 +12,10 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kPoll = 5ms;
-constexpr std::size_t kMostPieces = 4096;  // when so many wait, the master is gone
+// [byte] of pieces that may wait for the master, some 10 s of a hand. The server sends them all before its next step,
+// and its connection ends if more than 1 MiB waits to be sent. So a session may be paused while ticks are recorded.
+constexpr std::size_t kMostBytes = 768 * 1024;
+constexpr std::size_t kPieceMessage = 16;  // [byte], more than the header of a message with a piece
 
 }  // namespace
 
@@ -72,6 +75,7 @@ void TickRecorder::take(const Entry& entry) {
         const TrackPiece header{++piece_.sitting, true, header_, {}};
         const std::lock_guard lock(mutex_);
         pieces_.clear();  // pieces of a previous link
+        pieceBytes_ = 0;
         pieces_.push_back(encode(header));
         return;
     }
@@ -89,13 +93,16 @@ void TickRecorder::endPiece() {
     base::Bytes bytes = encode(piece_);
     piece_.ticks.clear();
     const std::lock_guard lock(mutex_);
-    if (pieces_.size() < kMostPieces) {
+    const std::size_t more = bytes.size() + kPieceMessage;
+    if (pieceBytes_ + more <= kMostBytes) {
+        pieceBytes_ += more;
         pieces_.push_back(std::move(bytes));
     }
 }
 
 std::vector<base::Bytes> TickRecorder::takePieces() {
     const std::lock_guard lock(mutex_);
+    pieceBytes_ = 0;
     return std::exchange(pieces_, {});
 }
 

@@ -41,7 +41,7 @@ public:
     void add();
 
     // For the streaming thread.
-    /// Returns the pieces that the master has not received yet.
+    /// Returns the pieces that the master has not received yet. Some 10 s of a hand can wait; later pieces are dropped.
     [[nodiscard]] std::vector<base::Bytes> takePieces();
     /// Waits until everything that was added before is in pieces, but at most 0.3 s; under the fast pace at most 30 s.
     void flush();
@@ -66,6 +66,7 @@ private:
 
     std::mutex mutex_;
     std::vector<base::Bytes> pieces_;
+    std::size_t pieceBytes_ = 0;  // [byte] of the messages with these pieces, without the header of the sitting
 
     // For the recorder's own thread.
     TickFile file_;

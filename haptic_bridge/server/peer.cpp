@@ -23,6 +23,9 @@ constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // [byte]; a greeting takes
 constexpr double kWatcherRate = 50;                  // [message/s]; a watcher sends only four Pings per second
 constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte], about half a minute of steps
 
+/// Returns whether a step with `edit` is longer than an ordinary message.
+bool isLong(const sand::Edit& edit) { return edit.sand && edit.sand->size() > kMaxMessage; }
+
 }  // namespace
 
 Peer::Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection::Socket socket)
@@ -184,7 +187,8 @@ void Peer::take(EditRequest& request) {
         outOfTurn();
         return;
     }
-    connection_->expectLoads(request.edit.kind != sand::Edit::load);  // one load at a time, until it is in a step
+    // One long load at a time: until it is in a step, or until another edit has replaced it.
+    connection_->expectLoads(!isLong(request.edit));
     service_.sandThread->edit(std::move(request));
 }
 
@@ -272,7 +276,9 @@ void Peer::step(base::Bytes message) {
         sent_.bytes += message.size();
         sent_.lastBytes = message.size();
     }
-    connection_->expectLoads(true);
+    if (message.size() > kMaxMessage) {  // the load that the master asked for
+        connection_->expectLoads(true);
+    }
     for (const auto& watcher : roster_.watchers()) {
         watcher->watchStep(message);
     }

@@ -32,38 +32,63 @@ SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, H
 }
 
 SandThread::~SandThread() {
-    post(Stop{});
+    {
+        const std::lock_guard lock(mutex_);
+        commands_.stops = true;
+    }
+    wake_.notify_one();
     thread_.join();
 }
 
-void SandThread::post(Command command) {
+void SandThread::release() {
     {
         const std::lock_guard lock(mutex_);
-        commands_.push_back(std::move(command));
+        commands_.release();
     }
     wake_.notify_one();
 }
 
 void SandThread::run() {
-    while (!stopping_) {
+    for (bool stopping = false; !stopping;) {
         const bool stepDue = waitForWork();
-        std::deque<Command> commands;
+        Commands commands;
         {
             const std::lock_guard lock(mutex_);
-            commands.swap(commands_);
+            commands = std::exchange(commands_, {});
         }
+        stopping = commands.stops;
+        const bool commanded = !commands.empty();
         const bool ran = maker_.running();
-        for (Command& command : commands) {
-            std::visit([this](auto& kind) { obey(kind); }, command);
-        }
+        obey(commands);
         maker_.collect();
-        const bool steps = stepDue && commands.empty() && maker_.running();
+        const bool steps = stepDue && !commanded && maker_.running();
         if (steps) {
             maker_.makeStep();
         }
         if (steps || maker_.running() != ran) {
             showSand();
         }
+    }
+}
+
+void SandThread::obey(Commands& commands) {
+    if (commands.released) {
+        maker_.release();
+    }
+    if (commands.grant) {
+        maker_.start(commands.grant->session, commands.grant->start);
+    }
+    for (const CatchUp& steps : commands.catchUps) {
+        maker_.catchUp(steps);
+    }
+    if (commands.state) {
+        maker_.state(commands.state->bytes);
+    }
+    for (const Commands::Frame& frame : commands.frames) {
+        maker_.shown(frame.shown, frame.nowNs);
+    }
+    if (commands.edit) {
+        maker_.edit(std::move(*commands.edit));
     }
 }
 

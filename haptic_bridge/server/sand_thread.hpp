@@ -2,13 +2,13 @@
 #pragma once
 
 #include <condition_variable>
-#include <deque>
 #include <memory>
 #include <mutex>
 #include <thread>
-#include <variant>
+#include <utility>
 
 #include "haptic_bridge/loop/hand_channel.hpp"
+#include "haptic_bridge/server/commands.hpp"
 #include "haptic_bridge/server/step_maker.hpp"
 
 namespace haptic_bridge {
@@ -33,40 +33,29 @@ public:
     SandThread(const SandThread&) = delete;
     SandThread& operator=(const SandThread&) = delete;
 
-    // Any thread may call these. The answers come through Output.
-    void start(std::uint32_t session, const Start& start) { post(Granted{session, start}); }
+    // Any thread may call these. The answers come through Output. Commands limits how much waits meanwhile.
+    void start(std::uint32_t session, const Start& start) { post(Commands::Grant{session, start}); }
     void state(base::Bytes bytes) { post(State{std::move(bytes)}); }
     void catchUp(CatchUp steps) { post(std::move(steps)); }
-    void shown(const Shown& frame, std::int64_t nowNs) { post(Frame{frame, nowNs}); }
+    void shown(const Shown& frame, std::int64_t nowNs) { post(Commands::Frame{frame, nowNs}); }
     void edit(EditRequest request) { post(std::move(request)); }
-    void release() { post(Released{}); }
+    void release();
 
     [[nodiscard]] std::uint64_t withheld() const { return maker_.withheld(); }
     [[nodiscard]] std::uint64_t dropped() const { return maker_.dropped(); }
 
 private:
-    struct Granted {
-        std::uint32_t session;
-        Start start;
-    };
-    struct Frame {
-        Shown shown;
-        std::int64_t nowNs;
-    };
-    struct Released {};
-    struct Stop {};
-    using Command = std::variant<Granted, State, CatchUp, Frame, EditRequest, Released, Stop>;
-
-    void post(Command command);
+    template <class Command>
+    void post(Command command) {
+        {
+            const std::lock_guard lock(mutex_);
+            commands_.add(std::move(command));
+        }
+        wake_.notify_one();
+    }
     void run();
     bool waitForWork();
-    void obey(Granted& command) { maker_.start(command.session, command.start); }
-    void obey(State& command) { maker_.state(command.bytes); }
-    void obey(CatchUp& command) { maker_.catchUp(command); }
-    void obey(Frame& command) { maker_.shown(command.shown, command.nowNs); }
-    void obey(EditRequest& request) { maker_.edit(std::move(request)); }
-    void obey(Released&) { maker_.release(); }
-    void obey(Stop&) { stopping_ = true; }
+    void obey(Commands& commands);
     void showSand();
 
     const Pace pace_;
@@ -74,12 +63,11 @@ private:
 
     std::mutex mutex_;
     std::condition_variable wake_;
-    std::deque<Command> commands_;
+    Commands commands_;
 
     // For the sand thread only.
     StepMaker maker_;
     SandWatcher* watcher_;
-    bool stopping_ = false;
     std::thread thread_;
 };
 

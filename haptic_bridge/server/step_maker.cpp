@@ -43,6 +43,7 @@ void StepMaker::start(std::uint32_t session, const Start& start) {
         begin();
     } else {
         phase_ = Phase::awaitingState;
+        asksForSand_ = false;
         output_.needState(session_, {terrain_.stepNumber(), terrain_.stateHash()});
     }
 }
@@ -64,7 +65,7 @@ void StepMaker::state(const base::Bytes& bytes) {
 }
 
 void StepMaker::catchUp(const CatchUp& steps) {
-    if (phase_ != Phase::awaitingState) {
+    if (phase_ != Phase::awaitingState || asksForSand_) {
         return;
     }
     bool fits = true;
@@ -80,7 +81,8 @@ void StepMaker::catchUp(const CatchUp& steps) {
     if (fits && asGranted()) {
         begin();
     } else {
-        output_.needState(session_, {});  // asks for the whole sand
+        asksForSand_ = true;
+        output_.needState(session_, {});
     }
 }
 

@@ -47,7 +47,7 @@ public:
     /// machine has no memory for it. Ignored unless it was asked for.
     void state(const base::Bytes& bytes);
     /// Applies the steps of a CatchUp. Begins the epoch after the last CatchUp, or asks for a State if the steps do not
-    /// lead to the sand of Start. Ignored unless it was asked for.
+    /// lead to the sand of Start. It asks once, and ignores later CatchUps. Ignored unless it was asked for.
     void catchUp(const CatchUp& steps);
     /// Takes a Shown that arrived at `nowNs` [ns]. The window moves to the step that the wall shows, and the step clock
     /// follows the wall's frames.
@@ -91,9 +91,10 @@ private:
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
-    sand::Edit edit_;          // of the next step
-    std::uint64_t shown_ = 0;  // number of the step that the wall shows
-    bool liftFirst_ = false;   // the first step of an epoch lifts a tool that was left in the sand
+    bool asksForSand_ = false;  // steps did not lead to the sand of Start, and the whole sand was asked for
+    sand::Edit edit_;           // of the next step
+    std::uint64_t shown_ = 0;   // number of the step that the wall shows
+    bool liftFirst_ = false;    // the first step of an epoch lifts a tool that was left in the sand
     std::atomic<std::uint64_t> withheld_{0}, dropped_{0};
 };
 

@@ -58,7 +58,8 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
       source_(server_ ? Source::starting : Source::own),
       epoch_(epoch),
       waitingSinceNs_(now_()),
-      positions_(scene) {
+      positions_(scene),
+      tickBudget_(scene.rules.stepsPerSecond, now_()) {
     if (server_) {
         connect();
     } else {
@@ -192,6 +193,7 @@ std::vector<TimedStep> LiveSteps::next(const sand::Replica& terrain, std::uint64
         if (server_) {
             recent_.add(timed.step);
             if (source_ == Source::server) {
+                tickBudget_.step();
                 recent_.reached(timed.step.number, timed.serverHash);  // proveServer() compares this hash later
             }
         }
@@ -247,7 +249,13 @@ std::vector<base::Bytes> LiveSteps::ticks() {
     std::vector<base::Bytes> pieces = std::exchange(ticks_, {});
     if (client_) {
         for (base::Bytes& piece : client_->drainTicks()) {
-            pieces.push_back(std::move(piece));
+            if (tickBudget_.take(piece.size(), now_())) {
+                pieces.push_back(std::move(piece));
+            } else if (tickBudget_.refused() == 1) {
+                host::printLine(
+                    "haptic link: {} sends more ticks than a hand can make; the journal leaves out those beyond",
+                    server_->text());
+            }
         }
     }
     return pieces;
@@ -307,6 +315,9 @@ haptic_bridge::LinkCounters LiveSteps::counters() const {
 void LiveSteps::stop() {
     if (client_) {
         client_->stop();
+    }
+    if (tickBudget_.refused() > 0) {
+        host::printLine("haptic link: the journal has left out {} pieces of ticks", tickBudget_.refused());
     }
 }
 

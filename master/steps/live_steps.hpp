@@ -12,6 +12,7 @@
 #include "lockstep/fault.hpp"
 #include "master/steps/position_source.hpp"
 #include "master/steps/step_source.hpp"
+#include "master/steps/tick_budget.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
@@ -103,6 +104,7 @@ private:
     std::deque<sand::Edit> edits_;  // edits that are not in a step yet
     PositionSource positions_;
     std::vector<base::Bytes> ticks_;       // of a server whose link the master has ended
+    TickBudget tickBudget_;                // of all servers together
     std::vector<lockstep::Fault> drills_;  // faults that wait for a link
     double share_ = 1;                     // share of the force that operators have asked for
     double toldShare_ = 1;                 // share that the server knows

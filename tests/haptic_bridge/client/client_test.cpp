@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <future>
@@ -285,6 +286,56 @@ TEST(Client, GivesUpTheLinkOverAMissingStep) {
     seen = true;
     EXPECT_EQ(client.drain(10).size(), 1U);
     EXPECT_TRUE(reaches(client, Link::offered)) << "the client must connect again";
+}
+
+StepMessage editOf(std::uint64_t number, const sand::Edit& edit) {
+    StepMessage message = stepOf(1, number);
+    message.step.edit = edit;
+    return message;
+}
+
+// Without this, a server could fill memory and journal with sand that no operator has loaded.
+TEST(Client, EndsTheLinkOverAnEditThatItHasNotAskedFor) {
+    const std::array<sand::Edit, 2> edits{sand::Edit::loaded(base::Bytes(60'000, 7)), sand::Edit(sand::Edit::settle)};
+    for (const sand::Edit& edit : edits) {
+        FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
+            if (linkUp(guest)) {
+                guest.send(stepOf(1, 1));
+                guest.send(editOf(2, edit));
+                guest.await<Bye>();
+            }
+        }));
+        Client client(server.address(), kOffer);
+        grantWhenOffered(client, 1, 0);
+        const auto refused = [&] {
+            return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
+        };
+        EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+        const auto steps = client.drain(10);
+        ASSERT_EQ(steps.size(), 1U);
+        EXPECT_FALSE(steps[0].step.edit.any());
+    }
+}
+
+TEST(Client, TakesALongLoadOnceForEachThatItAskedFor) {
+    const sand::Edit load = sand::Edit::loaded(base::Bytes(1'000'000, 7));
+    FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
+        guest.reader.expectLoads(true);
+        if (linkUp(guest) && guest.await<EditRequest>()) {
+            guest.send(editOf(1, load));
+            guest.send(editOf(2, load));
+            guest.await<Bye>();
+        }
+    }));
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(reaches(client, Link::linked)) << client.link().message;
+    client.request(load);
+    const auto refused = [&] { return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1]; };
+    EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+    const auto steps = client.drain(10);
+    ASSERT_EQ(steps.size(), 1U);
+    EXPECT_EQ(steps[0].step.edit, load);
 }
 
 TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {

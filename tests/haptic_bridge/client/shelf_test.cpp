@@ -102,6 +102,25 @@ TEST(Shelf, CountsAFloodOfPositionsOnceUntilTheyAreTaken) {
     EXPECT_TRUE(resume);
 }
 
+TEST(Shelf, HoldsSoManyBytesOfTicks) {
+    Shelf shelf;
+    for (int i = 0; i < 5000; ++i) {
+        shelf.addTicks(base::Bytes(60'000, 1));
+    }
+    std::size_t bytes = 0;
+    for (const base::Bytes& piece : shelf.drainTicks()) {
+        bytes += piece.size();
+    }
+    EXPECT_LE(bytes, Client::kMaxTicks);
+    EXPECT_GT(bytes, Client::kMaxTicks / 2);
+    shelf.addTicks({1});
+    EXPECT_EQ(shelf.drainTicks().size(), 1U) << "there is room again";
+    for (std::size_t i = 0; i < Client::kMaxTicks; i += 32) {
+        shelf.addTicks({});
+    }
+    EXPECT_LE(shelf.drainTicks().size(), Client::kMaxTicks / 64) << "an empty piece takes memory, too";
+}
+
 sand::Step numbered(std::uint64_t number, std::uint32_t epoch = 1) {
     sand::Step step;
     step.epoch = epoch;
@@ -119,6 +138,38 @@ TEST(Grant, JudgesStepsByEpochAndNumber) {
     EXPECT_EQ(grant.lastStep(), 11U);
     EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "a frame drawn before the grant";
     EXPECT_EQ(grant.bounded({15, 1}).stepNumber, 11U) << "steps that the master has numbered since";
+}
+
+sand::Step withEdit(std::uint64_t number, const sand::Edit& edit) {
+    sand::Step step = numbered(number);
+    step.edit = edit;
+    return step;
+}
+
+// A step may hold 192 MiB of sand, and every step goes into the journal.
+TEST(Grant, TakesAnEditOnceAndOnlyIfItWasAskedFor) {
+    Grant grant({1, 0, 0}, {}, {});
+    const sand::Edit load = sand::Edit::loaded({1, 2, 3});
+    EXPECT_EQ(grant.arrived(withEdit(1, load)), Grant::Arrival::unasked);
+    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::settle)), Grant::Arrival::unasked);
+    EXPECT_EQ(grant.lastStep(), 0U);
+    grant.asked(load);
+    EXPECT_TRUE(grant.awaitsLoad());
+    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::loaded({1, 2, 4}))), Grant::Arrival::unasked) << "other sand";
+    EXPECT_EQ(grant.arrived(numbered(1)), Grant::Arrival::next) << "a step made before the request came";
+    EXPECT_TRUE(grant.awaitsLoad());
+    EXPECT_EQ(grant.arrived(withEdit(2, load)), Grant::Arrival::next);
+    EXPECT_FALSE(grant.awaitsLoad());
+    EXPECT_EQ(grant.arrived(withEdit(3, load)), Grant::Arrival::unasked) << "it was done already";
+}
+
+TEST(Grant, LetsAnEditReplaceTheOneBeforeIt) {
+    Grant grant({1, 0, 0}, {}, {});
+    grant.asked(sand::Edit::loaded({1}));
+    grant.asked(sand::Edit::settle);
+    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::settle)), Grant::Arrival::next);
+    EXPECT_FALSE(grant.awaitsLoad());
+    EXPECT_EQ(grant.arrived(withEdit(2, sand::Edit::loaded({1}))), Grant::Arrival::unasked);
 }
 
 TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {

@@ -286,6 +286,19 @@ TEST(Protocol, PrintsNoControlCharactersOfTheOtherSide) {
     EXPECT_EQ(std::get<Bye>(decode(withoutLength(longer))).reason, "??31m, caf\xc3\xa9, \xc2\xb5m\xc2");
 }
 
+// A message may hold 64 KiB of text, and a server may end each link with it.
+TEST(Protocol, CutsALongReasonOffBetweenTwoCharacters) {
+    std::string longText(kMaxReason - 4, 'x');
+    for (int i = 0; i < 100; ++i) {
+        longText += "\xc3\xa9";
+    }
+    const std::string cut = std::string(kMaxReason - 4, 'x') + "...";
+    EXPECT_EQ(std::get<Bye>(decode(withoutLength(encode(Bye{longText})))).reason, cut);
+    EXPECT_EQ(std::get<Refusal>(decode(withoutLength(encode(Refusal{RefusalCode::busy, longText})))).text, cut);
+    const std::string fits(kMaxReason, 'y');
+    EXPECT_EQ(std::get<Bye>(decode(withoutLength(encode(Bye{fits})))).reason, fits);
+}
+
 TEST(Protocol, RefusesACatchUpOfTooManyStepsOrWithSand) {
     CatchUp most{true, std::vector<sand::Step>(kMaxCatchUp, someStep())};
     EXPECT_NO_THROW((void)decode(withoutLength(encode(most))));

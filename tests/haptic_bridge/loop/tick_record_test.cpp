@@ -8,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/mapped_device.hpp"
+#include "haptic_bridge/link/connection.hpp"
 #include "haptic_bridge/loop/felt_sand.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
@@ -137,6 +138,25 @@ TEST_F(Recorded, IgnoresTheTailOfALinkBefore) {
     ASSERT_GT(first, 1U);
     const std::string rows = replayed(replay, steps_.size());
     EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 5 * 16);
+}
+
+// A paused session makes no steps, and the hand still feels the sand. The server sends all pieces before the next step.
+TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
+    open("/dev/null");
+    hand_->restart();
+    recorder_->begin();
+    takeSurface(terrain_, hand_->where(), surface_);
+    for (int tick = 0; tick < 60'000; ++tick) {
+        (void)hand_->tick(1e-3 * tick, 1'000'003 * static_cast<std::int64_t>(tick), surface_);
+        recorder_->add();
+    }
+    recorder_->flush();
+    std::size_t bytes = 0;
+    for (base::Bytes& piece : recorder_->takePieces()) {
+        bytes += encode(TickPiece{std::move(piece)}).size();
+    }
+    EXPECT_LE(bytes, Connection::kMaxUnsent);
+    EXPECT_GT(bytes, Connection::kMaxUnsent / 4);
 }
 
 TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {

@@ -127,6 +127,22 @@ TEST_F(StepMakerTest, CatchesUpByTheStepsThatItLacks) {
     EXPECT_EQ(ready_, std::vector<std::uint32_t>{2});
 }
 
+// A NeedState lets a State of 256 MiB come. The CatchUps of one grant may all be waiting when the first does not fit.
+TEST_F(StepMakerTest, AsksForTheWholeSandOnceAlthoughMoreCatchUpsWait) {
+    maker_.start(1, {1, 40, 1});
+    ASSERT_EQ(needs_.size(), 1U);
+    for (int i = 0; i < 15; ++i) {
+        maker_.catchUp({false, {engagedStep(30)}});
+    }
+    ASSERT_EQ(needs_.size(), 2U);
+    EXPECT_EQ(needs_[1], NeedState{}) << "0 and 0 ask for a State";
+    sand::Replica master(scene_);
+    master.apply(engagedStep(1));
+    maker_.start(2, grantOf(master, 2));
+    maker_.catchUp({true, {engagedStep(1)}});
+    EXPECT_TRUE(maker_.running()) << "the next master may send steps again";
+}
+
 TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
     maker_.start(1, grantOf(sand::Replica(scene_)));
     step(StepMaker::kWindow + 3);

@@ -226,6 +226,49 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
     EXPECT_EQ(edits_, 1);
 }
 
+// A server may send 50,000 messages a second, and each piece goes into the journal.
+TEST_F(LiveStepsTest, TicksThatNoHandCanMakeAreLeftOut) {
+    constexpr int kPieces = 400;
+    constexpr std::size_t kPiece = 60'000;
+    std::atomic<bool> sent = false;
+    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
+        if (!guest.await<haptic_bridge::Hello>()) {
+            return;
+        }
+        guest.send(haptic_bridge::Welcome{
+            {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
+        if (guest.await<haptic_bridge::Start>()) {
+            guest.send(haptic_bridge::Ready{});
+            const base::Bytes piece = haptic_bridge::encode(haptic_bridge::TickPiece{base::Bytes(kPiece, 1)});
+            for (int i = 0; i < kPieces; ++i) {
+                guest.send(piece);
+            }
+            sent = true;
+            guest.await<haptic_bridge::Bye>();
+        }
+    }));
+    master::LiveSteps live = stepsFrom(server.address());
+    std::size_t bytes = 0;
+    const auto keep = [&] {
+        for (const base::Bytes& piece : live.ticks()) {
+            bytes += piece.size();
+        }
+    };
+    ASSERT_TRUE(showUntil(live, [&] {
+        keep();
+        return sent.load();
+    }));
+    const bool all = eventually(
+        [&] {
+            show(live);
+            keep();
+            return bytes > std::size_t{kPieces} * kPiece / 2;
+        },
+        kLooks);
+    EXPECT_FALSE(all) << bytes;
+    EXPECT_GT(bytes, kPiece);
+}
+
 TEST_F(LiveStepsTest, EveryServerIsToldTheShareOfItsForceOnce) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
         return link == 1 && step >= 40 ? hash ^ 1 : hash;
