@@ -28,6 +28,7 @@ std::int64_t clockAheadOfMaster(const Cluster& cluster) {
     for (int rank = 1; rank < cluster.size(); ++rank) {
         std::int64_t shortest = std::numeric_limits<std::int64_t>::max();
         std::int64_t ahead = 0;
+        cluster.setMissing(rank, true);
         for (int i = 0; i < kRoundTrips; ++i) {
             std::int64_t theirs = 0;
             const std::int64_t sent = host::monotonicNs();
@@ -40,6 +41,7 @@ std::int64_t clockAheadOfMaster(const Cluster& cluster) {
             }
         }
         MPI_Send(&ahead, 1, MPI_INT64_T, rank, kTag, comm);
+        cluster.setMissing(rank, false);
     }
     return 0;
 }

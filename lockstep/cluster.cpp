@@ -13,33 +13,67 @@
 #include <numeric>
 
 #include "host/memory.hpp"
+#include "lockstep/backoff.hpp"
 
 namespace lockstep {
+namespace {
 
-Cluster::Cluster(int* argc, char*** argv) {
+enum ClusterTag : int { kGatherLengthTag = 30, kGatherTag, kFarewellTag };
+
+constexpr const char* kInit = "the start of MPI";
+constexpr const char* kStart = "the start";
+constexpr const char* kEnd = "the end of the session";
+
+/// Returns the rank of this process in its job, as mpirun tells it before MPI_Init; 0 without mpirun.
+int rankOfJob() {
+    const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
+    return rank == nullptr ? 0 : std::atoi(rank);
+}
+
+Watchdog::Role roleOf(int rank) {
+    return rank == kMaster ? Watchdog::Role::master : rank == 1 ? Watchdog::Role::firstRank : Watchdog::Role::otherRank;
+}
+
+}  // namespace
+
+Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
+    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, 0, roleOf(rank_),
+                                           [this](const std::string& line) {
+                                               const std::lock_guard lock(mutex_);
+                                               if (lastWords_) {
+                                                   const std::vector<int> late = missing();
+                                                   lastWords_(late.empty() ? -1 : late.front(), line);
+                                               }
+                                           });
+    watchdog_->arm();
     int provided = 0;
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (rank != rank_) {  // usually equal; the watchdog's thread reads it
+        rank_ = rank;
+    }
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
-    const auto role = isMaster()   ? Watchdog::Role::master
-                      : rank_ == 1 ? Watchdog::Role::firstRank
-                                   : Watchdog::Role::otherRank;
-    startUp_ = std::make_unique<Watchdog>(
-        [this] {
-            return Wait{
-                fmt::format("rank {} waits for the other ranks to start up", rank_), rank_, 0, {}, "the other ranks"};
-        },
-        0, role);
-    startUp_->arm();
+    missing_ = std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(size_));
+    missingSize_ = size_;
+    phase_ = kStart;
     for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
         MPI_Comm_dup(MPI_COMM_WORLD, communicator);
     }
+    // MPI_Finalize first deletes the attributes of MPI_COMM_SELF. Messages are still allowed then.
+    int key = MPI_KEYVAL_INVALID;
+    const auto farewell = [](MPI_Comm, int, void* self, void*) {
+        static_cast<const Cluster*>(self)->farewell();
+        return MPI_SUCCESS;
+    };
+    MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, farewell, &key, nullptr);
+    MPI_Comm_set_attr(MPI_COMM_SELF, key, this);
     bells_ = std::make_unique<HostBells>();
     base::ByteWriter here;
     here.putText(hostName());
     here.put(host::freeMemory());
-    for (const base::Bytes& rank : gather(here.take())) {
-        base::ByteReader reader(rank);
+    for (const base::Bytes& one : gather(here.take())) {
+        base::ByteReader reader(one);
         RankHost& host = hosts_.emplace_back();
         host.name = reader.getText();
         host.freeBytes = reader.get<std::int64_t>();
@@ -47,19 +81,106 @@ Cluster::Cluster(int* argc, char*** argv) {
 }
 
 Cluster::~Cluster() {
-    startUpIsOver();
-    for (MPI_Comm* communicator : {&frames_, &arrivals_, &pictures_}) {
-        MPI_Comm_free(communicator);
-    }
+    phase_ = kEnd;
+    watchdog_->arm();
     MPI_Finalize();
+    watchdog_->disarm();
+}
+
+/// Called by MPI_Finalize, before it ends anything.
+void Cluster::farewell() const {
+    if (isMaster()) {
+        std::vector<int> ranks(static_cast<std::size_t>(renderRanks()));
+        std::iota(ranks.begin(), ranks.end(), 1);
+        std::vector<MPI_Request> requests(ranks.size(), MPI_REQUEST_NULL);
+        for (std::size_t i = 0; i < ranks.size(); ++i) {
+            MPI_Irecv(nullptr, 0, MPI_BYTE, ranks[i], kFarewellTag, arrivals_, &requests[i]);
+        }
+        await(requests, ranks);
+    } else {
+        MPI_Send(nullptr, 0, MPI_BYTE, kMaster, kFarewellTag, arrivals_);
+    }
+    for (MPI_Comm communicator : {frames_, arrivals_, pictures_}) {
+        MPI_Comm_free(&communicator);
+    }
+}
+
+void Cluster::tellLastWords(std::vector<std::string> names, LastWords lastWords) const {
+    const std::lock_guard lock(mutex_);
+    if (!names.empty()) {
+        names_ = std::move(names);
+    }
+    lastWords_ = std::move(lastWords);
 }
 
 void Cluster::mayTakeLong(bool may) const {
-    startUp_->setPatient(may);
-    startUp_->arm();  // a new wait begins here
+    watchdog_->setPatient(may);
+    watchdog_->arm();  // a new wait begins here
 }
 
-void Cluster::startUpIsOver() const { startUp_->disarm(); }
+void Cluster::startUpIsOver() const { watchdog_->disarm(); }
+
+void Cluster::endBegins(double limitSeconds) const {
+    phase_ = kEnd;
+    watchdog_->setLimit(limitSeconds);
+    watchdog_->startUpIsOver();
+    watchdog_->arm();
+}
+
+void Cluster::setMissing(int rank, bool missing) const { missing_[static_cast<std::size_t>(rank)] = missing; }
+
+std::vector<int> Cluster::missing() const {
+    std::vector<int> ranks;
+    for (int rank = 0; rank < missingSize_; ++rank) {
+        if (missing_[static_cast<std::size_t>(rank)]) {
+            ranks.push_back(rank);
+        }
+    }
+    return ranks;
+}
+
+Wait Cluster::describeWait() const {
+    Wait wait;
+    wait.by = rank_;
+    const bool ofInit = phase_ == kInit;
+    if (rank_ != kMaster && !ofInit) {
+        wait.ranks = {kMaster};
+        wait.names = "the master";
+    } else {
+        wait.ranks = missing();
+        const std::lock_guard lock(mutex_);
+        for (const int rank : wait.ranks) {
+            const auto index = static_cast<std::size_t>(rank);
+            wait.names += wait.names.empty() ? "" : ", ";
+            wait.names += index < names_.size() ? names_[index] : fmt::format("rank {}", rank);
+        }
+    }
+    wait.names = wait.names.empty() ? "the other ranks" : wait.names;
+    wait.text = fmt::format("{} of rank {} waits for {}", phase_.load(), rank_, wait.names);
+    if (rank_ == kMaster) {
+        wait.text = fmt::format("{} waits for {}", phase_.load(), wait.names);
+    }
+    return wait;
+}
+
+/// Waits at the master until all `requests` are done. `ranks` are the ranks at their other ends.
+void Cluster::await(std::span<MPI_Request> requests, std::span<const int> ranks) const {
+    for (const int rank : ranks) {
+        setMissing(rank, true);
+    }
+    Backoff backoff;
+    for (std::size_t done = 0; done < requests.size();) {
+        int which = MPI_UNDEFINED;
+        int found = 0;
+        MPI_Testany(static_cast<int>(requests.size()), requests.data(), &which, &found, MPI_STATUS_IGNORE);
+        if (found == 0 || which == MPI_UNDEFINED) {
+            backoff.rest();
+            continue;
+        }
+        setMissing(ranks[static_cast<std::size_t>(which)], false);
+        ++done;
+    }
+}
 
 base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     auto size = static_cast<std::uint64_t>(fromMaster.size());
@@ -73,23 +194,35 @@ base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     return bytes;
 }
 
+/// The master receives from each rank by itself. Inside MPI_Gather it could not know which rank is missing.
 std::vector<base::Bytes> Cluster::gather(const base::Bytes& mine) const {
-    const int length = static_cast<int>(mine.size());
-    std::vector<int> lengths(isMaster() ? static_cast<std::size_t>(size_) : 0);
-    MPI_Gather(&length, 1, MPI_INT, lengths.data(), 1, MPI_INT, kMaster, frames_);
-    std::vector<int> starts(lengths.size());
-    std::exclusive_scan(lengths.begin(), lengths.end(), starts.begin(), 0);
-    base::Bytes all(static_cast<std::size_t>(std::accumulate(lengths.begin(), lengths.end(), 0)));
-    MPI_Gatherv(mine.data(), length, MPI_BYTE, all.data(), lengths.data(), starts.data(), MPI_BYTE, kMaster, frames_);
-    std::vector<base::Bytes> result;
-    for (std::size_t rank = 0; rank < lengths.size(); ++rank) {
-        const auto first = all.begin() + starts[rank];
-        result.emplace_back(first, first + lengths[rank]);
+    auto length = static_cast<std::uint64_t>(mine.size());
+    if (!isMaster()) {
+        MPI_Send(&length, 1, MPI_UINT64_T, kMaster, kGatherLengthTag, frames_);
+        MPI_Send(mine.data(), static_cast<int>(length), MPI_BYTE, kMaster, kGatherTag, frames_);
+        return {};
     }
-    return result;
+    std::vector<int> ranks(static_cast<std::size_t>(renderRanks()));
+    std::iota(ranks.begin(), ranks.end(), 1);
+    std::vector<std::uint64_t> lengths(ranks.size());
+    std::vector<base::Bytes> all(ranks.size() + 1);
+    std::vector<MPI_Request> requests(ranks.size(), MPI_REQUEST_NULL);
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+        MPI_Irecv(&lengths[i], 1, MPI_UINT64_T, ranks[i], kGatherLengthTag, frames_, &requests[i]);
+    }
+    await(requests, ranks);
+    all.front() = mine;
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+        all[i + 1].resize(lengths[i]);
+        MPI_Irecv(all[i + 1].data(), static_cast<int>(lengths[i]), MPI_BYTE, ranks[i], kGatherTag, frames_,
+                  &requests[i]);
+    }
+    await(requests, ranks);
+    return all;
 }
 
 void Cluster::abort(int status) const {
+    watchdog_->arm();
     MPI_Abort(MPI_COMM_WORLD, status);
     std::_Exit(status);
 }

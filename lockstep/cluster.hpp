@@ -3,8 +3,12 @@
 
 #include <mpi.h>
 
+#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,6 +23,10 @@ namespace lockstep {
 inline constexpr int kMaster = 0;
 
 /// The MPI job of a session. Initialises MPI, ends it in the destructor, and holds one communicator per purpose.
+///
+/// A watchdog watches each wait of the start and of the end, from MPI_Init to MPI_Finalize. FrameBarrier has a watchdog
+/// of its own for the frames in between. At the end each render rank reports to the master from inside MPI_Finalize. So
+/// the master can name a rank that hangs before that, such as in its OpenGL driver.
 ///
 /// Only the thread that made the object may call MPI (MPI_THREAD_FUNNELED). If an MPI call fails, Open MPI prints its
 /// name and ends the job.
@@ -50,20 +58,42 @@ public:
     /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
     [[nodiscard]] std::vector<base::Bytes> gather(const base::Bytes& mine) const;
 
+    /// Called at the master when a wait of the start or the end has reached its limit. `rank` is the first missing
+    /// rank, or -1 if it is not known. `line` is the line that was printed. Runs on the watchdog's thread.
+    using LastWords = std::function<void(int rank, const std::string& line)>;
+    /// Sets what the watchdog of the start and the end calls and prints. `names` are the names of the ranks in
+    /// messages, in order of rank; an empty list leaves them as they are. Only the master needs this. Any thread.
+    void tellLastWords(std::vector<std::string> names, LastWords lastWords) const;
+
     /// Sets whether the start may take an hour, because the ranks wait while the master replays a journal.
     void mayTakeLong(bool may) const;
 
-    /// Stops the watchdog that limits every wait during the start. FrameBarrier calls this, because it has a watchdog
-    /// of its own.
+    /// Stops the watchdog of the start. FrameBarrier calls this, because it has a watchdog of its own.
     void startUpIsOver() const;
+    /// Starts the watchdog of the end, with a limit of `limitSeconds` [s]. FrameBarrier calls this when it ends.
+    void endBegins(double limitSeconds) const;
+
+    /// Notes that the master waits for this rank, or no longer, so that the watchdog can name it.
+    void setMissing(int rank, bool missing) const;
 
     /// Ends the whole job at once with the exit status `status`. Used when the ranks cannot be asked to end.
     [[noreturn]] void abort(int status) const;
 
 private:
+    void await(std::span<MPI_Request> requests, std::span<const int> ranks) const;
+    void farewell() const;
+    [[nodiscard]] Wait describeWait() const;
+    [[nodiscard]] std::vector<int> missing() const;
+
     int rank_ = 0;
     int size_ = 1;
-    std::unique_ptr<Watchdog> startUp_;
+    std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread
+    std::atomic<int> missingSize_{0};               // number of entries of missing_
+    mutable std::atomic<const char*> phase_;        // named by the watchdog
+    mutable std::mutex mutex_;                      // of the two members below
+    mutable std::vector<std::string> names_;
+    mutable LastWords lastWords_;
+    std::unique_ptr<Watchdog> watchdog_;
     std::vector<RankHost> hosts_;
     std::unique_ptr<HostBells> bells_;
     MPI_Comm frames_ = MPI_COMM_NULL;

@@ -39,6 +39,7 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
                            LastWords lastWords)
     : cluster_(cluster),
       names_(std::move(names)),
+      endLimit_(limitSeconds),
       arrivals_(cluster.isMaster() ? static_cast<std::size_t>(cluster.size()) : 0),
       ranks_(cluster.isMaster() ? static_cast<std::size_t>(cluster.renderRanks()) : 0),
       missing_(std::make_unique<std::atomic<bool>[]>(arrivals_.size() + 1)) {
@@ -54,10 +55,11 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
                                                }
                                            });
     cluster.startUpIsOver();
+    watchdog_->arm();  // until the first frame
     wakePunctually();
 }
 
-FrameBarrier::~FrameBarrier() = default;
+FrameBarrier::~FrameBarrier() { cluster_.endBegins(endLimit_); }
 
 int FrameBarrier::firstMissing() const {
     for (std::size_t rank = 1; rank < arrivals_.size(); ++rank) {

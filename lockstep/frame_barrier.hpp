@@ -47,7 +47,8 @@ public:
 
     /// `names` are the names of the ranks in messages, in order of rank; only the master needs them. A wait longer than
     /// `limitSeconds` [s] ends the job; until the end of the first barrier it is at least 120 s. The master first calls
-    /// `lastWords`, on the watchdog's thread. Ends the start-up watch of `cluster`.
+    /// `lastWords`, on the watchdog's thread. Ends the start-up watch of `cluster`, and watches from now on. The
+    /// destructor begins the watch of the end.
     FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds, LastWords lastWords = {});
     ~FrameBarrier();
 
@@ -88,7 +89,14 @@ public:
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// Sets what the watchdog names while the master waits for no rank, such as "its journal". `what` must stay valid.
     void busyWith(const char* what) { busyWith_ = what; }
-    static constexpr const char* kPictures = "pictures";  // named by the watchdog before the first call
+    static constexpr const char* kOwnWork = "the master";  // named by the watchdog before the first call
+
+    /// Notes that the master waits for a message of this rank outside this class, or no longer.
+    void setMissing(int rank, bool missing) { missing_[static_cast<std::size_t>(rank)] = missing; }
+
+    /// Sets for how long this rank may wait for the others after the last frame [s]; limitSeconds at first. A render
+    /// rank waits for the master to write the pictures of all ranks.
+    void setEndLimit(double seconds) { endLimit_ = seconds; }
 
     /// Returns the watchdog. It also watches waits outside this class, such as for reports and pictures.
     [[nodiscard]] Watchdog& watchdog() { return *watchdog_; }
@@ -107,11 +115,12 @@ private:
 
     const Cluster& cluster_;
     std::vector<std::string> names_;
+    double endLimit_;  // [s]
     std::vector<Arrival> arrivals_;
     std::vector<Nonsense> nonsense_;
     std::vector<int> ranks_;                        // all render ranks; empty except at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread
-    std::atomic<const char*> busyWith_{kPictures};
+    std::atomic<const char*> busyWith_{kOwnWork};
     std::atomic<std::uint64_t> frame_{0};
     bool garbles_ = false;
     std::int64_t quietUntil_ = 0;  // [ns], at a render rank: earliest begin of the next frame
@@ -124,7 +133,7 @@ public:
     Busy(FrameBarrier& barrier, const char* what) : barrier_(barrier), watched_(barrier.watchdog()) {
         barrier_.busyWith(what);
     }
-    ~Busy() { barrier_.busyWith(FrameBarrier::kPictures); }
+    ~Busy() { barrier_.busyWith(FrameBarrier::kOwnWork); }
     Busy(const Busy&) = delete;
     Busy& operator=(const Busy&) = delete;
 

@@ -18,18 +18,22 @@ void sendPicture(const Cluster& cluster, const TilePicture& picture) {
              cluster.pictures());
 }
 
-void receivePictures(const Cluster& cluster, const std::vector<int>& eyesByRank,
+void receivePictures(FrameBarrier& barrier, const std::vector<int>& eyesByRank,
                      const std::function<void(const TilePicture&)>& take) {
+    const MPI_Comm comm = barrier.cluster().pictures();
     for (std::size_t rank = 1; rank < eyesByRank.size(); ++rank) {
         for (int i = 0; i < eyesByRank[rank]; ++i) {
+            const Watched watched(barrier.watchdog());
             std::array<int, 3> header{};
             const int from = static_cast<int>(rank);
-            MPI_Recv(header.data(), 3, MPI_INT, from, kHeaderTag, cluster.pictures(), MPI_STATUS_IGNORE);
+            barrier.setMissing(from, true);
+            MPI_Recv(header.data(), 3, MPI_INT, from, kHeaderTag, comm, MPI_STATUS_IGNORE);
             TilePicture picture{from, header[0], header[1], header[2], {}};
             picture.pixels.resize(std::size_t{3} * static_cast<std::size_t>(picture.width) *
                                   static_cast<std::size_t>(picture.height));
-            MPI_Recv(picture.pixels.data(), static_cast<int>(picture.pixels.size()), MPI_BYTE, from, kPixelTag,
-                     cluster.pictures(), MPI_STATUS_IGNORE);
+            MPI_Recv(picture.pixels.data(), static_cast<int>(picture.pixels.size()), MPI_BYTE, from, kPixelTag, comm,
+                     MPI_STATUS_IGNORE);
+            barrier.setMissing(from, false);
             take(picture);
         }
     }

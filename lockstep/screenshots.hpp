@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "lockstep/cluster.hpp"
+#include "lockstep/frame_barrier.hpp"
 
 namespace lockstep {
 
@@ -18,12 +18,14 @@ struct TilePicture {
     std::vector<std::uint8_t> pixels;
 };
 
-/// Sends one picture from a render rank to the master, which must be in receivePictures().
+/// Sends one picture from a render rank to the master, which must be in receivePictures(). The caller's watchdog must
+/// be armed.
 void sendPicture(const Cluster& cluster, const TilePicture& picture);
 
 /// Receives pictures at the master, in order of rank and eye, and passes each to `take`. `eyesByRank` is the number of
-/// pictures of each rank. Only one picture is in memory at a time, however large the wall is.
-void receivePictures(const Cluster& cluster, const std::vector<int>& eyesByRank,
+/// pictures of each rank. Only one picture is in memory at a time, however large the wall is. The watchdog of `barrier`
+/// limits the wait for each picture, and names its rank.
+void receivePictures(FrameBarrier& barrier, const std::vector<int>& eyesByRank,
                      const std::function<void(const TilePicture&)>& take);
 
 }  // namespace lockstep

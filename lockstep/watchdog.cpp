@@ -24,6 +24,13 @@ constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // [s] by which a render rank acts later than the master
 constexpr double kOthersAfterRank = 1;  // [s] by which the other render ranks end later than the first
 
+/// Returns the limit of a wait before the end of the first frame [s].
+double startUpLimit() {
+    const char* const given = std::getenv("SANDWALL_START_TIMEOUT");
+    const double seconds = given == nullptr ? 0 : std::strtod(given, nullptr);
+    return seconds >= 1 && seconds <= kPatientLimit ? seconds : kStartUpLimit;
+}
+
 void emitWait(const Wait& wait, double seconds, double limit, bool endsJob) {
     host::emitEvent("waiting", {{"by", wait.by},
                                 {"frame", wait.frame},
@@ -66,6 +73,7 @@ void Watchdog::look() {
     // The rank that prints must end first, because the first process that ends takes all others with it.
     const double patience = role_ == Role::otherRank ? kOthersAfterRank : 0;
     const bool speaks = role_ != Role::otherRank;
+    const double startUp = startUpLimit();
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
         const std::int64_t since = armedAt_;
         const double sinceLook = static_cast<double>(host::monotonicNs() - lastLook) * 1e-9;
@@ -77,7 +85,7 @@ void Watchdog::look() {
         waited = (since == watched ? waited : 0) + std::min(sinceLook, kLongestLook);
         watched = since;
         const double seconds = waited - later;
-        const double limit = patient_ ? kPatientLimit : startingUp_ ? std::max(limit_, kStartUpLimit) : limit_;
+        const double limit = patient_ ? kPatientLimit : startingUp_ ? std::max(limit_.load(), startUp) : limit_.load();
         if (seconds > limit + patience) {
             if (speaks) {
                 const Wait wait = describe_();

@@ -25,7 +25,8 @@ struct Wait {
 ///
 /// The thread watches while the main thread is inside a call that may block. After 1 s it prints which ranks are
 /// missing. After the limit it prints them again and ends this process, so that mpirun ends the job. Until
-/// startUpIsOver() both times are longer, because shaders compile and sand settles before the first frame.
+/// startUpIsOver() both times are longer, because shaders compile and sand settles before the first frame. The limit is
+/// then at least 120 s, or the seconds in the environment variable SANDWALL_START_TIMEOUT.
 ///
 /// The master is the first to print and the first to end the job, because only the master knows which ranks are
 /// missing. Other ranks wait some seconds longer, in case the master itself has stopped.
@@ -48,6 +49,8 @@ public:
     void arm();
     void disarm();
     void startUpIsOver() { startingUp_ = false; }
+    /// Sets the limit of a wait [s].
+    void setLimit(double seconds) { limit_ = seconds; }
     /// Sets whether the limit is an hour. A start that replays a journal needs this. The watchdog prints as usual
     /// meanwhile.
     void setPatient(bool patient) { patient_ = patient; }
@@ -56,7 +59,7 @@ private:
     void look();
 
     std::function<Wait()> describe_;
-    double limit_;
+    std::atomic<double> limit_;
     Role role_;
     std::function<void(const std::string&)> lastWords_;
     std::atomic<bool> startingUp_{true}, patient_{false};

@@ -28,7 +28,7 @@ CaptureFolder::~CaptureFolder() {
 }
 
 void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall,
-                    const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog, BackgroundJobs& jobs) {
+                    lockstep::FrameBarrier& barrier, BackgroundJobs& jobs) {
     const auto folder = std::make_shared<CaptureFolder>(out_);
     const BackgroundJobs::Result said{nlohmann::json({{"ok", true},
                                                       {"folder", folder->path().filename().string()},
@@ -39,12 +39,12 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
                                       {}};
     std::function<void()> write;
     if (mayBeHeld(wall)) {
-        auto held = std::make_shared<const HeldPictures>(holdWallPictures(cluster, wall, watchdog));
+        auto held = std::make_shared<const HeldPictures>(holdWallPictures(barrier, wall));
         write = [held = std::move(held), folder] { writeHeldPictures(*held, folder->path()); };
     } else {
         std::exception_ptr refused;
         try {
-            writeWallPictures(cluster, wall, folder->path(), watchdog);
+            writeWallPictures(barrier, wall, folder->path());
         } catch (const base::InputError&) {
             refused = std::current_exception();
         }

@@ -6,8 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "lockstep/cluster.hpp"
-#include "lockstep/watchdog.hpp"
+#include "lockstep/frame_barrier.hpp"
 #include "master/master_sand.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "walls/wall.hpp"
@@ -46,8 +45,8 @@ public:
     /// Receives the pictures of frame `frame`, which the ranks are sending, and starts a job that answers the clients.
     /// If the pictures fit into memory, the job also writes them, while the next frames are shown. Otherwise this
     /// function writes them at once.
-    void take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall, const lockstep::Cluster& cluster,
-              lockstep::Watchdog& watchdog, BackgroundJobs& jobs);
+    void take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall, lockstep::FrameBarrier& barrier,
+              BackgroundJobs& jobs);
 
 private:
     const std::filesystem::path out_;

@@ -59,8 +59,8 @@ Film::Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem:
     }
 }
 
-void Film::take(const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog) {
-    const std::vector<pictures::Image> eyes = receiveWall(cluster, wall_, watchdog, nullptr);
+void Film::take(lockstep::FrameBarrier& barrier) {
+    const std::vector<pictures::Image> eyes = receiveWall(barrier, wall_, nullptr);
     const std::filesystem::path file = folder_ / fmt::format("frame_{:0{}}.png", ++frames_, kDigits);
     if (eye_ == FilmEye::anaglyph) {
         pictures::writePng(file, pictures::packStereo(walls::Stereo::anaglyphColour, eyes[0], eyes[1]));

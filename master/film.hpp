@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "lockstep/cluster.hpp"
-#include "lockstep/watchdog.hpp"
+#include "lockstep/frame_barrier.hpp"
 #include "walls/wall.hpp"
 
 namespace master {
@@ -30,7 +29,7 @@ public:
 
     /// Receives the pictures that all ranks are sending, and writes the film's next picture. Throws base::InputError if
     /// it cannot be written, after all pictures were received.
-    void take(const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog);
+    void take(lockstep::FrameBarrier& barrier);
 
     /// Removes the files of an earlier film from `folder`.
     static void forget(const std::filesystem::path& folder);

@@ -181,11 +181,29 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     return world;
 }
 
+/// Makes the watchdog of the start and the end write failure.json. `wall` is null until it is known.
+void tellLastWords(const lockstep::Cluster& cluster, const Options& options, const walls::Wall* wall) {
+    master::RankLabels labels;
+    if (wall != nullptr) {
+        labels = master::RankLabels::of(cluster, *wall);
+    } else {
+        for (const lockstep::RankHost& host : cluster.hosts()) {
+            labels.hosts.push_back(host.name);
+        }
+        labels.tiles.resize(labels.hosts.size());
+    }
+    cluster.tellLastWords(labels.names, [labels, out = options.out](int rank, const std::string& line) {
+        (void)master::writeFailure(labels.failure("hung", rank, line), out);
+    });
+}
+
 int runSession(const lockstep::Cluster& cluster, Options& options) {
     std::optional<World> world;
     bool sessionOpen = false;
+    tellLastWords(cluster, options, nullptr);
     try {
         world.emplace(loadWorld(cluster, options));
+        tellLastWords(cluster, options, &world->wall);
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});

@@ -245,8 +245,8 @@ void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
     }
 }
 
-void OperatorDesk::takeCapture(std::uint64_t frame, const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog) {
-    captures_.take(frame, session_.sand, shown_, cluster, watchdog, jobs_);
+void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier) {
+    captures_.take(frame, session_.sand, shown_, barrier, jobs_);
 }
 
 std::string OperatorDesk::status() const {

@@ -10,7 +10,7 @@
 
 #include "lockstep/arrival.hpp"
 #include "lockstep/cluster.hpp"
-#include "lockstep/watchdog.hpp"
+#include "lockstep/frame_barrier.hpp"
 #include "master/captures.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "master/master_sand.hpp"
@@ -67,7 +67,7 @@ public:
     /// Answers the clients whose edits are in `steps`, which the wall shows now.
     void answer(const std::vector<haptic_bridge::TimedStep>& steps);
     /// Calls Captures::take. A later obey() answers the clients.
-    void takeCapture(std::uint64_t frame, const lockstep::Cluster& cluster, lockstep::Watchdog& watchdog);
+    void takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier);
     /// Waits for the background jobs, answers their clients, and removes the control socket.
     void close();
 

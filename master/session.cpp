@@ -145,7 +145,7 @@ bool Session::showFrame(bool& more) {
     measure_.add({frame.frame, bytes, broadcast, swap}, steps, barrier_.arrivals(), steps_->clockOffsetNs());
     desk_.answer(steps);
     if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
-        desk_.takeCapture(frame.frame, cluster_, barrier_.watchdog());
+        desk_.takeCapture(frame.frame, barrier_);
     }
     steps_->shown(sand_.replica().stepNumber(), swap.interval);
     serverDivergences_ += steps_->proveServer(steps, sand_.hash()) ? 0 : 1;
@@ -263,10 +263,13 @@ int Session::run() {
             sayProgress(!more);
         }
         if (agreed && film_ && more) {
-            film_->take(cluster_, barrier_.watchdog());
+            film_->take(barrier_);
         }
     }
-    desk_.close();
+    {
+        const lockstep::Busy busy(barrier_, "the files that it writes");
+        desk_.close();
+    }
     const Summary told = finish(agreed);
     int status = agreed && !steps_->strayed() ? 0 : 1;
     try {
@@ -276,11 +279,12 @@ int Session::run() {
         status = 1;
     }
     if (agreed && film_) {
-        film_->take(cluster_, barrier_.watchdog());
+        film_->take(barrier_);
     } else if (agreed && options_.pictures) {
-        writeWallPictures(cluster_, desk_.shownWall(), options_.out, barrier_.watchdog());
+        writeWallPictures(barrier_, desk_.shownWall(), options_.out);
     }
     fmt::print("{}", describe(told));
+    barrier_.watchdog().arm();  // until the destructor of the barrier, because the members after it wait for the disk
     return status;
 }
 

@@ -83,16 +83,15 @@ bool fitsOnePicture(const walls::Wall& wall) {
 }
 
 std::vector<pictures::Image> receiveWall(
-    const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog,
+    lockstep::FrameBarrier& barrier, const walls::Wall& wall,
     const std::function<void(const walls::Tile&, std::string_view, const pictures::Image&)>& each) {
     const std::span<const walls::Eye> eyes = walls::eyesOf(wall.stereo);
     const walls::Canvas canvas = walls::wallCanvas(wall);
     const bool fits = fitsOnePicture(wall);
     std::vector<pictures::Image> whole(eyes.size(),
                                        fits ? pictures::Image(canvas.width, canvas.height) : pictures::Image());
-    const std::vector<int> picturesByRank(static_cast<std::size_t>(cluster.size()), picturesPerTile(wall));
-    watchdog.arm();
-    lockstep::receivePictures(cluster, picturesByRank, [&](const lockstep::TilePicture& picture) {
+    const std::vector<int> picturesByRank(static_cast<std::size_t>(barrier.cluster().size()), picturesPerTile(wall));
+    lockstep::receivePictures(barrier, picturesByRank, [&](const lockstep::TilePicture& picture) {
         const auto index = static_cast<std::size_t>(picture.rank - 1);
         const auto eye = static_cast<std::size_t>(picture.eye);
         pictures::Image image;
@@ -105,14 +104,11 @@ std::vector<pictures::Image> receiveWall(
         if (each) {
             each(wall.tiles[index], eye < eyes.size() ? walls::eyeName(eyes[eye]) : "output", image);
         }
-        watchdog.arm();  // the time limit counts for each picture
     });
-    watchdog.disarm();
     return whole;
 }
 
-void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
-                       lockstep::Watchdog& watchdog) {
+void writeWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall, const std::filesystem::path& folder) {
     const bool fits = fitsOnePicture(wall);
     if (!fits) {
         const walls::Canvas canvas = walls::wallCanvas(wall);
@@ -122,8 +118,8 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     PictureFolder out(folder);
     std::size_t count = 0;
     const std::size_t all = wall.tiles.size() * static_cast<std::size_t>(picturesPerTile(wall));
-    const std::vector<pictures::Image> whole = receiveWall(
-        cluster, wall, watchdog, [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
+    const std::vector<pictures::Image> whole =
+        receiveWall(barrier, wall, [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
             out.write(fileOf(tile, kind), image);
             fmt::print("pictures {}/{}\n", ++count, all);
             std::fflush(stdout);
@@ -132,12 +128,12 @@ void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall
     out.tellFailure();
 }
 
-HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog) {
+HeldPictures holdWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall) {
     HeldPictures held;
-    held.whole = receiveWall(cluster, wall, watchdog,
-                             [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
-                                 held.tiles.push_back({fileOf(tile, kind), image});
-                             });
+    held.whole =
+        receiveWall(barrier, wall, [&](const walls::Tile& tile, std::string_view kind, const pictures::Image& image) {
+            held.tiles.push_back({fileOf(tile, kind), image});
+        });
     return held;
 }
 

@@ -7,8 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "lockstep/cluster.hpp"
-#include "lockstep/watchdog.hpp"
+#include "lockstep/frame_barrier.hpp"
 #include "pictures/image.hpp"
 #include "walls/wall.hpp"
 
@@ -22,15 +21,14 @@ namespace master {
 /// the tile, the eye's name or "output", and the picture. The ranks must be sending. The watchdog limits the wait for
 /// each picture.
 [[nodiscard]] std::vector<pictures::Image> receiveWall(
-    const lockstep::Cluster& cluster, const walls::Wall& wall, lockstep::Watchdog& watchdog,
+    lockstep::FrameBarrier& barrier, const walls::Wall& wall,
     const std::function<void(const walls::Tile&, std::string_view, const pictures::Image&)>& each);
 
 /// Receives the pictures of all tiles and writes them as tile_NAME_EYE.png. Also writes pictures of the whole wall:
 /// wall_left.png, wall_right.png and wall_anaglyph.png, or wall.png if the wall draws one eye. Prints progress on
 /// standard output. The ranks must be sending. The watchdog limits the wait for each picture. Throws base::InputError
 /// if a file cannot be written, after all pictures were received.
-void writeWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall, const std::filesystem::path& folder,
-                       lockstep::Watchdog& watchdog);
+void writeWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall, const std::filesystem::path& folder);
 
 /// The pictures of all tiles and of the whole wall, received and not yet written.
 struct HeldPictures {
@@ -44,8 +42,7 @@ struct HeldPictures {
 /// Returns whether all pictures of the wall may be held in memory. The pictures of a larger wall are written one by
 /// one.
 [[nodiscard]] bool mayBeHeld(const walls::Wall& wall);
-[[nodiscard]] HeldPictures holdWallPictures(const lockstep::Cluster& cluster, const walls::Wall& wall,
-                                            lockstep::Watchdog& watchdog);
+[[nodiscard]] HeldPictures holdWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall);
 /// Writes the pictures. Throws base::InputError if a file cannot be written, after all files were tried. Any thread.
 void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& folder);
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/float_environment.hpp"
 #include "host/build_id.hpp"
 #include "host/clock.hpp"
 #include "host/print_line.hpp"
@@ -42,7 +43,8 @@ public:
           shown_(wall_),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
-          context_(makeContext(backend, wall_, tile_)) {
+          context_(makeContext(backend, wall_, tile_)),
+          otherFloats_(base::repairFloats()) {
         if (faults_.spoilsShader()) {
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
@@ -57,6 +59,8 @@ public:
     }
 
     [[nodiscard]] const GlContext& context() const { return *context_; }
+    /// Returns Readiness::otherFloats.
+    [[nodiscard]] const std::string& otherFloats() const { return otherFloats_; }
     /// Returns the rank's name as the master prints it.
     [[nodiscard]] std::string name() const { return fmt::format("rank {} (tile {})", tile_.rank, tile_.name); }
 
@@ -100,7 +104,7 @@ public:
                 (void)lockstep::gatherReports(barrier, report());
             }
             if (frame.capture) {
-                sendPictures();
+                sendPictures(barrier);
             }
         }
     }
@@ -163,12 +167,20 @@ private:
         return keys.empty() ? '\0' : keys.front();
     }
 
-    void sendPictures() const {
+    /// The master takes the pictures in order of rank, and may take the limit of a frame for each. So a later rank
+    /// waits longer, and after the last frame every rank waits until the master has written all pictures.
+    void sendPictures(lockstep::FrameBarrier& barrier) const {
+        const auto pictures = static_cast<double>(painter_->pictures().size());
+        lockstep::Watchdog& watchdog = barrier.watchdog();
+        watchdog.setLimit(message_.frameTimeout * pictures * cluster_.rank());
+        barrier.setEndLimit(message_.frameTimeout * (1 + pictures * cluster_.renderRanks()));
+        const lockstep::Watched watched(watchdog);
         int eye = 0;
         for (const EyeTarget* target : painter_->pictures()) {
             lockstep::sendPicture(cluster_,
                                   {cluster_.rank(), eye++, target->width(), target->height(), target->read()});
         }
+        watchdog.setLimit(message_.frameTimeout);
     }
 
     [[nodiscard]] lockstep::RankReport report() const {
@@ -199,6 +211,7 @@ private:
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // declared before all owners of GL objects
+    const std::string otherFloats_;
     std::optional<sand::Replica> terrain_;
     std::optional<TilePainter> painter_;
     lockstep::Statistics drawMs_, waitMs_;
@@ -215,6 +228,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
     std::unique_ptr<TileSession> session;
     try {
         session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
+        readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();
         readiness.shortcomings = session->context().shortcomings();
         readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().framesToIgnore());

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// A rank that hangs before the first frame or after the last one is named, and the job ends.
+#include <fmt/format.h>
+
+#include "tests/cluster/session_fixture.hpp"
+
+namespace {
+
+class Watched : public SessionTest {
+protected:
+    static constexpr int kShortStart = 20;  // [s]
+
+    /// Runs five frames on two tiles. `rank` hangs in `function` (tests/support/hang_at.cpp). The start may take
+    /// `startSeconds`: on a busy machine the ranks that do not hang need many seconds.
+    Ended hang(int rank, const std::string& function, int startSeconds = 120) {
+        environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("hang-at.so")).string(),
+                        "SANDWALL_HANG_RANK=" + std::to_string(rank), "SANDWALL_HANG_AT=" + function,
+                        fmt::format("SANDWALL_START_TIMEOUT={}", startSeconds), "SANDWALL_EVENTS=1"};
+        return runToEnd(
+            {"--wall", wall(1, 2, "mono"), "--scene", scene(), "--frames", "5", "--out", out(), "--frame-timeout", "5"},
+            kLong);
+    }
+    void expectNamed(const std::string& function, int startSeconds = 120) {
+        const Ended ended = hang(2, function, startSeconds);
+        EXPECT_EQ(ended.status, 1) << ended.output;
+        ASSERT_TRUE(std::filesystem::exists(folder_ / "out/failure.json")) << ended.output;
+        const nlohmann::json failure = json("out/failure.json");
+        EXPECT_TRUE(support::holds(failure, {{"what", "hung"}, {"rank", 2}, {"tile", "r1c2"}, {"host", host()}}))
+            << failure;
+        EXPECT_TRUE(ended.has("waiting", {{"by", 0}, {"ranks", {2}}, {"ends_job", true}})) << ended.output;
+    }
+};
+
+TEST_F(Watched, ADriverThatHangsAtTheStart) { expectNamed("OSMesaCreateContextAttribs", kShortStart); }
+
+TEST_F(Watched, ADriverThatHangsWhileAPictureIsRead) { expectNamed("glReadPixels"); }
+
+TEST_F(Watched, ADriverThatHangsWhenItIsClosed) { expectNamed("OSMesaDestroyContext"); }
+
+TEST_F(Watched, ARankThatHangsInMpiFinalize) { expectNamed("MPI_Finalize"); }
+
+// No rank has MPI yet, so none can know which one is missing.
+TEST_F(Watched, ARankThatHangsInMpiInitEndsTheJob) {
+    const Ended ended = hang(2, "MPI_Init_thread", kShortStart);
+    EXPECT_EQ(ended.status, 1) << ended.output;
+    EXPECT_TRUE(ended.has("waiting", {{"ends_job", true}})) << ended.output;
+}
+
+// The first render rank has a watchdog of its own, and ends the job in the master's place.
+TEST_F(Watched, AMasterThatHangsInMpiFinalize) {
+    const Ended ended = hang(0, "MPI_Finalize");
+    EXPECT_EQ(ended.status, 1) << ended.output;
+    EXPECT_TRUE(ended.has("waiting", {{"by", 1}, {"ranks", {0}}, {"ends_job", true}}) ||
+                ended.has("waiting", {{"by", 0}, {"ends_job", true}}))
+        << ended.output;
+}
+
+}  // namespace
