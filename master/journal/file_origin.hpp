@@ -23,7 +23,7 @@ struct FileKind {
     std::string_view name;  // such as "journal"
     std::uint32_t magic = 0;
     std::uint32_t format = 0;       // the one format that this release writes and reads
-    std::uint32_t firstFormat = 0;  // release 0.2.0's; files of lower formats have no origin
+    std::uint32_t firstFormat = 0;  // files of lower formats have no origin
 };
 
 /// Thrown for a file of another kind, and for one that only another release can read. The text says which.

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::uint32_t kJournalMagic = 0x4c4a5753;  // "SWJL"
 constexpr FileKind kJournalKind{.name = "journal", .magic = kJournalMagic, .format = kJournalVersion, .firstFormat = 6};
-enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued };
+enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued, kDoubt, kChecked };
+constexpr std::uint8_t kBeginsWrite = 0x80;  // added to the type of the first record of a write
 
 std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
     return XXH3_64bits_withSeed(bytes.data(), bytes.size(), seed);  // with seed 0 the same as XXH3_64bits()
@@ -83,12 +84,35 @@ JournalResumed getResumed(base::ByteReader& reader) {
     return resumed;
 }
 
-/// Writes type and payload of a record.
+JournalDoubt getDoubt(base::ByteReader& reader) {
+    JournalDoubt doubt;
+    doubt.frame = reader.getVarint();
+    doubt.sand = getEnd(reader);
+    return doubt;
+}
+
+JournalChecked getChecked(base::ByteReader& reader) {
+    JournalChecked checked;
+    checked.frame = reader.getVarint();
+    checked.sand = getEnd(reader);
+    checked.outvoted = reader.get<std::uint8_t>() != 0;
+    return checked;
+}
+
+/// Writes type and payload of a record, with its mark if it is the first of a write.
 struct Encode {
+    std::optional<std::uint64_t> synced;
     base::ByteWriter writer{};
 
+    void begin(Type type) {
+        writer.put(static_cast<std::uint8_t>(type | (synced ? kBeginsWrite : 0)));
+        if (synced) {
+            writer.put(*synced);
+        }
+    }
+
     void operator()(const JournalFrame& frame) {
-        writer.put(std::uint8_t{kFrame});
+        begin(kFrame);
         writer.putVarint(frame.frame);
         writer.put(frame.hashBefore);
         writer.putVarint(frame.steps.size());
@@ -97,55 +121,40 @@ struct Encode {
         }
     }
     void operator()(const JournalEnd& end) {
-        writer.put(std::uint8_t{kEnd});
+        begin(kEnd);
         put(end, writer);
     }
     void operator()(const JournalTicks& ticks) {
-        writer.put(std::uint8_t{kTicks});
+        begin(kTicks);
         writer.putBytes(ticks.piece);
     }
     void operator()(const JournalResumed& resumed) {
-        writer.put(std::uint8_t{kResumed});
+        begin(kResumed);
         writer.putVarint(resumed.frame);
         put(resumed.sand, writer);
         writer.put(resumed.cutBytes);
         writer.putText(resumed.failure);
     }
     void operator()(const scene::Material& material) {
-        writer.put(std::uint8_t{kMaterial});
+        begin(kMaterial);
         put(material, writer);
     }
     void operator()(const JournalContinued& continued) {
-        writer.put(std::uint8_t{kContinued});
+        begin(kContinued);
         writer.put(continued.part);
     }
+    void operator()(const JournalDoubt& doubt) {
+        begin(kDoubt);
+        writer.putVarint(doubt.frame);
+        put(doubt.sand, writer);
+    }
+    void operator()(const JournalChecked& checked) {
+        begin(kChecked);
+        writer.putVarint(checked.frame);
+        put(checked.sand, writer);
+        writer.put(static_cast<std::uint8_t>(checked.outvoted ? 1 : 0));
+    }
 };
-
-/// Returns whether a record, a part of one, zeros or the end of the file may begin at `at`. Looks at one byte only.
-bool mayFollow(std::span<const std::uint8_t> rest, std::size_t at) {
-    constexpr std::size_t kLength = sizeof(std::uint32_t);
-    return rest.size() - at <= kLength || rest[at + kLength] <= kContinued;
-}
-
-/// Returns whether a whole record begins at `at`. `chain` is the checksum before it.
-bool recordAt(std::span<const std::uint8_t> rest, std::size_t at, std::uint64_t chain) {
-    std::uint32_t length = 0;
-    if (at > rest.size() || rest.size() - at < kAroundPayload) {
-        return false;
-    }
-    std::memcpy(&length, &rest[at], sizeof length);
-    const std::uint8_t type = rest[at + sizeof length];
-    if (length > rest.size() - at - kAroundPayload || type < kFrame || type > kContinued) {
-        return false;
-    }
-    if (!mayFollow(rest, at + kAroundPayload + length)) {  // without this, checksums at every byte take minutes
-        return false;
-    }
-    const auto body = rest.subspan(at + sizeof length, std::size_t{length} + 1);
-    std::uint64_t said = 0;
-    std::memcpy(&said, body.data() + body.size(), sizeof said);
-    return said == chainedSum(body, chain);
-}
 
 }  // namespace
 
@@ -208,8 +217,8 @@ JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain) {
     return header;
 }
 
-base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
-    Encode encode;
+base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain, std::optional<std::uint64_t> synced) {
+    Encode encode{synced};
     std::visit(encode, record);
     const base::Bytes& body = encode.writer.bytes();
     base::ByteWriter writer;
@@ -222,21 +231,29 @@ base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain) {
 
 JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
     base::ByteReader payload(body.subspan(1));
-    switch (body[0]) {
+    if ((body[0] & kBeginsWrite) != 0) {
+        (void)payload.get<std::uint64_t>();
+    }
+    const auto type = static_cast<std::uint8_t>(body[0] & ~kBeginsWrite);
+    switch (type) {
         case kFrame:
             return getFrame(payload);
         case kEnd:
             return getEnd(payload);
         case kTicks:
-            return JournalTicks{{body.begin() + 1, body.end()}};
+            return JournalTicks{{payload.rest().begin(), payload.rest().end()}};
         case kResumed:
             return getResumed(payload);
         case kMaterial:
             return getMaterial(payload);
         case kContinued:
             return JournalContinued{payload.get<std::uint32_t>()};
+        case kDoubt:
+            return getDoubt(payload);
+        case kChecked:
+            return getChecked(payload);
         default:
-            throw base::FormatError(fmt::format("a record of unknown type {}", body[0]));
+            throw base::FormatError(fmt::format("a record of unknown type {}", type));
     }
 }
 
@@ -244,23 +261,52 @@ std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t c
     return chainedSum(body, chain);
 }
 
-bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain) {
-    if (rest.size() >= kAroundPayload) {
-        // If only this record's stored checksum is wrong, the next record continues from the right checksum.
-        std::uint32_t length = 0;
-        std::memcpy(&length, rest.data(), sizeof length);
-        if (length <= rest.size() - kAroundPayload) {
-            const auto body = rest.subspan(sizeof length, std::size_t{length} + 1);
-            if (recordAt(rest, length + kAroundPayload, chainedSum(body, chain))) {
+std::optional<std::uint64_t> markOf(std::span<const std::uint8_t> body) {
+    std::uint64_t mark = 0;
+    if (body.size() <= sizeof mark || (body[0] & kBeginsWrite) == 0) {
+        return std::nullopt;
+    }
+    std::memcpy(&mark, &body[1], sizeof mark);
+    return mark;
+}
+
+namespace {
+
+/// Returns whether a whole record begins with `record`. `chain` is the checksum before it.
+bool isWhole(std::span<const std::uint8_t> record, std::uint64_t chain) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, record.data(), sizeof length);
+    if (length > record.size() - kAroundPayload) {
+        return false;
+    }
+    const auto body = record.subspan(sizeof length, std::size_t{length} + 1);
+    std::uint64_t said = 0;
+    std::memcpy(&said, body.data() + body.size(), sizeof said);
+    return said == chainedSum(body, chain);
+}
+
+}  // namespace
+
+bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
+    constexpr std::size_t kLength = sizeof(std::uint32_t);
+    constexpr std::size_t kLeast = kAroundPayload + sizeof(std::uint64_t);
+    constexpr std::uint64_t kLongestPart = std::uint64_t{1} << 40;  // [byte], of --journal-part
+    for (std::size_t at = 1; at + kLeast <= rest.size(); ++at) {
+        const std::uint8_t type = rest[at + kLength];
+        const auto mark = type > kBeginsWrite && type <= (kBeginsWrite | kChecked) ? markOf(rest.subspan(at + kLength))
+                                                                                   : std::nullopt;
+        // A mark is the place of its own record. That is enough, because its checksum cannot be verified if the bytes
+        // before it are lost.
+        if (mark == offset + at) {
+            return true;
+        }
+        // Bytes before it may have been removed or added, so that the record has moved.
+        std::uint64_t before = 0;
+        if (mark && *mark < kLongestPart && at >= sizeof before) {
+            std::memcpy(&before, &rest[at - sizeof before], sizeof before);
+            if (isWhole(rest.subspan(at), before)) {
                 return true;
             }
-        }
-    }
-    std::uint64_t before = 0;
-    for (std::size_t at = sizeof before; at + kAroundPayload <= rest.size(); ++at) {
-        std::memcpy(&before, &rest[at - sizeof before], sizeof before);
-        if (recordAt(rest, at, before)) {
-            return true;
         }
     }
     return false;

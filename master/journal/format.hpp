@@ -18,13 +18,14 @@
 /// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
 namespace master {
 
-inline constexpr std::uint32_t kJournalVersion = 6;
+inline constexpr std::uint32_t kJournalVersion = 7;
 
 /// The steps of one frame, as the journal holds them.
 struct JournalFrame {
     std::uint64_t frame = 0;
     std::uint64_t hashBefore = 0;  // state hash before the first of the steps
     std::vector<sand::Step> steps;
+    bool doubted = false;  // only when read: the hash does not count, because it follows a JournalDoubt
 };
 
 /// Hash of the sand after a step. The last record of a whole session and the header of a later part contain one.
@@ -45,13 +46,27 @@ struct JournalTicks {
     base::Bytes piece;
 };
 
+/// The ranks differed, and their majority decided which sand is right. The hashes of later frames do not count until a
+/// JournalChecked or a JournalResumed.
+struct JournalDoubt {
+    std::uint64_t frame = 0;
+    JournalEnd sand;  // of the majority
+};
+
+/// The majority's sand has been compared with the replay of this journal.
+struct JournalChecked {
+    std::uint64_t frame = 0;
+    JournalEnd sand;        // that the ranks now have
+    bool outvoted = false;  // the majority was wrong, and all ranks took the sand of the replay
+};
+
 /// Last record of a part. The session continues in the next part.
 struct JournalContinued {
     std::uint32_t part = 0;
 };
 
-using JournalRecord =
-    std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material, JournalContinued>;
+using JournalRecord = std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material,
+                                   JournalContinued, JournalDoubt, JournalChecked>;
 
 /// Header of a journal's file.
 struct JournalHeader {
@@ -79,17 +94,22 @@ public:
 [[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
 
 /// Returns the bytes of a whole record. `chain` is the checksum of the record before, and is set to the checksum of
-/// this record.
-[[nodiscard]] base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain);
+/// this record. The first record of a write has a mark, `synced`: the length of the part before it, which is on disk
+/// [byte].
+[[nodiscard]] base::Bytes encodeRecord(const JournalRecord& record, std::uint64_t& chain,
+                                       std::optional<std::uint64_t> synced = {});
 /// Decodes a record from its type and payload, `body`. The caller has verified the checksum. Throws base::FormatError
 /// if the payload is invalid.
 [[nodiscard]] JournalRecord decodeRecord(std::span<const std::uint8_t> body);
+/// Returns the mark of a record with type and payload `body`; nullopt if it is not the first of a write.
+[[nodiscard]] std::optional<std::uint64_t> markOf(std::span<const std::uint8_t> body);
 /// Returns the checksum of a record with type and payload `body`. `chain` is the checksum of the record before.
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);
 
-/// Returns whether an intact record follows anywhere in `rest`, which begins with a broken one. If so, the file was
-/// damaged and not only cut off. `chain` is the checksum before `rest`.
-[[nodiscard]] bool holdsRecords(std::span<const std::uint8_t> rest, std::uint64_t chain);
+/// Returns whether another write begins anywhere in `rest`, which begins with a broken record at `offset` [byte] of its
+/// part. If so, the broken record had been on disk and was damaged later. Otherwise a crash has torn the last write, of
+/// which any bytes may be missing.
+[[nodiscard]] bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset);
 
 inline constexpr std::size_t kAroundPayload = sizeof(std::uint32_t) + 1 + sizeof(std::uint64_t);  // [byte]
 

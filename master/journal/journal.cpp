@@ -22,6 +22,8 @@ struct Gather {
     }
     void operator()(const scene::Material&) const {}
     void operator()(const JournalContinued&) const {}
+    void operator()(const JournalDoubt&) const {}
+    void operator()(const JournalChecked&) const {}
 };
 
 /// Returns the result of `decode` for the scene in the header. Errors name the journal.

@@ -154,6 +154,9 @@ bool JournalReader::readRecord(base::Bytes& body) {
     if (recordChecksum(body, place_.chain) != said) {
         return false;
     }
+    if (const auto mark = markOf(body); mark && *mark != static_cast<std::uint64_t>(place_.offset)) {
+        return false;
+    }
     place_.chain = said;
     return true;
 }
@@ -164,9 +167,8 @@ void JournalReader::endHere(const std::string& why) {
         base::Bytes rest;
         stream_.clear();
         stream_.seekg(place_.offset);
-        // A crash tears only the last record. If records follow, this one was damaged on the disk, perhaps in its
-        // length.
-        if (holdsRecords(readInto(stream_, rest, left), place_.chain)) {
+        // A crash tears only the last write. If a write follows, this record had been on disk and was damaged there.
+        if (holdsLaterWrite(readInto(stream_, rest, left), static_cast<std::uint64_t>(place_.offset))) {
             fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_, why));
         }
     }
@@ -177,6 +179,16 @@ void JournalReader::endHere(const std::string& why) {
     }
     tornBytes_ = left;
     ended_ = true;
+}
+
+void JournalReader::followDoubt(JournalRecord& record) {
+    if (std::holds_alternative<JournalDoubt>(record)) {
+        doubted_ = true;
+    } else if (std::holds_alternative<JournalChecked>(record) || std::holds_alternative<JournalResumed>(record)) {
+        doubted_ = false;
+    } else if (auto* frame = std::get_if<JournalFrame>(&record)) {
+        frame->doubted = doubted_;
+    }
 }
 
 std::optional<JournalRecord> JournalReader::next() {
@@ -198,6 +210,7 @@ std::optional<JournalRecord> JournalReader::next() {
             openNext(continued->part);
             continue;
         }
+        followDoubt(record);
         return record;
     }
     return std::nullopt;

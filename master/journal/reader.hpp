@@ -55,6 +55,8 @@ private:
     [[nodiscard]] bool readRecord(base::Bytes& body);
     [[noreturn]] void fail(const std::string& why) const;
     void endHere(const std::string& why);
+    /// Sets JournalFrame::doubted of a record that has been read.
+    void followDoubt(JournalRecord& record);
     /// Returns whether there is a next part of this session with a record.
     [[nodiscard]] bool goesOn() const;
 
@@ -65,6 +67,7 @@ private:
     std::int64_t earlierBytes_ = 0;
     std::int64_t tornBytes_ = 0;
     bool ended_ = false;
+    bool doubted_ = false;  // the hashes of the next frames do not count
 };
 
 }  // namespace master

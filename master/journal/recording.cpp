@@ -13,7 +13,7 @@ namespace {
 
 std::string shortcomingOf(const Journal& journal, const std::string& file, std::uint64_t lastStep) {
     if (journal.tornBytes > 0) {
-        return fmt::format("{}: the last {} bytes are an incomplete record and were left out; it ends at step {}", file,
+        return fmt::format("{}: the last {} bytes are an incomplete write and were left out; it ends at step {}", file,
                            journal.tornBytes, lastStep);
     }
     if (!journal.end) {
@@ -27,7 +27,9 @@ std::string shortcomingOf(const Journal& journal, const std::string& file, std::
 Recording::Recording(Journal journal, std::string file, int framesPerSecond)
     : scene_(std::move(journal.scene)), framesPerSecond_(framesPerSecond) {
     for (JournalFrame& frame : journal.frames) {
-        hashes_.emplace(steps_.size(), frame.hashBefore);
+        if (!frame.doubted) {
+            hashes_.emplace(steps_.size(), frame.hashBefore);
+        }
         for (sand::Step& step : frame.steps) {
             if (step.number != steps_.size() + 1) {
                 throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",

@@ -80,8 +80,7 @@ void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::in
 
 void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
     if (tornBytes > 0) {
-        host::printLine("{}: the last {} bytes are an incomplete record and were left out", journal.string(),
-                        tornBytes);
+        host::printLine("{}: the last {} bytes are an incomplete write and were left out", journal.string(), tornBytes);
     }
     if (!orderlyEnd) {
         host::printLine("{}: has no orderly end; the session was cut off", journal.string());

@@ -40,7 +40,7 @@ public:
         firstFrame_ = firstFrame_ == 0 ? frame.frame : firstFrame_;
         lastFrame_ = std::max(lastFrame_, frame.frame);
         end_.reset();
-        if (!frame.steps.empty()) {
+        if (!frame.steps.empty() && !frame.doubted) {
             compare({frame.steps.front().number - 1, frame.hashBefore});
         }
         for (const sand::Step& step : frame.steps) {
@@ -69,6 +69,12 @@ public:
     void operator()(const JournalTicks&) { ++ticks_; }
     void operator()(const scene::Material&) {}
     void operator()(const JournalContinued&) {}
+    void operator()(const JournalDoubt& doubt) {
+        ++doubts_;
+        // Later steps of the majority's sand are not in the journal, so only this hash can be compared.
+        outvoted_ += doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() ? 1 : 0;
+    }
+    void operator()(const JournalChecked& checked) { compare(checked.sand); }
 
 private:
     void compare(const JournalEnd& said) {
@@ -104,11 +110,12 @@ private:
         fmt::print("parts        {}\n", reader_.parts());
         fmt::print("tail         {}\n", reader_.tornBytes() == 0
                                             ? std::string("whole")
-                                            : fmt::format("{} bytes of an incomplete record", reader_.tornBytes()));
+                                            : fmt::format("{} bytes of an incomplete write", reader_.tornBytes()));
         fmt::print("steps        {} without a gap, in frames {} to {}, epochs to {}, {} pieces of ticks\n",
                    terrain_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
         fmt::print("left out     {} steps{}\n", leftOut_, firstLeftOut_);
         fmt::print("hashes       {} of {} equal to the replay's\n", hashes_ - differing_, hashes_);
+        fmt::print("majorities   {} decided which sand is right, {} of them against the journal\n", doubts_, outvoted_);
         for (const auto& [step, found] : checkpoints_) {
             fmt::print("checkpoint   of step {}: {}\n", step, found.empty() ? "beyond the journal's end" : found);
         }
@@ -122,6 +129,7 @@ private:
     sand::Replica start_, terrain_;
     std::map<std::uint64_t, std::string> checkpoints_;  // by step: the result for each
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
+    std::uint64_t doubts_ = 0, outvoted_ = 0;
     std::uint64_t firstFrame_ = 0, lastFrame_ = 0;
     std::uint32_t lastEpoch_ = 0;
     std::uint64_t leftOut_ = 0;  // steps

@@ -83,7 +83,8 @@ void JournalWriter::rotate(const JournalEnd& now) {
     writeWaiting();
     // Makes the next part, with the checksum that it continues from, before this part names it.
     std::uint64_t chain = chain_;
-    const base::Bytes continued = encodeRecord(JournalContinued{part_ + 1}, chain);
+    const base::Bytes continued =
+        encodeRecord(JournalContinued{part_ + 1}, chain, static_cast<std::uint64_t>(file_.size()));
     JournalHeader header;
     header.session = session_;
     header.part = part_ + 1;
@@ -116,8 +117,9 @@ JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd
 }
 
 void JournalWriter::put(const JournalRecord& record) {
-    const base::Bytes bytes = encodeRecord(record, chain_);
     const std::size_t end = waiting_.size();
+    const auto synced = end == 0 ? std::optional(static_cast<std::uint64_t>(file_.size())) : std::nullopt;
+    const base::Bytes bytes = encodeRecord(record, chain_, synced);
     waiting_.resize(end + bytes.size());
     std::memcpy(waiting_.data() + end, bytes.data(), bytes.size());
 }

@@ -67,7 +67,7 @@ TEST(Recording, SaysWhereACutOffSessionEnds) {
               "FILE: has no orderly end, the session was cut off; it ends at step 9");
     journal.tornBytes = 5;
     EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
-              "FILE: the last 5 bytes are an incomplete record and were left out; it ends at step 9");
+              "FILE: the last 5 bytes are an incomplete write and were left out; it ends at step 9");
 }
 
 TEST(Recording, RefusesASessionWithAHole) {

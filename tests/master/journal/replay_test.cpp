@@ -238,7 +238,7 @@ TEST_F(Replay, SaysThatTheRowsEndWithATornRecord) {
     EXPECT_EQ(torn.output,
               support::runProgram("sandwall-replay", journal() + " --mesh " + (folder_ / "m.ply").string()).output)
         << "a replay prints the same line";
-    EXPECT_NE(torn.output.find("bytes are an incomplete record and were left out\n"), std::string::npos) << torn.output;
+    EXPECT_NE(torn.output.find("bytes are an incomplete write and were left out\n"), std::string::npos) << torn.output;
     EXPECT_NE(torn.output.find("has no orderly end"), std::string::npos) << torn.output;
 }
 
