@@ -57,8 +57,9 @@ std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, con
 Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Divergence& result) {
     const Vote vote = countVotes(accounts);
     result.rightHash = vote.hash;
-    if (vote.tie) {
-        result.journal = arbiter ? arbiter() : nullptr;
+    if (vote.tie || arbiter.overrules) {
+        result.outvoted = !vote.tie;
+        result.journal = arbiter.sand ? arbiter.sand() : nullptr;
         result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
         result.rightHash = result.journal ? result.journal->stateHash() : accounts[kMaster].hash;
     }

@@ -26,11 +26,12 @@ struct Divergence {
     /// The source of the right sand.
     enum class Judge : std::uint8_t {
         majority,  // more than half of all ranks have the right hash
-        journal,   // no majority; the journal gave the right sand
+        journal,   // no majority, or a wrong one; the journal gave the right sand
         master     // no majority and no usable journal; the master's sand counts as right
     };
     std::uint64_t rightHash = 0;  // state hash of the right sand
     Judge judge = Judge::majority;
+    bool outvoted = false;                   // the journal has outvoted a majority
     int agreeing = 0;                        // number of ranks with the right hash
     int source = 0;                          // first of these ranks
     std::unique_ptr<sand::Replica> journal;  // the right sand, if no rank has it
@@ -53,8 +54,12 @@ struct Vote {
 /// Counts how many ranks have each state hash.
 [[nodiscard]] Vote countVotes(const std::vector<Account>& accounts /* in order of rank, the master's first */);
 
-/// Function that computes the right sand when no hash has a majority. Returns null if it cannot.
-using Arbiter = std::function<std::unique_ptr<sand::Replica>()>;
+/// Function that returns the right sand when no hash has a majority, or null if it cannot. If `overrules`, its sand is
+/// right although a hash has a majority.
+struct Arbiter {
+    std::function<std::unique_ptr<sand::Replica>()> sand{};
+    bool overrules = false;
+};
 
 /// Finds the ranks whose sand is wrong. Call it after a barrier with the verdict Verdict::otherSand. Each rank first
 /// computes its hashes again from memory. Returns the result at the master and nullopt on other ranks. Only the

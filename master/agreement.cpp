@@ -30,9 +30,14 @@ Agreement::Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out,
       labels_(std::move(labels)),
       out_(std::move(out)),
       statistics_(statistics),
-      witness_(std::move(witness)) {}
+      witness_(std::move(witness)),
+      strikes_(labels_.names.size()) {}
 
 bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& steps, std::int64_t next) {
+    if (overruling_) {
+        // The master arrives with the journal's hash. All ranks then have other sand, and are healed.
+        mine.stateHash = overruling_->stateHash();
+    }
     lockstep::Verdict verdict = ranks_.meet(mine, next);
     for (bool again = false; verdict != lockstep::Verdict::equal; again = true) {
         if (verdict == lockstep::Verdict::nonsense) {
@@ -51,6 +56,7 @@ bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& step
         mine.stateHash = sand.hash();
         verdict = ranks_.meet(mine, next);
     }
+    overruling_.reset();  // unused if an edit has restored the right sand meanwhile
     if (const std::string line = steps.takeStrayLine(); !line.empty()) {
         host::printLine("{}", line);
     }
@@ -58,12 +64,17 @@ bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& step
 }
 
 bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& steps, bool again) {
-    const lockstep::Divergence divergence = ranks_.findDivergence(sand.replica(), witness_.sand);
+    const bool overrules = overruling_ != nullptr;
+    const lockstep::Arbiter arbiter{[this] { return overruling_ ? std::move(overruling_) : witness_.sand(); },
+                                    overrules};
+    const lockstep::Divergence divergence = ranks_.findDivergence(sand.replica(), arbiter);
     const std::vector<int> odd = ranksOf(divergence);
     const DivergedFrame diverged{frame, sand.replica().stepNumber(), divergence};
     emitDivergence(diverged, static_cast<int>(labels_.names.size()), witness_.journal());
     std::vector<std::string> lines = describeDivergence(diverged, labels_.names, witness_.journal());
-    const std::optional<int> broken = again && !odd.empty() ? odd.front() : brokenAmong(odd);
+    const std::optional<int> broken = again && !odd.empty() ? std::optional(odd.front())
+                                      : overrules           ? std::nullopt
+                                                            : brokenAmong(odd);
     lockstep::Remedy remedy{!broken, divergence.source, odd};
     if (broken) {
         statistics_.addOdd(odd);
@@ -73,6 +84,9 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
         lines.insert(lines.end(), healed.begin(), healed.end());
     }
     tell(lines, out_ / "divergence.txt");
+    if (!broken && !odd.empty() && divergence.judge == lockstep::Divergence::Judge::majority) {
+        decision_ = JournalEnd{sand.replica().stepNumber(), divergence.rightHash};
+    }
     if (!broken && divergence.journal) {
         // No rank has the right sand, so the master takes it from the journal and sends it to the others.
         sand.replica().decodeState(divergence.journal->encodeState());
@@ -91,11 +105,12 @@ std::vector<std::string> Agreement::countHealed(std::uint64_t frame, const locks
     const std::string& from =
         divergence.journal ? "the journal" : labels_.names[static_cast<std::size_t>(divergence.source)];
     statistics_.addHealed(odd);
+    countStrikes(divergence, odd);
     healed_ += odd.size();
     std::vector<std::string> lines;
     for (const int rank : odd) {
         const auto index = static_cast<std::size_t>(rank);
-        const std::uint64_t times = statistics_.ranks()[index].healed;
+        const std::uint64_t times = strikes_[index];
         lines.push_back(fmt::format("frame {}: {} takes the sand of {}; healed {} of at most {} times", frame,
                                     labels_.names[index], from, times, kMostHealings));
         host::emitEvent("healed", {{"frame", frame},
@@ -107,9 +122,28 @@ std::vector<std::string> Agreement::countHealed(std::uint64_t frame, const locks
     return lines;
 }
 
+/// Counts the healing of each rank against it. If the journal outvotes a majority, the ranks that this majority had
+/// healed were right, and the other ranks were wrong.
+void Agreement::countStrikes(const lockstep::Divergence& divergence, const std::vector<int>& odd) {
+    for (const int rank : odd) {
+        std::uint64_t& strikes = strikes_[static_cast<std::size_t>(rank)];
+        const bool wasRight = divergence.outvoted && std::count(healedInDoubt_.begin(), healedInDoubt_.end(), rank) > 0;
+        if (wasRight) {
+            strikes -= std::min<std::uint64_t>(strikes, 1);
+        } else {
+            ++strikes;
+        }
+    }
+    if (divergence.outvoted) {
+        healedInDoubt_.clear();
+    } else if (divergence.judge == lockstep::Divergence::Judge::majority && healedInDoubt_.empty()) {
+        healedInDoubt_ = odd;
+    }
+}
+
 std::optional<int> Agreement::brokenAmong(const std::vector<int>& odd) const {
     for (const int rank : odd) {
-        if (statistics_.ranks()[static_cast<std::size_t>(rank)].healed >= kMostHealings) {
+        if (strikes_[static_cast<std::size_t>(rank)] >= kMostHealings) {
             return rank;
         }
     }

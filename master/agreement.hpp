@@ -7,9 +7,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lockstep/rank_statistics.hpp"
+#include "master/journal/keeper.hpp"
 #include "master/master_sand.hpp"
 #include "master/rank_labels.hpp"
 #include "master/ranks.hpp"
@@ -41,6 +43,13 @@ public:
     /// reason has then been printed.
     [[nodiscard]] bool reach(lockstep::Arrival mine, MasterSand& sand, StepSource& steps, std::int64_t next);
 
+    /// Makes the next reach() give `right` to all ranks, although a majority of them has other sand.
+    void overrule(std::unique_ptr<sand::Replica> right) { overruling_ = std::move(right); }
+    /// Returns the sand that a majority has decided on since the last call; nullopt if none has.
+    [[nodiscard]] std::optional<JournalEnd> takeDecision() { return std::exchange(decision_, std::nullopt); }
+    /// Called when the journal has confirmed all decisions so far. A later overrule() then does not concern them.
+    void confirmed() { healedInDoubt_.clear(); }
+
     /// Return the number of frames in which ranks differed, and how often a rank was healed, since this process began.
     [[nodiscard]] std::uint64_t divergences() const { return divergences_; }
     [[nodiscard]] std::uint64_t healed() const { return healed_; }
@@ -51,6 +60,7 @@ private:
     [[nodiscard]] std::string giveUp(std::uint64_t frame, int rank, bool again) const;
     [[nodiscard]] std::vector<std::string> countHealed(std::uint64_t frame, const lockstep::Divergence& divergence,
                                                        const std::vector<int>& odd);
+    void countStrikes(const lockstep::Divergence& divergence, const std::vector<int>& odd);
     void reportOtherViews(std::uint64_t frame);
     void reportNonsense();
 
@@ -59,6 +69,10 @@ private:
     const std::filesystem::path out_;
     lockstep::RankStatistics& statistics_;
     const Witness witness_;
+    std::unique_ptr<sand::Replica> overruling_;  // the journal's sand, which all ranks must take; usually null
+    std::optional<JournalEnd> decision_;
+    std::vector<int> healedInDoubt_;      // ranks that a majority has healed whose decision is not confirmed
+    std::vector<std::uint64_t> strikes_;  // by rank: healings that count against it
     std::uint64_t divergences_ = 0, healed_ = 0;
 };
 

@@ -71,7 +71,10 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
                                     when, names[static_cast<std::size_t>(odd.rank)], divergence.agreeing, names.size(),
                                     odd.hash, divergence.rightHash, placeOf(odd)));
     }
-    if (divergence.judge != Judge::majority) {
+    if (divergence.outvoted) {
+        lines.push_back(
+            fmt::format("{}: the majority was wrong; by the journal {:016x} is right", when, divergence.rightHash));
+    } else if (divergence.judge != Judge::majority) {
         lines.push_back(
             divergence.judge == Judge::journal
                 ? fmt::format("{}: no hash has a majority; by the journal {:016x} is right", when, divergence.rightHash)

@@ -24,6 +24,7 @@ constexpr std::size_t kMostBytes = 1 << 16;      // of the file
 ordered_json jsonOf(const Incidents& incidents) {
     ordered_json json{{"divergences", incidents.divergences},
                       {"healed", incidents.healed},
+                      {"outvoted", incidents.outvoted},
                       {"server_divergences", incidents.serverDivergences},
                       {"links", incidents.links},
                       {"reconnects", incidents.reconnects},
@@ -46,6 +47,7 @@ Incidents incidentsOf(const std::filesystem::path& file) {
     const ordered_json json = ordered_json::parse(*text);
     Incidents incidents{.divergences = json.at("divergences"),
                         .healed = json.at("healed"),
+                        .outvoted = json.at("outvoted"),
                         .serverDivergences = json.at("server_divergences"),
                         .links = json.at("links"),
                         .reconnects = json.at("reconnects"),

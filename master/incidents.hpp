@@ -11,11 +11,11 @@ namespace master {
 /// Counts of the incidents of a session, including the time before its restarts. A process that is killed writes no
 /// summary, so these counts have a file of their own.
 struct Incidents {
-    std::uint64_t divergences = 0, healed = 0, serverDivergences = 0;  // see Summary
-    std::uint64_t links = 0, reconnects = 0;                           // of the haptic link, see LinkCounters
-    haptic_bridge::RefusalCounts refusedHere{}, refused{};             // of the haptic link, see LinkCounters
-    std::uint64_t stands = 0;        // times that the sand was stopped because the disk was full
-    std::uint64_t stepsLeftOut = 0;  // see Summary
+    std::uint64_t divergences = 0, healed = 0, outvoted = 0, serverDivergences = 0;  // see Summary
+    std::uint64_t links = 0, reconnects = 0;                // of the haptic link, see LinkCounters
+    haptic_bridge::RefusalCounts refusedHere{}, refused{};  // of the haptic link, see LinkCounters
+    std::uint64_t stands = 0;                               // times that the sand was stopped because the disk was full
+    std::uint64_t stepsLeftOut = 0;                         // see Summary
     friend bool operator==(const Incidents&, const Incidents&) = default;
 };
 

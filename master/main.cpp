@@ -64,7 +64,7 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
         return;
     }
     if (resumed->cutBytes > 0) {
-        host::printLine("{}: the last {} bytes are an incomplete record and are cut off", journal.string(),
+        host::printLine("{}: the last {} bytes are an incomplete write and are cut off", journal.string(),
                         resumed->cutBytes);
     }
     host::emitEvent("resumed", {{"step", resumed->step},

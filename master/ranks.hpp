@@ -33,10 +33,11 @@ public:
         return barrier_.meet(mine, nextFrame);
     }
     lockstep::Divergence findDivergence(sand::Replica& sand, const lockstep::Arbiter& arbiter) override {
-        return *lockstep::findDivergence(barrier_, sand, [&] {
+        const auto watched = [&] {
             const lockstep::Busy busy(barrier_, "the sand of its journal");
-            return arbiter();
-        });
+            return arbiter.sand();
+        };
+        return *lockstep::findDivergence(barrier_, sand, {watched, arbiter.overrules});
     }
     lockstep::Healing heal(sand::Replica& sand, const lockstep::Remedy& remedy) override {
         return lockstep::heal(barrier_, sand, remedy);

@@ -15,6 +15,7 @@
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "lockstep/session_message.hpp"
+#include "master/failure_report.hpp"
 #include "master/recovery.hpp"
 #include "master/wall_pictures.hpp"
 
@@ -22,6 +23,9 @@ namespace master {
 namespace {
 
 using host::monotonicNs;
+
+// The launcher kills a session 120 s after it was asked to stop, and pictures take time, too.
+constexpr std::int64_t kLongestWaitNs = 90'000'000'000;
 
 std::vector<sand::Step> untimed(const std::vector<haptic_bridge::TimedStep>& steps) {
     std::vector<sand::Step> result;
@@ -57,9 +61,15 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
-      agreement_(ranks_, labels_, options_.out, measure_.ranks(),
-                 {[this] { return record_.journalFile(); },
-                  [this] { return record_.sandOfJournal(sand_, options_.sweeps); }}) {
+      agreement_(
+          ranks_, labels_, options_.out, measure_.ranks(),
+          {[this] { return record_.journalFile(); }, [this] { return record_.sandOfJournal(sand_, options_.sweeps); }}),
+      check_({[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
+              [this](const JournalChecked& checked) { record_.checked(checked); }},
+             options_.out) {
+    if (options_.record.resumed && options_.record.resumed->outvoted) {
+        check_.tellResumed(*options_.record.resumed->outvoted);
+    }
     if (options_.film) {
         film_.emplace(wall, options_.filmEye, options_.out);
     }
@@ -80,6 +90,11 @@ Session::Steps Session::takeSteps() {
     return awaitSteps(*steps_, sand_.replica(), sand_.hash(), most, [this] { return desk_.stopAsked(); });
 }
 
+bool Session::ends() const {
+    return desk_.stopAsked() || steps_->strayed() || frame_ >= options_.frames ||
+           sand_.replica().stepNumber() >= options_.steps;
+}
+
 lockstep::FrameMessage Session::compose(const Steps& steps) {
     lockstep::FrameMessage frame;
     const std::int64_t now = monotonicNs();
@@ -90,7 +105,14 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
         frame.figures = measure_.figures(incidents());
     }
     const std::uint64_t shownThen = sand_.replica().stepNumber() + steps.size();
-    frame.stop = desk_.stopAsked() || steps_->strayed() || frame_ >= options_.frames || shownThen >= options_.steps;
+    // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
+    const bool last = ends() || shownThen >= options_.steps;
+    if (last && check_.pending() && endsSince_ == 0) {
+        endsSince_ = now;
+        host::printLine("the session ends when its journal has been replayed; the replay is at step {} of {}",
+                        check_.step(), shownThen);
+    }
+    frame.stop = last && (!check_.pending() || now - endsSince_ > kLongestWaitNs);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.wantsCapture());
     frame.auditTiles = sand_.auditTiles(clock_.sinceSwap(now));
     return frame;
@@ -136,6 +158,9 @@ bool Session::showFrame(bool& more) {
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
     tellLeftOut();
+    if (auto right = check_.rightSand(sand_.replica().stepNumber())) {
+        agreement_.overrule(std::move(right));
+    }
     const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
                                  0,           sand_.hash(),  viewProof_.hash(frame.view)};
     if (!agreement_.reach(mine, sand_, *steps_, clock_.next(held()))) {
@@ -149,16 +174,30 @@ bool Session::showFrame(bool& more) {
     }
     steps_->shown(sand_.replica().stepNumber(), swap.interval);
     serverDivergences_ += steps_->proveServer(steps, sand_.hash()) ? 0 : 1;
+    followCheck(frame.frame);
     record_.shown(swap, frame.frame, sand_, steps_->epoch());
     record_.keepIncidents(incidents(), swap.at);
     more = !frame.stop;
     return true;
 }
 
+void Session::followCheck(std::uint64_t frame) {
+    if (check_.taking()) {
+        check_.taken(frame, shownSand());
+    }
+    check_.look(frame, shownSand());
+    if (const auto decided = agreement_.takeDecision()) {
+        check_.begin(frame, *decided);
+    } else if (!check_.pending()) {
+        agreement_.confirmed();
+    }
+}
+
 Incidents Session::incidents() const {
     Incidents all = record_.before();
     all.divergences += agreement_.divergences();
     all.healed += agreement_.healed();
+    all.outvoted += check_.outvoted();
     all.serverDivergences += serverDivergences_;
     all.stepsLeftOut += stepsLeftOut_;
     all.stands += record_.stands();
@@ -186,6 +225,8 @@ nlohmann::json Session::status() const {
                           {"state_hash", fmt::format("{:016x}", sand_.hash())},
                           {"divergences", all.divergences},
                           {"healed", all.healed},
+                          {"outvoted", all.outvoted},
+                          {"checking_journal", check_.pending()},
                           {"server_divergences", all.serverDivergences},
                           {"steps_left_out", all.stepsLeftOut},
                           {"edits", sand_.edits()},
@@ -208,6 +249,11 @@ Summary Session::finish(bool agreed) {
     } catch (const DiskFailure& failure) {   // the ranks still have reports and pictures to send
         host::printLine("{}", failure.what());
     }
+    if (agreed) {
+        // A third, because the ranks wait for the master meanwhile, and their own limit must not end the job.
+        const double patience = options_.frameTimeout * 1e3 / 3;
+        check_.finish(frame_, shownSand(), std::chrono::milliseconds(static_cast<std::int64_t>(patience)));
+    }
     record_.keepLastIncidents(incidents());
     record_.finish(sand_, agreed);
     return summary();
@@ -227,6 +273,7 @@ Summary Session::summary() {
     summary.stateHash = sand_.hash();
     summary.divergences = all.divergences;
     summary.healed = all.healed;
+    summary.outvoted = all.outvoted;
     summary.serverDivergences = all.serverDivergences;
     summary.stepsLeftOut = all.stepsLeftOut;
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
@@ -255,6 +302,19 @@ Summary Session::summary() {
     return summary;
 }
 
+std::string Session::doubtAbout(const Summary& told) const {
+    if (check_.failed()) {
+        return fmt::format(
+            "the session ends with sand that its journal does not confirm; sandwall-replay {} computes the right sand, "
+            "and --resume continues with it",
+            record_.journalFile().string());
+    }
+    return told.exact()
+               ? std::string()
+               : fmt::format("the session ends with a wrong volume: {} + outflow {} is not {}, as at the start",
+                             told.volumeFinal, told.volumeOutflow, told.volumeInitial);
+}
+
 int Session::run() {
     bool agreed = true;
     for (bool more = true; agreed && more;) {
@@ -272,6 +332,11 @@ int Session::run() {
     }
     const Summary told = finish(agreed);
     int status = agreed && !steps_->strayed() ? 0 : 1;
+    if (const std::string doubt = agreed ? doubtAbout(told) : std::string(); !doubt.empty()) {
+        host::printLine("{}", doubt);
+        (void)writeFailure({"sand", -1, "", "", doubt}, options_.out);
+        status = 1;
+    }
     try {
         writeSummary(told, options_.out / "summary.json");
     } catch (const base::InputError& error) {  // the ranks still have pictures to send

@@ -13,6 +13,7 @@
 #include "master/agreement.hpp"
 #include "master/film.hpp"
 #include "master/frame_clock.hpp"
+#include "master/journal_check.hpp"
 #include "master/master_sand.hpp"
 #include "master/measurements.hpp"
 #include "master/operator_desk.hpp"
@@ -41,9 +42,10 @@ public:
 
     /// Runs all frames, and writes journal, pictures and summary. Collective with showTile() of the render ranks.
     ///
-    /// Returns the exit status, which is 0 if all went well. It is 1 if the ranks could not be made to agree or if the
-    /// sand differed from the recording. It is also 1 if the summary could not be written. Throws DiskFailure if the
-    /// disk refuses the journal under the policy `required`, and base::InputError if a picture cannot be written.
+    /// Returns the exit status, which is 0 if all went well. It is 1 if the ranks could not be made to agree, if the
+    /// sand differed from the recording, or if the sand's volume is inexact. It is also 1 if the journal does not
+    /// confirm the sand, or if the summary could not be written. Throws DiskFailure if the disk refuses the journal
+    /// under the policy `required`, and base::InputError if a picture cannot be written.
     int run();
 
 private:
@@ -57,8 +59,17 @@ private:
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
     void startDrills();
     void keep(const lockstep::FrameMessage& frame);
-    /// Returns whether the session takes no steps, because it is paused or the disk is full.
-    [[nodiscard]] bool held() const { return desk_.paused() || record_.full(); }
+    /// Starts and ends the comparison of a majority's decision with the journal. Called when frame `frame` is shown.
+    void followCheck(std::uint64_t frame);
+    /// Returns whether the session shows no steps after the present one.
+    [[nodiscard]] bool ends() const;
+    /// Returns whether the session takes no steps, because it is paused, the disk is full, or the journal is replayed.
+    [[nodiscard]] bool held() const {
+        return desk_.paused() || record_.full() || check_.holds() || (check_.pending() && ends());
+    }
+    [[nodiscard]] JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
+    /// Returns why the session's sand cannot be trusted at its end; an empty text if it can.
+    [[nodiscard]] std::string doubtAbout(const Summary& told) const;
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
     void sayProgress(bool last);
@@ -81,6 +92,8 @@ private:
     OperatorDesk desk_;
     Measurements measure_;
     Agreement agreement_;
+    JournalCheck check_;
+    std::int64_t endsSince_ = 0;  // [ns], since when the end of the session waits for check_; 0: it does not wait
     std::optional<Film> film_;
     std::uint64_t serverDivergences_ = 0;  // since this process started
     std::uint64_t stepsLeftOut_ = 0;       // since this process started

@@ -89,6 +89,26 @@ void SessionRecord::keepTicks(const std::vector<base::Bytes>& pieces) {
     }
 }
 
+void SessionRecord::doubt(const JournalDoubt& doubt) {
+    try {
+        if (journal_) {
+            journal_->doubt(doubt);
+        }
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
+    }
+}
+
+void SessionRecord::checked(const JournalChecked& checked) {
+    try {
+        if (journal_) {
+            journal_->checked(checked);
+        }
+    } catch (const DiskFailure& failure) {
+        endForDisk(failure);
+    }
+}
+
 void SessionRecord::endForDisk(const DiskFailure& failure) const {
     const std::string line = fmt::format(
         "{}, which is not shown; the session ends (with --journal best-effort it would continue)", failure.what());
@@ -130,7 +150,8 @@ std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sa
         return nullptr;
     }
     try {
-        return std::make_unique<sand::Replica>(restoreSand(file, sand.replica().stepNumber(), sweeps).terrain);
+        return std::make_unique<sand::Replica>(
+            restoreSand(file, sand.replica().stepNumber(), {.sweeps = sweeps}).terrain);
     } catch (const std::exception& error) {  // caught, because the ranks wait for an answer
         host::printLine("{}", error.what());
         return nullptr;

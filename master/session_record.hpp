@@ -49,6 +49,10 @@ public:
     void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
     /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
+    /// Write that a majority has decided which sand is right, and that it has been compared with the journal. Between
+    /// the two no checkpoint is made, and the journal gets no end. Throw as keep() does.
+    void doubt(const JournalDoubt& doubt);
+    void checked(const JournalChecked& checked);
     /// Called when the wall shows frame `frame`. Reports a recovery at the first one, and begins a checkpoint when one
     /// is due.
     void shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch);

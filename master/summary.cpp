@@ -118,6 +118,7 @@ ordered_json jsonOf(const Summary& summary) {
     json["state_hash"] = fmt::format("{:016x}", summary.stateHash);
     json["divergences"] = summary.divergences;
     json["healed"] = summary.healed;
+    json["outvoted"] = summary.outvoted;
     json["master_healed"] = summary.rankStatistics.empty() ? 0 : summary.rankStatistics.front().healed;
     json["server_divergences"] = summary.serverDivergences;
     json["steps_left_out"] = summary.stepsLeftOut;
@@ -240,11 +241,12 @@ void writeSummary(const Summary& summary, const std::filesystem::path& file) {
 std::string describe(const Summary& summary) {
     std::string text = fmt::format(
         "{} on {}: {} steps in {} frames, {:.1f} fps, {} render ranks\n"
-        "  sand      state hash {:016x}, {} divergences, {} healed, volume {} + outflow {} = {} at the start: {}\n"
+        "  sand      state hash {:016x}, {} divergences, {} healed, {}volume {} + outflow {} = {} at the start: {}\n"
         "  wall      swap skew p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; frame message p50 {:.0f} bytes\n",
         summary.scene, summary.wall, summary.steps, summary.frames, framesPerSecond(summary), summary.ranks,
-        summary.stateHash, summary.divergences, summary.healed, summary.volumeFinal, summary.volumeOutflow,
-        summary.volumeInitial, summary.volumeFinal + summary.volumeOutflow == summary.volumeInitial ? "exact" : "WRONG",
+        summary.stateHash, summary.divergences, summary.healed,
+        summary.outvoted == 0 ? "" : fmt::format("{} outvoted by the journal, ", summary.outvoted), summary.volumeFinal,
+        summary.volumeOutflow, summary.volumeInitial, summary.exact() ? "exact" : "WRONG",
         summary.skewUs.percentile(0.5), summary.skewUs.percentile(0.99), summary.skewUs.largest(),
         summary.broadcastBytes.percentile(0.5));
     if (summary.latency.wholeWay.count() > 0) {

@@ -38,6 +38,7 @@ struct Summary {
     std::uint64_t stateHash = 0;
     std::uint64_t divergences = 0;        // frames in which the ranks' sand differed
     std::uint64_t healed = 0;             // times that a rank was healed
+    std::uint64_t outvoted = 0;           // times that the journal outvoted a majority of the ranks
     std::uint64_t serverDivergences = 0;  // frames in which the haptic server's sand differed
     std::uint64_t stepsLeftOut = 0;       // steps with a sand::Replica::leftOut()
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
@@ -67,6 +68,9 @@ struct Summary {
         double stoodSeconds = 0;
     } journal;
     std::vector<std::string> recoveries;  // of the session, each a JSON object
+
+    /// Returns whether no sand was lost or made since the scene's start.
+    [[nodiscard]] bool exact() const { return volumeFinal + volumeOutflow == volumeInitial; }
 };
 
 /// Returns the rank that keeps the wall waiting, as summary.json and `ctl status` contain it; null if no rank stands

@@ -69,9 +69,18 @@ class Failure:
 
 def taken(path):
     """Returns the content of the master's failure.json, or {} if the file does not exist. Removes it, so that it is read once."""
+    found = content_of(path)
+    try:
+        path.unlink()
+    except OSError:
+        pass  # it does not exist, or the folder is read-only
+    return found
+
+
+def content_of(path):
+    """Returns the content of the master's failure.json, or {} if the file does not exist or is damaged."""
     try:
         found = json.loads(session_folder.read_text(path))
-        path.unlink()
         return found if isinstance(found, dict) else {}
     except (OSError, ValueError):
         return {}
@@ -211,6 +220,8 @@ class Supervisor:
             status = self.one_try(words, log)
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 return FAILED if self.gave_up else status if status >= 0 else 128 - status
+            if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
+                return FAILED  # the session has ended with wrong sand, which the master has printed; a restart would not help
             failure = failure_of_job(status, log, self.hosts, taken(self.out / "failure.json"))
             log.close()
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):

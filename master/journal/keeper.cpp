@@ -105,7 +105,8 @@ void JournalKeeper::setAside(std::uint64_t step) {
         }
     }
     forgetHalves(journal_);
-    (void)host::syncFolderOf(checkpointFile(journal_, step));  // the checkpoint must not come back after a loss of power
+    (void)host::syncFolderOf(
+        checkpointFile(journal_, step));  // the checkpoint must not come back after a loss of power
 }
 
 std::string_view JournalKeeper::state() const {
@@ -194,6 +195,27 @@ void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
     }
 }
 
+void JournalKeeper::note(const JournalRecord& record) {
+    try {
+        if (writer_) {
+            (void)writer_->keep(record);
+        }
+    } catch (const base::InputError& error) {
+        giveUp(error.what());
+    }
+}
+
+void JournalKeeper::doubt(const JournalDoubt& doubt) {
+    doubted_ = true;
+    note(doubt);
+}
+
+void JournalKeeper::checked(const JournalChecked& checked) {
+    doubted_ = false;
+    note(checked);
+    lastCheckpoint_ -= options_.checkpointSeconds;
+}
+
 void JournalKeeper::endCheckpoint(bool wait) {
     if (!checkpoint_.valid() || (!wait && checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)) {
         return;
@@ -209,7 +231,7 @@ void JournalKeeper::endCheckpoint(bool wait) {
 void JournalKeeper::shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
     endCheckpoint(false);
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
-    if (!writer_ || !due || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {
+    if (!writer_ || !due || doubted_ || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {
         return;
     }
     lastCheckpoint_ = now();
@@ -234,7 +256,9 @@ double JournalKeeper::stoodSeconds() const { return stoodSeconds_ + (standing_ ?
 void JournalKeeper::finish(const JournalEnd& end) {
     endCheckpoint(true);
     try {
-        if (writer_) {
+        if (writer_ && doubted_) {
+            writer_->sync();
+        } else if (writer_) {
             writer_->finish(end.step, end.hash);
         }
     } catch (const base::InputError& error) {

@@ -66,8 +66,14 @@ public:
     void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
     /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
+    /// Writes that a majority of the ranks has decided which sand is right. No checkpoint is made until checked(),
+    /// because it would hold the majority's sand.
+    void doubt(const JournalDoubt& doubt);
+    /// Writes that the majority has been compared with the journal. A checkpoint is then due.
+    void checked(const JournalChecked& checked);
     /// Begins a checkpoint if one is due. Called after every frame, when all steps of `terrain` are in the journal.
     void shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
+    /// Writes the end of the session. Between doubt() and checked() the journal gets no end.
     void finish(const JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
@@ -88,6 +94,7 @@ public:
 private:
     [[nodiscard]] bool hasRoom(std::int64_t bytes, const JournalEnd& now);
     void giveUp(const std::string& why);
+    void note(const JournalRecord& record);
     void refused(const std::string& why);
     void requireNoWriter() const;
     void setAside(std::uint64_t step);
@@ -108,6 +115,7 @@ private:
     std::string complaint_;                // error message of the last checkpoint
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
     bool ticksLeftOut_ = false;
+    bool doubted_ = false;
     std::vector<double> copyMs_;
 };
 

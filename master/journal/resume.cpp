@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -20,6 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
+
 /// Error when a hash in the journal differs from the hash of the replayed sand.
 class OtherSand : public base::InputError {
 public:
@@ -34,44 +37,81 @@ void requireHash(sand::Replica& terrain, const JournalEnd& said, const fs::path&
     }
 }
 
-/// Applies the journal's steps up to `step` that `terrain` does not have yet. Returns how many it has applied.
-std::uint64_t replayUntil(const fs::path& journal, std::uint64_t step, sand::Replica& terrain) {
-    const std::uint64_t first = terrain.stepNumber();
-    JournalReader reader(journal);
-    while (const auto record = reader.next()) {
-        if (const auto* end = std::get_if<JournalEnd>(&*record)) {
-            requireHash(terrain, *end, journal);
+/// Replays the records of a journal, one after another, until a step is reached.
+class Replay {
+public:
+    Replay(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how)
+        : journal_(journal), step_(step), terrain_(restored.terrain), outvoted_(restored.outvoted), how_(how) {}
+
+    void run() {
+        JournalReader reader(journal_);
+        while (!(how_.beingWritten && terrain_.stepNumber() >= step_) && !beyond_) {
+            const auto record = reader.next();
+            if (!record) {
+                break;
+            }
+            std::visit(*this, *record);
         }
-        const auto* frame = std::get_if<JournalFrame>(&*record);
-        if (frame == nullptr || frame->steps.empty() || frame->steps.back().number <= terrain.stepNumber()) {
-            continue;
+        if (terrain_.stepNumber() < step_) {
+            throw base::InputError(
+                fmt::format("{}: ends at step {}, before step {}", journal_.string(), terrain_.stepNumber(), step_));
         }
-        if (frame->steps.front().number > terrain.stepNumber() + 1) {
+    }
+
+    void operator()(const JournalFrame& frame) {
+        if (frame.steps.empty() || frame.steps.back().number <= terrain_.stepNumber()) {
+            return;
+        }
+        const std::uint64_t next = frame.steps.front().number;
+        if (next > terrain_.stepNumber() + 1) {
             throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                               journal.string(), frame->steps.front().number, terrain.stepNumber()));
+                                               journal_.string(), next, terrain_.stepNumber()));
         }
-        requireHash(terrain, {frame->steps.front().number - 1, frame->hashBefore}, journal);
-        for (const sand::Step& one : frame->steps) {
-            if (one.number == terrain.stepNumber() + 1 && one.number <= step) {
-                terrain.apply(one);
+        if (!frame.doubted) {
+            requireHash(terrain_, {next - 1, frame.hashBefore}, journal_);
+        }
+        for (const sand::Step& one : frame.steps) {
+            if (one.number == terrain_.stepNumber() + 1 && one.number <= step_) {
+                terrain_.apply(one);
+                if (how_.each) {
+                    how_.each(one.number);
+                }
             }
         }
-        if (terrain.stepNumber() >= step && frame->steps.back().number > step) {
-            break;
+        beyond_ = frame.steps.back().number > step_;
+    }
+    void operator()(const JournalEnd& end) { requireHash(terrain_, end, journal_); }
+    void operator()(const JournalDoubt& doubt) {
+        if (doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() && !outvoted_) {
+            outvoted_ = Outvoted{doubt, terrain_.stateHash()};
         }
     }
-    if (terrain.stepNumber() < step) {
-        throw base::InputError(
-            fmt::format("{}: ends at step {}, before step {}", journal.string(), terrain.stepNumber(), step));
+    void operator()(const JournalChecked& checked) { endDoubt(checked.sand); }
+    void operator()(const JournalResumed& resumed) { endDoubt(resumed.sand); }
+    void operator()(const JournalTicks&) const {}
+    void operator()(const scene::Material&) const {}
+    void operator()(const JournalContinued&) const {}
+
+private:
+    void endDoubt(const JournalEnd& sand) {
+        requireHash(terrain_, sand, journal_);
+        outvoted_.reset();
     }
-    return terrain.stepNumber() - first;
-}
+
+    const fs::path& journal_;
+    const std::uint64_t step_;
+    sand::Replica& terrain_;
+    std::optional<Outvoted>& outvoted_;
+    const Restoring& how_;
+    bool beyond_ = false;  // a record behind the step has been read, with the hash after it
+};
 
 /// Collects from the records everything of a session that needs no sand.
 struct Walk {
     ResumedSession& session;
     const fs::path& journal;
     std::optional<scene::Material> pending;  // of the next steps, which a crash may have cut off
+    std::uint64_t doubted = kNever;          // first step whose sand a majority has decided, and no check confirmed
 
     void operator()(const JournalFrame& frame) {
         session.frame = std::max(session.frame, frame.frame);
@@ -90,7 +130,10 @@ struct Walk {
     void operator()(const JournalResumed& resumed) {
         session.frame = std::max(session.frame, resumed.frame);
         pending.reset();
+        doubted = kNever;
     }
+    void operator()(const JournalDoubt& doubt) { doubted = std::min(doubted, doubt.sand.step); }
+    void operator()(const JournalChecked&) { doubted = kNever; }
     void operator()(const JournalEnd&) const {}
     void operator()(const JournalTicks&) const {}
     void operator()(const JournalContinued&) const {}
@@ -133,15 +176,21 @@ sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header
     return terrain;
 }
 
-RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand::grid::Erosion::Options& sweeps) {
+void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how) {
+    Replay(journal, step, restored, how).run();
+    restored.replayedSteps = restored.terrain.stepNumber() - restored.checkpointStep;
+}
+
+RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
     const JournalReader head(journal);
-    const sand::Replica start(sceneOf(head), sweeps);
+    const sand::Replica start(sceneOf(head), how.sweeps);
+    const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         const fs::path file = checkpointFile(journal, at);
         try {
-            if (at <= step) {
-                RestoredSand restored{sandOfCheckpoint(file, head.header(), start), at, 0};
-                restored.replayedSteps = replayUntil(journal, step, restored.terrain);
+            if (at <= std::min(step, how.newestCheckpoint)) {
+                RestoredSand restored{sandOfCheckpoint(file, head.header(), start), at, 0, volume, {}};
+                replayFurther(journal, step, restored, how);
                 return restored;
             }
         } catch (const base::FormatError& error) {
@@ -152,8 +201,8 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const sand
             host::printLine("{}: it is left out: {}", file.string(), error.what());
         }
     }
-    RestoredSand restored{start, 0, 0};
-    restored.replayedSteps = replayUntil(journal, step, restored.terrain);
+    RestoredSand restored{start, 0, 0, volume, {}};
+    replayFurther(journal, step, restored, how);
     return restored;
 }
 
@@ -168,8 +217,8 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     ResumedSession session;
     session.scene = sceneOf(reader);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
+    Walk walk{session, journal, {}};
     try {
-        Walk walk{session, journal, {}};
         while (const auto record = reader.next()) {
             std::visit(walk, *record);
         }
@@ -181,7 +230,9 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
-    RestoredSand restored = restoreSand(journal, session.step, sweeps);
+    RestoredSand restored =
+        restoreSand(journal, session.step, {.sweeps = sweeps, .newestCheckpoint = newestCheckpointFor(walk.doubted)});
+    session.outvoted = restored.outvoted;
     session.hash = restored.terrain.stateHash();
     session.state = restored.terrain.encodeState();
     session.checkpointStep = restored.checkpointStep;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -12,18 +15,47 @@
 
 namespace master {
 
+/// A majority of the ranks that the replay of the journal outvotes.
+struct Outvoted {
+    JournalDoubt majority;
+    std::uint64_t rightHash = 0;  // after the same step
+};
+
 /// The sand of a session after one of its steps, computed from its journal.
 struct RestoredSand {
     sand::Replica terrain;
     std::uint64_t checkpointStep = 0;  // step of the checkpoint that was used; 0 for the scene itself
     std::uint64_t replayedSteps = 0;   // steps that were replayed after it
+    std::int64_t volume = 0;           // with outflow, of the scene's start; every later volume is the same
+    std::optional<Outvoted> outvoted;  // if the ranks still had the sand of a wrong majority at the journal's end
 };
+
+/// How the sand is computed from a journal.
+struct Restoring {
+    sand::grid::Erosion::Options sweeps{};
+    // Uses no checkpoint of a later step.
+    std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
+    // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
+    bool beingWritten = false;
+    std::function<void(std::uint64_t)> each{};  // called after each step with its number; may throw to end the replay
+};
+
+/// A checkpoint of the last steps before a divergence may hold an error that is not in its hash yet: fluxes show in the
+/// hash one step later. No check of a majority begins with a checkpoint so young [step].
+inline constexpr std::uint64_t kYoungCheckpoint = 60;
+/// Returns the newest step of a checkpoint from which the decision of a majority after step `step` may be checked.
+[[nodiscard]] inline std::uint64_t newestCheckpointFor(std::uint64_t step) {
+    return step - std::min(step, kYoungCheckpoint);
+}
 
 /// Computes the sand after step `step` from the newest usable checkpoint at or before it and the journal's later steps.
 /// `journal` is the session's file (session.journal), with the checkpoints beside it. Throws base::InputError if the
 /// journal cannot be read, ends before `step`, or if the sand differs from its hashes. Any thread.
 [[nodiscard]] RestoredSand restoreSand(const std::filesystem::path& journal, std::uint64_t step,
-                                       const sand::grid::Erosion::Options& sweeps = {});
+                                       const Restoring& how = {});
+/// Applies the journal's steps after those of `restored` up to `step`. Throws as restoreSand() does.
+void replayFurther(const std::filesystem::path& journal, std::uint64_t step, RestoredSand& restored,
+                   const Restoring& how = {});
 
 /// Returns the sand of the checkpoint `file`. `header` is the header of the session's journal, and `start` the sand at
 /// its start. Throws base::FormatError if the checkpoint is damaged or belongs to another session.
@@ -42,6 +74,7 @@ struct ResumedSession {
     base::Bytes state;                 // sand::Replica::encodeState() after this step
     std::int64_t cutBytes = 0;         // [byte], behind the last whole record of the journal; ignored
     std::uint64_t checkpointStep = 0, replayedSteps = 0;
+    std::optional<Outvoted> outvoted;  // if the wall had shown the sand of a wrong majority when the session stopped
 };
 
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`

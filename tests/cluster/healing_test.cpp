@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <csignal>
+
 #include "tests/cluster/session_fixture.hpp"
 
 namespace {
@@ -17,6 +19,16 @@ protected:
         for (const std::string& fault : faults) {
             arguments.insert(arguments.end(), {"--inject", fault});
         }
+        return runToEnd(arguments);
+    }
+    /// Runs a fast session of dunes that slide without a hand. Its sand depends on nothing but the number of steps.
+    Ended slide(const std::vector<std::string>& more, const std::string& folder) {
+        const std::string dunes = write("dunes.toml",
+                                        "name = \"dunes\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nkind = "
+                                        "\"dunes\"\ndune_height = 0.4\n[material]\ntalus_deg = 15\n[tool]\n");
+        std::vector<std::string> arguments{"--wall", wall(1, 2), "--scene", dunes,
+                                           "--pace", "fast",     "--out",   (folder_ / folder).string()};
+        arguments.insert(arguments.end(), more.begin(), more.end());
         return runToEnd(arguments);
     }
     /// Runs the command in the session's last `divergence` event and returns the hash that it prints.
@@ -82,18 +94,10 @@ TEST_F(Healing, LeavesNoTraceInPicturesAndSand) {
 
 // A column of sand four cells high appears in the middle of a sliding dune, in the frame whose pictures are written.
 TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
-    const std::string dunes = write("dunes.toml",
-                                    "name = \"dunes\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nkind = "
-                                    "\"dunes\"\ndune_height = 0.4\n[material]\ntalus_deg = 15\n[tool]\n");
-    const auto slide = [&](const std::string& folder, const std::vector<std::string>& more) {
-        std::vector<std::string> arguments{"--wall", wall(1, 2), "--scene", dunes,   "--pace",
-                                           "fast",   "--frames", "20",      "--out", (folder_ / folder).string()};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return runToEnd(arguments);
-    };
-    ASSERT_EQ(slide("undisturbed", {}).status, 0);
-    const Ended ended = slide("out", {"--inject", "diverge:rank=1,frame=20,column=40,row=64,bit=18", "--inject",
-                                      "diverge:rank=2,frame=20,column=40,row=64,bit=19"});
+    ASSERT_EQ(slide({"--frames", "20"}, "undisturbed").status, 0);
+    const Ended ended = slide({"--frames", "20", "--inject", "diverge:rank=1,frame=20,column=40,row=64,bit=18",
+                               "--inject", "diverge:rank=2,frame=20,column=40,row=64,bit=19"},
+                              "out");
     ASSERT_EQ(ended.status, 0) << ended.output;
     expectHealed(ended, {{"frame", 20}, {"rank", 1}});
     EXPECT_EQ(summary()["state_hash"], json("undisturbed/summary.json")["state_hash"]);
@@ -114,6 +118,62 @@ TEST_F(Healing, LetsTheJournalDecideATie) {
     EXPECT_EQ(summary()["divergences"], 3);
     EXPECT_EQ(summary()["healed"], 4);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
+}
+
+// The same bit flips in two render ranks. With the master they are three ranks, so the wrong ranks are the majority.
+TEST_F(Healing, LetsTheJournalOutvoteAMajority) {
+    ASSERT_EQ(slide({"--steps", "120"}, "undisturbed").status, 0);
+    const Ended ended = slide({"--steps", "120", "--inject", "diverge:rank=1,frame=10,column=40,row=64,bit=12",
+                               "--inject", "diverge:rank=2,frame=10,column=40,row=64,bit=12"},
+                              "out");
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    expectHealed(ended, {{"rank", 0}, {"source", "rank"}, {"source_rank", 1}});
+    const nlohmann::json undisturbed = json("undisturbed/summary.json");
+    EXPECT_TRUE(ended.has("journal_check", {{"state", "begun"}})) << ended.output;
+    EXPECT_TRUE(ended.has("journal_check", {{"state", "disagreed"}})) << ended.output;
+    EXPECT_TRUE(ended.has("journal_check", {{"state", "outvoted"}})) << ended.output;
+    for (const int rank : {0, 1, 2}) {
+        expectHealed(ended, {{"rank", rank}, {"source", "journal"}, {"times", rank == 0 ? 0 : 1}});
+    }
+    const nlohmann::json told = summary();
+    EXPECT_EQ(told["outvoted"], 1);
+    EXPECT_EQ(told["state_hash"], undisturbed["state_hash"]);
+    EXPECT_EQ(told["volume_final"], undisturbed["volume_final"]);
+    EXPECT_EQ(json("out/incidents.json")["outvoted"], 1);
+    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    expectEqualPictures("undisturbed", "out");
+    const support::Ran verified = support::runProgram("sandwall-replay", out() + "/session.journal --verify");
+    EXPECT_EQ(verified.status, 0) << verified.output;
+}
+
+// The session is killed while the wall shows the sand of the wrong majority, and is resumed.
+TEST_F(Healing, ResumesASessionThatWasKilledWithAWrongMajority) {
+    std::vector<std::string> arguments{"--wall",
+                                       wall(1, 2),
+                                       "--scene",
+                                       scene(),
+                                       "--device",
+                                       "script:gis",
+                                       "--out",
+                                       out(),
+                                       "--no-pictures",
+                                       "--inject",
+                                       "diverge:rank=1,frame=60,bit=12",
+                                       "--inject",
+                                       "diverge:rank=2,frame=60,bit=12"};
+    auto session = start(arguments);
+    EXPECT_FALSE(session->waitForEvent("journal_check", {{"state", "begun"}}).is_null()) << session->output();
+    kill(support::findProgram(session->family(), "sandwall-master").value(), SIGKILL);
+    EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
+    const Ended ended = runToEnd(
+        {"--wall", wall(1, 2), "--out", out(), "--no-pictures", "--resume", "--steps", "400", "--pace", "fast"});
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    const nlohmann::json told = summary();
+    EXPECT_EQ(told["steps"], 400);
+    EXPECT_EQ(told["volume_final"], told["volume_initial"]);
+    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    // The kill may come before the next step, with which the journal notes the majority. Then it has no wrong hash.
+    EXPECT_LE(told["outvoted"], 1);
 }
 
 TEST_F(Healing, GivesUpARankThatNeedsItAThirdTime) {

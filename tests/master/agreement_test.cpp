@@ -56,8 +56,9 @@ public:
         Divergence result;
         result.rightHash = vote.hash;
         result.agreeing = vote.agreeing;
-        if (vote.tie) {
-            result.journal = arbiter();
+        if (vote.tie || arbiter.overrules) {
+            result.outvoted = !vote.tie;
+            result.journal = arbiter.sand();
             result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
             result.rightHash = result.journal ? hashOf(*result.journal) : hashes[0];
         }
@@ -205,6 +206,51 @@ TEST_F(AgreementTest, WithoutAJournalTheMasterIsRight) {
     EXPECT_TRUE(reach());
     EXPECT_EQ(sand_.hash(), mine);
     EXPECT_EQ(ranks_.replicas[1].stateHash(), mine) << "rank 2 was right, but without a majority the master decides";
+}
+
+TEST_F(AgreementTest, AMajorityDecidesUntilTheJournalOutvotesIt) {
+    spoil(1, 3);
+    spoil(2, 3);
+    EXPECT_TRUE(reach());
+    EXPECT_NE(sand_.hash(), right_) << "the master was right, and has taken the sand of the majority";
+    const auto decided = agreement_.takeDecision();
+    ASSERT_TRUE(decided.has_value());
+    EXPECT_EQ(decided->hash, sand_.hash());
+    EXPECT_FALSE(agreement_.takeDecision().has_value());
+
+    agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
+    EXPECT_TRUE(reach());
+    EXPECT_EQ(sand_.hash(), right_);
+    EXPECT_EQ(ranks_.replicas[0].stateHash(), right_);
+    EXPECT_EQ(ranks_.replicas[1].stateHash(), right_);
+    EXPECT_EQ(agreement_.healed(), 4U) << "the master, and then all three";
+    EXPECT_FALSE(agreement_.takeDecision().has_value());
+    EXPECT_EQ(asked_, 0) << "the journal's sand was there already";
+    EXPECT_TRUE(reach());
+    EXPECT_EQ(ranks_.meetings, 5) << "two, two and one";
+}
+
+// The master was right. A wrong majority has healed it twice, which must not count against it.
+TEST_F(AgreementTest, ARankThatAWrongMajorityHealedIsNotBroken) {
+    for (int time = 0; time < 2; ++time) {
+        spoil(1, 3);
+        spoil(2, 3);
+        EXPECT_TRUE(reach());
+        agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
+        EXPECT_TRUE(reach());
+    }
+    spoil(0, 5);
+    EXPECT_TRUE(reach()) << "the first fault of the master's own memory";
+    spoil(1, 7);
+    EXPECT_FALSE(reach()) << "the third fault of rank 1";
+    EXPECT_EQ(failure()["rank"], 1);
+}
+
+TEST_F(AgreementTest, AnOverruleThatChangesNothingIsOneMeeting) {
+    agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
+    EXPECT_TRUE(reach());
+    EXPECT_EQ(ranks_.meetings, 1);
+    EXPECT_EQ(agreement_.healed(), 0U);
 }
 
 TEST_F(AgreementTest, MemoryThatNeedsHelpAThirdTimeIsGivenUp) {

@@ -22,6 +22,7 @@ protected:
 TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
     master::Incidents some{.divergences = 3,
                            .healed = 2,
+                           .outvoted = 1,
                            .serverDivergences = 1,
                            .links = 6,
                            .reconnects = 4,
