@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <zstd.h>
-
 #include <algorithm>
 
-#include "sand/tin/snapshot.hpp"
 #include "scene/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tests/sand/tin/packed_tin.hpp"
 
 /// Makes the compressed bytes of sand and states out of plain ones.
 namespace fuzz {
-
-inline base::Bytes compressed(Input bytes) {
-    base::Bytes packed(ZSTD_compressBound(bytes.size()));
-    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 1));
-    return packed;
-}
 
 /// Reads as many bytes as there are, and zeros instead of the rest.
 inline base::Bytes takeOrZeros(base::ByteReader& plain, std::size_t count) {
@@ -41,18 +33,6 @@ inline base::Bytes packedGrid(base::ByteReader& plain, int columns, int rows) {
         cells(columns + 1, rows + 1);
         cells(columns + 1, rows + 1);
     }
-    return sand.take();
-}
-
-/// Returns sand of a TIN: its TinState, and behind it the vertices. Throws base::FormatError if the bytes do not begin
-/// with a TinState.
-inline base::Bytes packedTin(base::ByteReader& plain) {
-    const auto state = sand::tin::TinState::decode(plain);
-    const auto rest = plain.getBytes(plain.rest().size());
-    base::ByteWriter sand;
-    state.encode(sand);
-    sand.put(static_cast<std::uint64_t>(rest.size()));
-    sand.putBytes(compressed(rest));
     return sand.take();
 }
 
