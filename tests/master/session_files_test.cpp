@@ -43,7 +43,7 @@ TEST_F(SessionFiles, APipeIsNotWrittenToWhileFramesWait) {
         master::tellRecovery({}, folder_);
         master::tell({"a divergence"}, folder_ / "divergence.txt");
         EXPECT_FALSE(master::writeFailure({"hung", 1, "host", "tile", "message"}, folder_));
-        EXPECT_THROW(master::writeSummary({}, folder_ / "summary.json"), base::InputError);
+        EXPECT_THROW(master::writeSummary(master::Summary(), folder_ / "summary.json"), base::InputError);
         (void)master::beginDrills(drills_, 5, folder_);
     }));
 }

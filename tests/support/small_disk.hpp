@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cerrno>
+#include <cstring>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -34,9 +36,10 @@ int onSmallDisk(const std::filesystem::path& folder, const char* size, const Wor
     if (child == 0) {
         const uid_t user = getuid();
         const gid_t group = getgid();
+        const std::string options = std::string("mode=700,") + size;  // a session refuses a folder of all users
         if (unshare(user == 0 ? CLONE_NEWNS : CLONE_NEWNS | CLONE_NEWUSER) != 0 ||
             (user != 0 && !mapIds(user, group)) || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
-            mount("none", folder.c_str(), "tmpfs", flags, size) != 0) {
+            mount("none", folder.c_str(), "tmpfs", flags, options.c_str()) != 0) {
             _exit(77);
         }
         try {
@@ -58,6 +61,11 @@ inline void fill(const std::filesystem::path& file) {
     while (write(descriptor, zeros.data(), zeros.size()) > 0) {
     }
     close(descriptor);
+}
+
+/// Gives the disk at `folder`, on which onSmallDisk() has put this process, another size.
+inline void resizeSmallDisk(const std::filesystem::path& folder, const char* size) {
+    EXPECT_EQ(mount("none", folder.c_str(), "tmpfs", MS_REMOUNT, size), 0) << std::strerror(errno);
 }
 
 }  // namespace support

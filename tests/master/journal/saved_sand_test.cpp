@@ -118,10 +118,10 @@ TEST_F(SavedSandFile, OfAnotherSceneIsRefusedWithWhatDiffers) {
 }
 
 TEST_F(SavedSandFile, ThatIsNotThereOrCannotBeMadeIsOneLine) {
-    expectComplaint(scene_, "cannot be read");
+    expectComplaint(scene_, "No such file or directory; nothing was loaded");
     std::ofstream(folder_ / "saves") << "no folder";
     EXPECT_THROW(master::writeSavedSand(file_, sand()), base::InputError);
-    expectComplaint(scene_, "cannot be read");
+    expectComplaint(scene_, "Not a directory; nothing was loaded");
 }
 
 TEST(SaveName, LeadsNowhereElse) {

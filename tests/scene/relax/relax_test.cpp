@@ -148,7 +148,8 @@ TEST_F(Relax, RestIsAFixedPoint) {
     std::mt19937 random(kSeed);
     const sand::HeightField start = samples::randomField(40, 30, 40 * sand::kUnitsPerCell, random);
     writeGrid("in.asc", 40, 30, heightsOf(start));
-    (void)relax("in.asc out.asc --talus 33");
+    // Such slopes on cells of 1 near the origin could be degrees that are taken for lengths.
+    (void)relax("in.asc out.asc --talus 33 --lengths");
     const auto again = relax("out.asc out2.asc --talus 33");
     EXPECT_EQ(again["sweeps"], 1) << "seed " << kSeed;
     EXPECT_EQ(read("out2.asc"), read("out.asc")) << "seed " << kSeed;
