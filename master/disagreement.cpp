@@ -15,7 +15,7 @@ namespace {
 
 std::string placeOf(const lockstep::Divergence::Odd& odd) {
     return odd.tile < 0
-               ? "in pose, step or outflow"
+               ? "in probe, step or outflow"
                : fmt::format("first in hash tile {} (columns {}..{}, rows {}..{}), {} cells of it", odd.tile,
                              odd.cells.x0, odd.cells.x1 - 1, odd.cells.y0, odd.cells.y1 - 1, odd.cellsDiffering);
 }
