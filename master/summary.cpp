@@ -260,6 +260,12 @@ std::string describe(const Summary& summary) {
             summary.haptic->hapticPeriodUsP50, summary.haptic->hapticPeriodUsP99, summary.haptic->forceUsP99,
             summary.haptic->toWall.msMean, summary.haptic->toMaster.msMean);
     }
+    if (summary.haptic && summary.haptic->stepsWithheld > 0) {
+        text += fmt::format(
+            "  hand      the wall was too slow for {} steps of the hand, so strokes may have gaps; with --pace fast a "
+            "recorded hand waits for the wall\n",
+            summary.haptic->stepsWithheld);
+    }
     text += describeRefusals(summary);
     double slowest = 0;
     std::int64_t memory = 0;

@@ -73,6 +73,16 @@ TEST(Summary, TellsBothHalfRoundTripsApart) {
     EXPECT_EQ(haptic["half_round_trip_to_master_ms"], toMaster);
 }
 
+TEST(Summary, SaysThatTheWallWasTooSlowForTheHand) {
+    master::Summary summary = draggedWall(false);
+    summary.haptic.emplace();
+    EXPECT_EQ(master::describe(summary).find("  hand "), std::string::npos) << "no step was missing";
+    summary.haptic->stepsWithheld = 3185;
+    EXPECT_NE(master::describe(summary).find("\n  hand      the wall was too slow for 3185 steps of the hand"),
+              std::string::npos)
+        << master::describe(summary);
+}
+
 TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     const auto index = [](haptic_bridge::RefusalCode code) { return static_cast<std::size_t>(code) - 1; };
     const auto saysHaptics = [](const master::Summary& summary, const std::string& line) {
