@@ -33,6 +33,7 @@ from docs_blocks import BIN, ROOT
 
 PR_SET_CHILD_SUBREAPER = 36
 MORE_SECONDS = 3  # for which programs that continue until Ctrl-C run after the last command
+STOP = re.compile(r"scripts/sandwall ctl (\S+) stop\b")
 LAST_LINES = 15  # of the output of a block that fails
 # Programs that continue until Ctrl-C, and the options with which they end by themselves.
 ENDLESS = {r"scripts/sandwall run\b": r"--(steps|frames|print-command|help)\b",
@@ -41,7 +42,7 @@ ENDLESS = {r"scripts/sandwall run\b": r"--(steps|frames|print-command|help)\b",
            r"\bposition_sender\.py\b": r"--help\b"}
 # A session is ready when its hand has moved the sand, as it has when a person types the next line. An undo needs a stroke.
 BEGIN = r"""set -e -m -o pipefail
-going=() expected=()
+going=() expected=() outs=() stopped=" "
 ready() {
     until [[ $(scripts/sandwall ctl "$1" status 2>/dev/null) =~ \"step\":\ *([0-9]+) && ${BASH_REMATCH[1]} -gt 120 ]]; do
         kill -0 "${going[-1]}"
@@ -50,9 +51,10 @@ ready() {
 }
 """
 # Each program that continues has a process group of its own, as in a terminal. The program that began last ends first.
-# A session ends in order at Ctrl-C, so its status must be 0. Other programs may end by the signal itself (130).
+# A session ends in order at Ctrl-C, so its status must be 0. Other programs may end by the signal itself (130). A session
+# that the block has stopped ends by itself.
 END = r"""for ((i = ${#going[@]} - 1; i >= 0; --i)); do
-    kill -INT -- "-${going[i]}" 2>/dev/null || true
+    [[ $stopped == *" ${outs[i]} "* ]] || kill -INT -- "-${going[i]}" 2>/dev/null || true
     status=0
     wait "${going[i]}" || status=$?
     [[ $status == @(0|${expected[i]}) ]] || { echo "a program that continues until Ctrl-C ended with status $status"; exit 1; }
@@ -75,12 +77,15 @@ def script_of(group):
         for command in block.commands():
             if is_endless(command):
                 endless, session = True, "scripts/sandwall run" in command
-                lines.append(f"{{\n{command}\n}} &\ngoing+=($!) expected+=({0 if session else 130})")
+                words = shlex.split(command, comments=True)
+                out = shlex.quote(words[words.index("--out") + 1]) if session else "-"
+                lines.append(f"{{\n{command}\n}} &\ngoing+=($!) expected+=({0 if session else 130}) outs+=({out})")
                 if session:
-                    words = shlex.split(command, comments=True)
-                    lines.append(f"ready {shlex.quote(words[words.index('--out') + 1])}")
+                    lines.append(f"ready {out}")
             else:
                 lines.append(command)
+                if stop := STOP.match(command):
+                    lines.append(f'stopped+="{stop[1]} "')
     return "\n".join([*lines, f"sleep {MORE_SECONDS}\n{END}" if endless else ""])
 
 
