@@ -41,6 +41,13 @@ void takeOrRefuse(const Parse& parse) {
     }
 }
 
+/// Ends the program with `what` unless `good`. For what must be true of an accepted input.
+inline void require(bool good, const char* what) {
+    if (!good) {
+        throw std::logic_error(what);
+    }
+}
+
 /// A file in memory, for parsers that open their files themselves.
 class MemoryFile {
 public:

@@ -34,12 +34,6 @@ const scene::Scene& sceneOf(unsigned kind) {
     return kScenes.at(kind % kScenes.size());
 }
 
-void need(bool good, const char* what) {
-    if (!good) {
-        throw std::logic_error(what);
-    }
-}
-
 /// Bounds the work of a step, so that the fuzzer tries many. Tools beyond the field and deep below it stay possible.
 void shorten(Step& step) {
     constexpr std::int32_t kFar = 64 * sand::kProbePerCell;
@@ -103,14 +97,14 @@ SANDWALL_FUZZER(steps) {
         const std::int64_t before = one.volume() + one.outflow();
         one.apply(step);
         other.apply(step);
-        need(one.leftOut().find("skipped") == std::string::npos, one.leftOut().c_str());
-        need(one.stateHash() == other.stateHash(), "two replicas differ");
-        need(restores(step) || one.volume() + one.outflow() == before, "the volume of the sand has changed");
+        fuzz::require(one.leftOut().find("skipped") == std::string::npos, one.leftOut().c_str());
+        fuzz::require(one.stateHash() == other.stateHash(), "two replicas differ");
+        fuzz::require(restores(step) || one.volume() + one.outflow() == before, "the volume of the sand has changed");
         one.audit(1 << 20);
-        need(one.stateHash() == other.stateHash(), "the hash differs after an audit");
+        fuzz::require(one.stateHash() == other.stateHash(), "the hash differs after an audit");
     }
     Replica third(scene);
     third.decodeState(one.encodeState());  // throws if a state that can be reached cannot be decoded
-    need(third.stateHash() == one.stateHash(), "a decoded state differs");
+    fuzz::require(third.stateHash() == one.stateHash(), "a decoded state differs");
     return 0;
 }

@@ -21,12 +21,6 @@ base::Bytes packed(fuzz::Input plain) {
     return fuzz::packedTin(reader);
 }
 
-void require(bool good, const char* what) {
-    if (!good) {
-        throw std::logic_error(what);
-    }
-}
-
 void goOn(TinSurface& surface, const scene::Scene& scene) {
     const sand::HeldTool tool{scene.rules.toolShape(), {}};
     const auto outside = surface.outflow();
@@ -36,7 +30,8 @@ void goOn(TinSurface& surface, const scene::Scene& scene) {
     surface.sweep(2, &tool, path.back());
     surface.leave(tool);
     surface.sweep(4, nullptr, path.back());
-    require(surface.layer().volume() + surface.outflow() == volume + outside, "the volume of the sand has changed");
+    fuzz::require(surface.layer().volume() + surface.outflow() == volume + outside,
+                  "the volume of the sand has changed");
     (void)surface.hash();
 }
 
@@ -44,12 +39,12 @@ void takeState(fuzz::Input bytes) {
     static const scene::Scene kScene = fuzz::tinScene();
     TinSurface surface(kScene.rules, kScene.tin);
     const auto copy = surface.reader()(bytes);
-    require(surface.reader()(copy->encode())->encode() == copy->encode(),
-            "a state differs after it is encoded and decoded");
+    fuzz::require(surface.reader()(copy->encode())->encode() == copy->encode(),
+                  "a state differs after it is encoded and decoded");
     surface.replace(*copy);
     const std::uint64_t hash = surface.hash();
     surface.audit(1 << 20);
-    require(surface.hash() == hash, "the hash differs after an audit");
+    fuzz::require(surface.hash() == hash, "the hash differs after an audit");
     goOn(surface, kScene);
 }
 
@@ -74,8 +69,8 @@ SANDWALL_FUZZER(tin) {
                 replica.decodeState(fuzz::packedState(raw, kScene));
                 sand::Replica again(kScene);
                 again.decodeState(replica.encodeState());
-                require(again.stateHash() == replica.stateHash() && again.encodeState() == replica.encodeState(),
-                        "a whole state differs after it is encoded and decoded");
+                fuzz::require(again.stateHash() == replica.stateHash() && again.encodeState() == replica.encodeState(),
+                              "a whole state differs after it is encoded and decoded");
                 break;
             }
             default: {
@@ -84,8 +79,8 @@ SANDWALL_FUZZER(tin) {
                 base::ByteWriter writer;
                 start.encode(writer);
                 base::ByteReader again(writer.bytes());
-                require(sand::tin::TinStart::decode(again).digest() == start.digest(),
-                        "a start differs after it is encoded and decoded");
+                fuzz::require(sand::tin::TinStart::decode(again).digest() == start.digest(),
+                              "a start differs after it is encoded and decoded");
                 if (start.places.size() < 1000) {
                     (void)sand::tin::layerOf(start).volume();
                 }
