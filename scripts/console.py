@@ -10,6 +10,14 @@ import sys
 import threading
 
 
+def encoded(text):
+    """Returns `text` in UTF-8. Names of files keep their bytes. Halves of surrogate pairs, which JSON can hold, become '?'."""
+    try:
+        return text.encode(errors="surrogateescape")
+    except UnicodeEncodeError:
+        return text.encode(errors="replace")
+
+
 class Console:
     """One stream of this process. `descriptor` is None if the process was started without the stream. Any thread."""
 
@@ -23,7 +31,7 @@ class Console:
     def line(self, text):
         """Writes `text`, a str or bytes, and a line feed. Raises nothing if the stream cannot be written."""
         if isinstance(text, str):
-            text = text.encode(errors="surrogateescape")
+            text = encoded(text)
         with self.lock:
             if self.lost:
                 lines = "1 line is" if self.lost == 1 else f"{self.lost} lines are"

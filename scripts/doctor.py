@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import pathlib
+import re
 import shlex
 import shutil
 import socket
@@ -15,6 +16,7 @@ import tempfile
 import threading
 import time
 
+import checked_json
 import rank_hosts
 import session_folder
 from rank_hosts import HERE, BadInput
@@ -36,9 +38,11 @@ QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
 def build_of(answer):
     """Returns the build id in the output of --version --json, or None if the output has none."""
     try:
-        return json.loads(answer)["build"]
-    except (ValueError, KeyError, TypeError):
+        found = checked_json.parse(answer)
+    except ValueError:
         return None
+    build = found.get("build") if isinstance(found, dict) else None
+    return build if isinstance(build, str) else None
 
 
 class Ask:
@@ -106,7 +110,7 @@ class Host:
         self.findings = []
 
     def add(self, good, check, words, **details):
-        self.findings.append((good, check, words, details))
+        self.findings.append((good, check, checked_json.one_line(words), details))
         return good
 
     def shown_name(self):
@@ -120,10 +124,15 @@ def last_line(text):
 def probed(said):
     """Returns the fields that a render rank's program printed for --probe --json, or None if `said` is not such output."""
     try:
-        found = json.loads(said)
-        return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
-    except (ValueError, KeyError, TypeError):
+        found = checked_json.parse(said)
+    except ValueError:
         return None
+    if not isinstance(found, dict) or not all(isinstance(found.get(key), str) for key in ("backend", "renderer")):
+        return None
+    shortcomings = found.get("shortcomings")
+    if not isinstance(shortcomings, list) or not all(isinstance(line, str) for line in shortcomings):
+        return None
+    return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
 
 
 def spans(ranks):
@@ -189,7 +198,7 @@ class Doctor:
 
     def check_memory(self, host, answers):
         words = answers.get("memory", "").split()
-        free = int(words[0]) // 1024 if words and words[0].isdigit() else 0
+        free = int(words[0]) // 1024 if words and re.fullmatch("[0-9]{1,15}", words[0]) else 0
         slots = max(1, host.slots)
         needed = RANK_MEGABYTES * slots
         line = f"{free} MiB free, {slots} rank{'s' if slots > 1 else ''} may take {needed}"

@@ -8,10 +8,14 @@ import os
 import sys
 import time
 
+import checked_json
 import console
 
 VARIABLE = "SANDWALL_EVENTS"
 TAG = "@sandwall "
+FAILURES = ("hung", "broken", "disk", "sand")  # `what` of failure.json
+MOST_RANKS = 1_000_000
+LONGEST_TEXT = 300  # characters of a text that the launcher shows and passes on
 
 
 def wanted():
@@ -25,10 +29,26 @@ def parse(line):
     if not text.startswith(TAG):
         return None
     try:
-        event = json.loads(text[len(TAG):])
+        event = checked_json.parse(text[len(TAG):])
     except ValueError:
         return None
-    return event if isinstance(event, dict) and "event" in event else None
+    return event if isinstance(event, dict) and isinstance(event.get("event"), str) else None
+
+
+def failure_in(value):
+    """Returns the fields of failure.json or of the event `failure`, which have the same schema.
+
+    Returns {} if `value` is not such an object. Leaves out a field that is not as the schema says.
+    """
+    if not isinstance(value, dict) or value.get("what") not in FAILURES:
+        return {}
+    found = {"what": value["what"]}
+    if (rank := checked_json.whole(value.get("rank"), -1, MOST_RANKS)) is not None:
+        found["rank"] = rank
+    for key in ("host", "tile", "message"):
+        if isinstance(value.get(key), str):
+            found[key] = " ".join(checked_json.one_line(" ".join(value[key].split()), LONGEST_TEXT).split())
+    return found
 
 
 def emit(name, **fields):

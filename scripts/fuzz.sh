@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs libFuzzer on all code that reads bytes from outside, under the address and undefined behaviour sanitizers.
+# Runs libFuzzer on all code that reads bytes from outside, under the address and undefined behaviour sanitizers. Then
+# feeds changed files to the launcher, which is written in Python.
 #
-# usage: scripts/fuzz.sh [SECONDS [NAME...]]     (default: 600 seconds for each fuzzer of tests/fuzz)
+# usage: scripts/fuzz.sh [SECONDS [NAME...]]     (default: 600 seconds for each fuzzer of tests/fuzz, and for launcher)
 #
 # Inputs that reach new code are kept in build/fuzz/corpus/NAME for the next run. An input that causes a failure is kept
 # there too, named crash-..., oom-..., timeout-... or leak-...; the exit status is then 1.
@@ -12,8 +13,13 @@ seconds=${1:-600}
 shift || true
 scripts/install_dependencies.sh --with-tests
 cmake --preset fuzz >/dev/null
-names=("$@")
-if [[ ${#names[@]} -eq 0 ]]; then
+launcher=
+names=()
+for name in "$@"; do
+    if [[ $name == launcher ]]; then launcher=1; else names+=("$name"); fi
+done
+if [[ $# -eq 0 ]]; then
+    launcher=1
     for source in tests/fuzz/*_fuzz.cpp; do
         names+=("$(basename "$source" _fuzz.cpp)")
     done
@@ -45,4 +51,15 @@ for name in "${names[@]}"; do
         grep -m 5 -E 'ERROR|runtime error|what\(\)|SUMMARY' "$log" >&2 || tail -n 5 "$log" >&2
     fi
 done
+if [[ -n $launcher ]]; then
+    log=$corpus/launcher.log
+    findings=0
+    SANDWALL_SEED=$(date +%s) python3 tests/scripts/launcher_fuzz_test.py "$seconds" >"$log" || findings=$(grep -c '^SANDWALL_SEED' "$log" || true)
+    executions=$(sed -n 's/^.*: \([0-9]*\) inputs;.*/\1/p' "$log" | awk '{ sum += $1 } END { print sum }')
+    echo "| launcher | $seconds | ${executions:-?} | | $findings |"
+    if [[ $findings -gt 0 || -z $executions ]]; then
+        status=1
+        cat "$log" >&2
+    fi
+fi
 exit $status

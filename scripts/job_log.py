@@ -11,6 +11,7 @@ import pathlib
 import re
 import time
 
+import checked_json
 import console
 import events
 from console import say
@@ -22,12 +23,12 @@ RESERVE = 1 << 18  # bytes of disk that are kept free for messages about a full 
 FALLOC_FL_KEEP_SIZE = 1
 
 LIBC = ctypes.CDLL(None)  # loaded before any thread starts: a child between fork and exec must not wait for a lock
-TAG = re.compile(rb"\[\d+,(\d+)\]<std(?:out|err)>:")  # mpirun --tag-output writes it before every piece of a rank's output
+TAG = re.compile(rb"\[\d+,(\d{1,9})\]<std(?:out|err)>:")  # mpirun --tag-output writes it before every piece of a rank's output
 BANNER = re.compile(rb"-{60,}")
 # Lines that mpirun -q would not have printed.
 MPIRUNS_OWN = re.compile(rb"\[[\w.-]+:\d+\]|mpirun: ")
-SIGNALLED = re.compile(rb"process rank (\d+) with PID \d+ on node (\S+) exited on\s+signal (\d+)")
-EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d+)\]\s+Exit code:\s+(\d+)")
+SIGNALLED = re.compile(rb"process rank (\d{1,9}) with PID \d+ on node (\S+) exited on\s+signal (\d{1,9})")
+EXITED = re.compile(rb"Process name: \[\[\d+,\d+\],(\d{1,9})\]\s+Exit code:\s+(\d{1,9})")
 BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # Open MPI prints it for a process that a signal ends
 
 
@@ -119,8 +120,8 @@ class JobLog:
         self.err = Stream(f"{self.path}.err", console.ERROR)
         self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
         self.mpiruns = b""  # the last lines of mpirun itself on standard error
-        self.ending = None  # the first event `waiting` that ends the job
-        self.failure = None  # the content of the event `failure`
+        self.ending = None  # `ranks` and `names` of the first event `waiting` that ends the job
+        self.failure = None  # the content of the event `failure`, as events.failure_in() returns it
         self.frame = self.step = None  # the last frame and step that an event reported as shown
         self.told = 0.0  # time of that event by the monotonic clock [s]
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
@@ -141,23 +142,30 @@ class JobLog:
                     stream.shown.line(line)
 
     def read_event(self, event):
-        name = event.get("event")
+        """Takes what the launcher needs from an event. Leaves out a field that is not as the schema of events says."""
+        name = event["event"]
         if name == "progress":
-            self.frame, self.step = event["frame"], event["step"]
+            frame, step = (checked_json.whole(event.get(key)) for key in ("frame", "step"))
+            if frame is None or step is None:
+                return
+            self.frame, self.step = frame, step
             self.told = time.monotonic()
-            if event["hand"] in ("hand linked", "hand streams"):
+            if event.get("hand") in ("hand linked", "hand streams"):
                 self.hand = time.monotonic()
                 self.refused = False
-        elif name == "link" and event["state"] in ("linked", "streaming"):
+        elif name == "link" and event.get("state") in ("linked", "streaming"):
             self.linked = time.time()
-        elif name == "link" and event["state"] == "refused":
+        elif name == "link" and event.get("state") == "refused":
             self.hand, self.refused = None, True  # the server answers, so it does not hang, and a restart would not help
-        elif name == "without_hand" and event["reason"] == "no_server":
+        elif name == "without_hand" and event.get("reason") == "no_server":
             self.miss_hand()
-        elif name == "waiting" and event["ends_job"] and self.ending is None:
-            self.ending = event
+        elif name == "waiting" and event.get("ends_job") is True and self.ending is None:
+            ranks, names = event.get("ranks"), event.get("names")
+            self.ending = {"ranks": [rank for rank in ranks if checked_json.whole(rank, 0, events.MOST_RANKS) is not None]
+                           if isinstance(ranks, list) else [],
+                           "names": checked_json.one_line(names, events.LONGEST_TEXT) if isinstance(names, str) else ""}
         elif name == "failure":
-            self.failure = event["failure"]
+            self.failure = events.failure_in(event.get("failure"))
 
     def miss_hand(self):
         """Begins to count the time that a server without a link has been silent."""

@@ -10,6 +10,8 @@ import socket
 import subprocess
 import time
 
+import checked_json
+
 HERE = "localhost"  # mpirun's name for its own machine, on which the master always runs
 NO_HOST = "-"  # sandwall-check prints it for a tile without a host
 MOST_SLOTS = 1024
@@ -19,7 +21,10 @@ HOST_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,252}")
 
 
 class BadInput(Exception):
-    """An error in the user's input: one line for the user."""
+    """An error in the user's input: one line for the user. Quoted text may hold line feeds, which become '?'."""
+
+    def __init__(self, line):
+        super().__init__(checked_json.one_line(str(line)))
 
 
 def is_here(host):

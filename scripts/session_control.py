@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """`sandwall ctl`: sends an operator's command to a session's control socket (docs/operator.md)."""
 
-import json
 import os
 import pathlib
 import socket
 
+import checked_json
 import session_folder
 from rank_hosts import BadInput
 
@@ -46,7 +46,7 @@ def why_silent(session):
     try:
         if session_folder.is_held(session):
             try:
-                failure = session_folder.read_text(pathlib.Path(session) / "log" / RESTARTING).strip()
+                failure = checked_json.one_line(session_folder.read_text(pathlib.Path(session) / "log" / RESTARTING).strip())
                 return f"the session is being started again, because {failure}; try again in a moment"
             except (OSError, ValueError):
                 return "the session is being started; try again in a moment"
@@ -81,12 +81,13 @@ def ctl(args):
     if not answer:
         raise BadInput(f"{args.session}: the session ended before it answered")
     try:
-        reply = json.loads(answer)
-        good, complaint = reply["ok"], reply.get("error")
-    except (ValueError, KeyError, TypeError, AttributeError):
-        raise BadInput(f"{args.session}: the program that answers there is not a session") from None
-    if not good:
-        raise BadInput(f"{args.session}: {complaint}")
+        reply = checked_json.parse(answer)
+    except ValueError:
+        reply = None
+    if not isinstance(reply, dict) or type(reply.get("ok")) is not bool or checked_json.one_line(answer) != answer:
+        raise BadInput(f"{args.session}: the program that answers there is not a session")
+    if not reply["ok"]:
+        raise BadInput(f"{args.session}: {reply.get('error')}")
     print(answer)
     return 0
 

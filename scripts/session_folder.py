@@ -69,8 +69,8 @@ def read_text(path):
 
 
 def write_text(path, text):
-    """Writes a regular file. Throws OSError for all else."""
-    with open(open_regular(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w", encoding="utf-8") as file:
+    """Writes a regular file. Throws OSError for all else. Names of files in `text` need not be UTF-8."""
+    with open(open_regular(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w", encoding="utf-8", errors="surrogateescape") as file:
         file.write(text)
 
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the summary.json of a session (docs/summary.md)."""
 
-import json
 import pathlib
 import sys
 
+import checked_json
 from rank_hosts import BadInput
 
 VERSION = 1  # version of summary.json, as in docs/schemas/summary.schema.json
@@ -19,14 +19,14 @@ def summary_of(path):
     path = pathlib.Path(path)
     path = path / "summary.json" if path.is_dir() else path
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = checked_json.parse(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({error.strerror}); the session has not ended in order") from None
     except ValueError as error:
         raise BadInput(f"{path}: is not JSON ({error}); name the summary.json of a session") from None
     version = found.get("version", 0) if isinstance(found, dict) else 0
-    if version != VERSION:
-        raise BadInput(f"{path}: the summary has version {version}, but these scripts read version {VERSION}; "
+    if checked_json.whole(version) != VERSION:
+        raise BadInput(f"{path}: the summary has version {str(version)[:40]}, but these scripts read version {VERSION}; "
                        "use the scripts of the build that wrote it")
     return found
 

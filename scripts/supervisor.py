@@ -11,6 +11,7 @@ import signal
 import tempfile
 import time
 
+import checked_json
 import console
 import events
 import job_log
@@ -64,7 +65,8 @@ class Failure:
     def words(self):
         """Returns the options that give this failure to the master that continues the session."""
         rank = [] if self.rank is None else ["--failed-rank", str(self.rank)]
-        return ["--failed-at", f"{self.when:.3f}", "--failure", self.text, *rank, "--failed-how", self.how]
+        # With an equals sign, because the text comes from another program and could begin with hyphens.
+        return ["--failed-at", f"{self.when:.3f}", f"--failure={self.text}", *rank, "--failed-how", self.how]
 
 
 def taken(path):
@@ -80,8 +82,7 @@ def taken(path):
 def content_of(path):
     """Returns the content of the master's failure.json, or {} if the file does not exist or is damaged."""
     try:
-        found = json.loads(session_folder.read_text(path))
-        return found if isinstance(found, dict) else {}
+        return events.failure_in(checked_json.parse(session_folder.read_text(path)))
     except (OSError, ValueError):
         return {}
 
@@ -109,9 +110,9 @@ def failure_of_job(status, log, hosts, written):
     lost = False
     if told.get("what") in ("broken", "hung", "disk"):
         how = told["what"]
-        rank = told.get("rank") if isinstance(told.get("rank"), int) and told["rank"] >= 0 else None
+        rank = told["rank"] if told.get("rank", -1) >= 0 else None
         lost = how == "broken"
-        message = " ".join(str(told.get("message") or f"{name(rank or 0)}: {how}").split())[:300]
+        message = told.get("message") or f"{name(rank or 0)}: {how}"
         text = f"{told_name(told, hosts)} hung" if how == "hung" and rank is not None else message
     elif signalled:
         rank, how = signalled[0], signal_name(signalled[1])
@@ -119,7 +120,7 @@ def failure_of_job(status, log, hosts, written):
     elif log.ending:
         how = "hung"
         rank = next(iter(log.ending["ranks"]), None)
-        text = f"{log.ending['names'][:300]} hung"
+        text = f"{log.ending['names'] or name(rank or 0)} hung"
     elif exited:
         rank, how = exited[0], f"status {exited[1]}"
         text = f"{name(rank)} ended with {how}"

@@ -103,6 +103,12 @@ class MissingLines(unittest.TestCase):
         self.assertRegex(self.written.split(b"\n")[1], b"^sandwall: 1 line is missing here")
         self.assertEqual(self.written.split(b"\n")[2:], [b"whole", b""])
 
+    def test_text_that_no_stream_takes_is_replaced(self):
+        self.room = 1 << 20
+        self.console.line("half a pair: \ud800")  # JSON of another program may hold it
+        self.console.line("a name: \udcff")  # Python's form of a byte in a file's name
+        self.assertEqual(self.written, b"half a pair: ?\na name: \xff\n")
+
     def test_a_stream_that_does_not_exist_is_never_written(self):
         closed = console.Console(None)
         self.room = 1 << 20

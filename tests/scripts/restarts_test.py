@@ -23,7 +23,7 @@ class Restarts(Supervised):
                          "starting again (1 of --restarts 3 in --restart-window 60)\n")
         first, second = self.commands()
         self.assertNotIn("--resume", first)
-        found = re.search(rf" --resume --failed-at (\S+) --failure rank 2 on {HOST} was killed by SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
+        found = re.search(rf" --resume --failed-at (\S+) --failure=rank 2 on {HOST} was killed by SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
         self.assertTrue(before <= float(found[1]) <= time.time(), second)
 
     def test_the_master_is_called_so(self):
@@ -57,6 +57,19 @@ class Restarts(Supervised):
         self.tries(f"""progress 7 6; event 0 '{{"event":"failure","failure":{failure}}}'; ends 0 1""", "exit 0")
         self.assertIn("sandwall: rank 1 sent garbage; starting again", self.ended(["-"])[2])
         self.assertIn(" --failed-rank 1 --failed-how broken ", self.commands()[1])
+
+    def test_a_damaged_failure_file_does_not_stop_the_launcher(self):
+        nested = "[" * 60000
+        self.tries(f"progress 7 6; told '{nested}'; dies 1 host 9", """progress 9 8; told '{"what": "broken", "rank": 1e400}'; dies 1 host 9""",
+                   """progress 9 8; event 0 '{"event":"failure","failure":[3]}'; event 0 '{"event":"progress"}'; dies 1 host 9""", "exit 0")
+        status, _, error = self.ended(["-"])
+        self.assertEqual((status, len(self.commands())), (0, 4), error)
+
+    def test_the_text_of_a_failure_is_one_word_for_the_master(self):
+        self.tries(r"""progress 7 6; told '{"what": "disk", "rank": -1, "message": "--help\u0000\n\ud800 me"}'; ends 0 1""", "exit 0")
+        status, _, error = self.ended(["-"])
+        self.assertEqual(status, 0, error)
+        self.assertIn(" --failure=--help? ? me --failed-how disk ", self.commands()[1])
 
     def test_events_are_shown_to_whom_asks_for_them_alone(self):
         self.tries("progress 7 6; dies 1 host 9", "exit 0")

@@ -116,6 +116,8 @@ class ReadText(unittest.TestCase):
             (folder / "text").write_text("sand")
             self.assertEqual(session_folder.read_text(folder / "text"), "sand")
             os.mkfifo(folder / "pipe")
+            session_folder.write_text(folder / "text", "a name: \udcff")  # a file's name need not be UTF-8
+            self.assertEqual((folder / "text").read_bytes(), b"a name: \xff")
             for other in (folder / "pipe", folder, folder / "none"):
                 with self.assertRaises(OSError):
                     session_folder.read_text(other)
