@@ -93,7 +93,7 @@ void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, in
     }
 }
 
-/// Masks of sliding cells in two parallel runs of cells; read only with a band.
+/// Masks of sliding cells in two parallel runs of cells; null without a band.
 struct SlidingPair {
     const Sliding* behind;
     const Sliding* ahead;
@@ -123,12 +123,14 @@ void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::i
 /// Computes the fluxes from a row of cells to their eastern neighbours. `south` and `north` are the rows beside it.
 template <class Law>
 void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
-               const std::int32_t* __restrict north, const Sliding* __restrict sliding, int count,
+               const std::int32_t* __restrict north, const SlidingPair& sliding, int count,
                std::int32_t* __restrict flux) {
+    const Sliding* __restrict behind = sliding.behind;
+    const Sliding* __restrict ahead = sliding.ahead;
     for (int i = 0; i < count; ++i) {
         const auto here = static_cast<float>(north[i] - south[i]);
         const auto there = static_cast<float>(north[i + 1] - south[i + 1]);
-        flux[i] = law(row[i] - row[i + 1], here + there, flux[i], eitherOf<Law>(sliding, sliding + 1, i));
+        flux[i] = law(row[i] - row[i + 1], here + there, flux[i], eitherOf<Law>(behind, ahead, i));
     }
 }
 
@@ -251,7 +253,7 @@ private:
             fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1,
                           {sliding(y), sliding(y, 1)}, width_, flux);
         } else {
-            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), sliding(y), width_, flux);
+            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), {sliding(y), sliding(y, 1)}, width_, flux);
         }
         hold(y, 1, flux);
         if (patch_.openRim && patch_.cells.x0 == 0) {
