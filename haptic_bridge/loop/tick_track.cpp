@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <iterator>
 
 namespace haptic_bridge {
@@ -34,6 +35,18 @@ std::int32_t getProbe(base::ByteReader& reader) {
         throw base::FormatError(fmt::format("a tick that felt the sand at {}, which is beyond any field", value));
     }
     return static_cast<std::int32_t>(value);
+}
+
+// 36 years. Sums and differences of such times stay within 64 bits.
+constexpr std::int64_t kMostNs = std::int64_t{1} << 60;  // [ns]
+
+/// Reads a time from `beforeNs` on.
+std::int64_t getNs(std::int64_t beforeNs, base::ByteReader& reader) {
+    const std::int64_t span = reader.getSigned();
+    if (span < -2 * kMostNs || span > 2 * kMostNs || std::abs(beforeNs + span) > kMostNs) {
+        throw base::FormatError(fmt::format("a tick {} ns after {} ns, which no clock shows", span, beforeNs));
+    }
+    return beforeNs + span;
 }
 
 /// Visits all numbers of an arm. Both encoding and decoding use this list.
@@ -135,8 +148,8 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.reading.first = (flags & kFirst) != 0;
             tick.reading.second = (flags & kSecond) != 0;
             tick.reading.present = (flags & kPresent) != 0;
-            tick.nowNs = beforeNs += reader.getSigned();
-            tick.surfaceAgeNs = reader.getSigned();
+            tick.nowNs = beforeNs = getNs(beforeNs, reader);
+            tick.surfaceAgeNs = getNs(0, reader);
             tick.surfaceStep = reader.getVarint();
             if ((flags & kElsewhere) != 0) {
                 around.x = getProbe(reader);

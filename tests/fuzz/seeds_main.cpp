@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, journal, checkpoint, state,
-// steps, tin, head, wall.
+// Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, ticks, journal, checkpoint,
+// state, steps, tin, head, wall.
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
+#include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/link/protocol.hpp"
+#include "haptic_bridge/loop/tick_track.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "scene/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
+#include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/tin_scene.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tracking/dtrack.hpp"
@@ -23,29 +25,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using base::Bytes;
-
-class Folder {
-public:
-    Folder(const fs::path& parent, const std::string& name) : path_(parent / name) { fs::create_directories(path_); }
-
-    /// Adds a seed to the corpus. The bytes `before` tell the fuzzer how to read the rest.
-    void add(const Bytes& seed, std::initializer_list<std::uint8_t> before = {}) {
-        Bytes all(before);
-        all.insert(all.end(), seed.begin(), seed.end());
-        std::ofstream(path_ / ("seed" + std::to_string(++count_)), std::ios::binary)
-            .write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
-    }
-
-private:
-    fs::path path_;
-    int count_ = 0;
-};
-
-Bytes piece(const Bytes& bytes) {
-    Bytes all{static_cast<std::uint8_t>(bytes.size() & 255U), static_cast<std::uint8_t>(bytes.size() >> 8U)};
-    all.insert(all.end(), bytes.begin(), bytes.end());
-    return all;
-}
+using fuzz::Folder;
+using fuzz::piece;
 
 sand::Step step(std::uint64_t number) {
     return {.epoch = 1, .number = number, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}, {-9, 0, 1 << 20}}};
@@ -90,6 +71,36 @@ void writeWire(Folder folder) {
     folder.add(stream, {3 + 4 * 16});
 }
 
+/// Writes pieces of the tick track: each alone, and two links after each other. One hand has an arm.
+void writeTicks(Folder folder) {
+    haptic_bridge::TrackPiece arm{.sitting = 1, .begins = true, .header = {}, .ticks = {}};
+    arm.header.body = true;
+    arm.header.physics = haptic_bridge::touchPreset();
+    arm.header.scale = 100;
+    haptic_bridge::TrackPiece felt{.sitting = 1, .begins = false, .header = {}, .ticks = {}};
+    for (int i = 0; i < 20; ++i) {
+        haptic_bridge::TickInput& tick = felt.ticks.emplace_back();
+        tick.time = 1e-3 * i;
+        tick.pose = {.x = 0.02 * i - 0.2, .y = 0.1, .z = 0.5, .engaged = i % 7 != 6};
+        tick.reading = {.place = {0.001 * i, 0.01, -0.01}, .first = true, .second = false, .present = i % 9 != 8};
+        tick.nowNs = 1'000'003 * static_cast<std::int64_t>(i);
+        tick.surfaceAgeNs = 5'000'000;
+        tick.surfaceStep = static_cast<std::uint64_t>(i) / 6;
+        tick.around = {2000 + 300 * (i / 10), 2000, 0};
+    }
+    haptic_bridge::TrackPiece recorded{.sitting = 2, .begins = true, .header = {}, .ticks = {}};
+    haptic_bridge::TrackPiece last = felt;
+    last.sitting = 2;
+    base::ByteWriter track;
+    for (const auto& part : {arm, felt, recorded, last}) {
+        folder.add(encode(part), {0});
+        track.putBytes(piece(encode(part)));
+    }
+    for (const std::uint8_t kind : {std::uint8_t{1}, std::uint8_t{2}}) {
+        folder.add(track.bytes(), {kind});
+    }
+}
+
 void writeJournal(Folder folder, const fs::path& scratch) {
     const scene::Scene scene = samples::flatScene(8, 8);
     {
@@ -100,8 +111,7 @@ void writeJournal(Folder folder, const fs::path& scratch) {
         journal.finish(3, 19);
         journal.resume({2, {3, 19}, 7, "a kill"});
     }
-    std::ifstream stream(scratch, std::ios::binary);
-    folder.add(Bytes(std::istreambuf_iterator<char>(stream), {}), {1});
+    folder.add(fuzz::bytesOf(scratch), {1});
     fs::remove(scratch);
     // Two records of a journal without their checksums.
     base::ByteWriter frame;
@@ -254,6 +264,7 @@ int main(int count, char** words) {
     }
     const fs::path folder = words[1];
     writeWire({folder, "wire"});
+    writeTicks({folder, "ticks"});
     writeJournal({folder, "journal"}, folder / "scratch.journal");
     writeCheckpoints({folder, "checkpoint"});
     writeState({folder, "state"});

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <numbers>
 
 #include "base/input_error.hpp"
@@ -190,6 +191,20 @@ TEST(TickTrack, RefusesBytesThatAreNone) {
     EXPECT_NO_THROW((void)decodeTrackPiece(encode(piece)));
     piece.ticks[1].around = {0, sand::kMaxProbe + 1, 0};
     EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError) << "beyond any field";
+}
+
+TEST(TickTrack, RefusesTimesThatNoClockShows) {
+    constexpr std::int64_t kMost = std::int64_t{1} << 60;
+    TrackPiece piece;
+    piece.ticks.resize(2);
+    piece.ticks[0].nowNs = -kMost;
+    piece.ticks[1].nowNs = piece.ticks[1].surfaceAgeNs = kMost;
+    EXPECT_NO_THROW((void)decodeTrackPiece(encode(piece)));
+    ++piece.ticks[1].nowNs;
+    EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError);
+    piece.ticks[1].nowNs = 0;
+    piece.ticks[1].surfaceAgeNs = std::numeric_limits<std::int64_t>::min();
+    EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError);
 }
 
 TEST(TickTrack, KeepsTheMiddleOfTheSurfaceOfEachTick) {
