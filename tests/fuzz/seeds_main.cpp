@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, ticks, journal, checkpoint,
-// state, steps, tin, head, wall.
+// saved, state, steps, tin, head, wall.
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -10,6 +10,7 @@
 #include "haptic_bridge/loop/tick_track.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
+#include "master/journal/saved_sand.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "scene/scene.hpp"
@@ -143,6 +144,21 @@ void writeCheckpoints(Folder folder) {
     }
 }
 
+/// Writes files of saved sand, whole and without their checksum.
+void writeSaved(Folder folder, const fs::path& scratch) {
+    const std::array<scene::Scene, 2> scenes{samples::flatScene(24, 16), fuzz::tinScene()};
+    for (std::uint8_t kind = 0; kind < scenes.size(); ++kind) {
+        sand::Replica terrain(scenes[kind]);
+        terrain.apply(step(1));
+        master::writeSavedSand(scratch, {master::SandPlace::of(scenes[kind]), terrain.stepNumber(), terrain.stateHash(),
+                                         terrain.copySand()->encode()});
+        const Bytes bytes = fuzz::bytesOf(scratch);
+        folder.add(bytes, {static_cast<std::uint8_t>(2 * kind)});
+        folder.add(Bytes(bytes.begin(), bytes.end() - 8), {static_cast<std::uint8_t>(2 * kind + 1)});
+    }
+    fs::remove(scratch);
+}
+
 /// Returns the plain bytes of sand, as fuzz::packedSand() reads them.
 Bytes plainOf(const sand::Replica& terrain) {
     base::ByteWriter plain;
@@ -267,6 +283,7 @@ int main(int count, char** words) {
     writeTicks({folder, "ticks"});
     writeJournal({folder, "journal"}, folder / "scratch.journal");
     writeCheckpoints({folder, "checkpoint"});
+    writeSaved({folder, "saved"}, folder / "scratch.sand");
     writeState({folder, "state"});
     writeSteps({folder, "steps"});
     writeTin({folder, "tin"});
