@@ -44,4 +44,7 @@ inline base::Bytes bytesOf(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+/// Writes rasters of the formats that the importer accepts, with the files beside them.
+void writeRasters(Folder folder);
+
 }  // namespace fuzz
