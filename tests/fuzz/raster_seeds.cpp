@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes rasters with GDAL's own drivers.
+// Writes rasters with GDAL's own drivers, and PNG files from chunks.
 #include <cpl_conv.h>
 #include <gdal.h>
 #include <ogr_srs_api.h>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/fuzz/png_chunks.hpp"
 #include "tests/fuzz/raster_names.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/fuzz/seeds.hpp"
@@ -114,6 +115,37 @@ void write(const Sample& sample, const ScratchFolder& scratch, Folder& folder) {
     scratch.clear();
 }
 
+Bytes chunk(std::string_view type, std::initializer_list<int> data) {
+    Bytes bytes(type.begin(), type.end());
+    for (const int byte : data) {
+        bytes.push_back(static_cast<std::uint8_t>(byte));
+    }
+    return bytes;
+}
+
+/// Kinds of pixels, as the header of a PNG numbers them.
+enum Colour : std::uint8_t { kGrey = 0, kRgb = 2, kPalette = 3, kGreyAlpha = 4, kRgba = 6 };
+
+/// Returns the chunks of a picture of 4 x 2 pixels as pieces. `more` goes before the pixels. A byte before each row of
+/// pixels names its filter.
+Bytes chunksOfPng(Colour colour, int bits, bool interlaced, const Bytes& more) {
+    const int numbers = colour == kRgb ? 3 : colour == kGreyAlpha ? 2 : colour == kRgba ? 4 : 1;
+    Bytes rows = chunk("IDAT", {});
+    for (int row = 0; row < (interlaced ? 6 : 2); ++row) {
+        rows.push_back(static_cast<std::uint8_t>(row % 5));
+        for (int i = 0; i < (4 * numbers * bits + 7) / 8; ++i) {
+            rows.push_back(static_cast<std::uint8_t>(colour == kPalette ? 1 : 40 * i + row));
+        }
+    }
+    Bytes all;
+    for (const Bytes& one : {chunk("IHDR", {0, 0, 0, 4, 0, 0, 0, 2, bits, colour, 0, 0, interlaced ? 1 : 0}), more,
+                             rows, chunk("IEND", {})}) {
+        const Bytes next = piece(one);
+        all.insert(all.end(), next.begin(), next.end());
+    }
+    return all;
+}
+
 }  // namespace
 
 void writeRasters(Folder folder) {
@@ -125,6 +157,22 @@ void writeRasters(Folder folder) {
         write(sample, scratch, folder);
     }
     CPLPopErrorHandler();
+}
+
+void writePngs(Folder folder) {
+    for (const int bits : {1, 8, 16}) {
+        for (const bool interlaced : {false, true}) {
+            const Bytes chunks = chunksOfPng(kGrey, bits, interlaced, chunk("tRNS", {0, 40}));
+            folder.add(chunks, {2});
+            folder.add(pngOf(chunks, true), {0});
+        }
+    }
+    for (const Colour colour : {kRgb, kGreyAlpha, kRgba}) {
+        folder.add(chunksOfPng(colour, 8, false, chunk("gAMA", {0, 0, 0xb1, 0x8f})), {2});
+        folder.add(chunksOfPng(colour, 16, false, chunk("sBIT", {5, 6, 5, 8})), {2});
+    }
+    folder.add(chunksOfPng(kPalette, 8, false, chunk("PLTE", {1, 2, 3, 4, 5, 6})), {2});
+    folder.add(chunksOfPng(kGrey, 8, false, chunk("tEXt", {'a', 0, 'b'})), {2});
 }
 
 }  // namespace fuzz

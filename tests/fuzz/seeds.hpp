@@ -46,5 +46,7 @@ inline base::Bytes bytesOf(const std::filesystem::path& file) {
 
 /// Writes rasters of the formats that the importer accepts, with the files beside them.
 void writeRasters(Folder folder);
+/// Writes PNG files, whole and as chunks.
+void writePngs(Folder folder);
 
 }  // namespace fuzz

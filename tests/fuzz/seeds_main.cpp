@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, ticks, journal, checkpoint,
-// saved, state, steps, tin, head, raster, wall.
+// saved, state, steps, tin, head, raster, png, wall.
 #include <array>
 #include <filesystem>
 #include <iostream>
@@ -289,6 +289,7 @@ int main(int count, char** words) {
     writeTin({folder, "tin"});
     writeHead({folder, "head"});
     fuzz::writeRasters({folder, "raster"});
+    fuzz::writePngs({folder, "png"});
     Folder walls(folder, "wall");
     for (const auto& file : fs::directory_iterator(SANDWALL_SOURCE_DIR "/walls/configs")) {
         if (file.is_regular_file()) {
