@@ -38,6 +38,11 @@ std::int64_t workOf(const HeldTool& tool, const std::vector<ProbePoint>& path, c
 
 constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
 
+std::unique_ptr<Surface> cloneOf(const Surface& surface) {
+    (void)base::needDefaultFloats();  // a clone of a TIN divides volumes by areas again
+    return surface.clone();
+}
+
 /// Finaliser of MurmurHash3. Every bit of the input affects every bit of the result.
 std::uint64_t mix(std::uint64_t value) {
     value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;
@@ -48,20 +53,17 @@ std::uint64_t mix(std::uint64_t value) {
 }  // namespace
 
 Replica::Replica(const Start& start, const grid::Erosion::Options& options)
-    : Replica(start, makeSurface(start, options)) {}
-
-Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
-      surface_(std::move(surface)),
+      surface_(makeSurface(start, options)),
       heading_(start.rules.toolHeading) {}
 
 Replica::Replica(const Replica& other)
     : rules_(other.rules_),
       startRules_(other.startRules_),
       cellSize_(other.cellSize_),
-      surface_(other.surface_->clone()),
+      surface_(cloneOf(*other.surface_)),
       stepNumber_(other.stepNumber_),
       probe_(other.probe_),
       heading_(other.heading_),
@@ -93,16 +95,17 @@ void Replica::apply(const Step& step) {
                                std::to_string(stepNumber_));
     }
     leftOut_.clear();
+    const Hand before{rules_.tuning(), probe_, heading_};
     try {
         applyToSand(step);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
-        skip(step, error.what());
+        skip(step, before, error.what());
     }
 }
 
-void Replica::skip(const Step& step, const char* why) {
+void Replica::skip(const Step& step, const Hand& before, const char* why) {
     leftOut_ = std::string("skipped: ") + why;
     stepNumber_ = step.number;
     // The sand may be half changed, and holds no copy of itself from before the step.
@@ -110,13 +113,19 @@ void Replica::skip(const Step& step, const char* why) {
         surface_->reset();
     }
     surface_->forget();
+    rules_.tune(before.tuning);
+    surface_->changeRules(rules_);
+    probe_ = before.probe;
+    heading_ = before.heading;
     engaged_ = false;
 }
 
 bool Replica::restoreKept() {
     try {
         if (canUndo()) {
-            surface_->putBackKept();
+            // As a whole: putBackKept() restores what is marked as changed, and a sweep that throws may not have marked
+            // all that it has changed.
+            surface_->replace(*surface_->kept());
             return true;
         }
     } catch (const std::bad_alloc&) {

@@ -30,15 +30,13 @@ struct StateCopy {
 /// One program's copy of the sand, and apply(), the function through which each step changes it.
 ///
 /// Replicas that begin with the same Start and apply the same steps are equal bit for bit. Compiler, number of threads
-/// and block size make no difference. apply() and decodeState() set the calling thread to compute with floats as the
-/// sand needs it (base/float_environment.hpp), and leave it so. Not thread-safe.
+/// and block size make no difference. Constructors, apply() and decodeState() set the calling thread to compute with
+/// floats as the sand needs it (base/float_environment.hpp), and leave it so. Not thread-safe.
 class Replica {
 public:
     /// Creates the sand of `start`. `options` choose how a height field is swept; they never change the result, and a
     /// TIN ignores them. The replica replaces `options.ground` by the ground of `start`.
     explicit Replica(const Start& start, const grid::Erosion::Options& options = {});
-    /// Creates the replica of `start` whose sand is `surface`, which must be of the same field. Tests use it.
-    Replica(const Start& start, std::unique_ptr<Surface> surface);
     Replica(const Replica& other);
     Replica& operator=(const Replica& other);
     Replica(Replica&&) noexcept = default;
@@ -59,9 +57,10 @@ public:
     /// would take minutes. No hand makes such a step.
     ///
     /// If the sand throws an exception, the step is skipped: it counts as applied, and the sand is that from before the
-    /// last stroke, or that of the scene if no such sand is kept. Every replica skips it alike, because state and step
-    /// alone decide. std::bad_alloc is the exception to this, because it depends on the host. It leaves the replica
-    /// unusable, so that its process must end.
+    /// last stroke, or that of the scene if no such sand is kept. Probe, tool and material are those from before the
+    /// step, and the tool is lifted. Every replica skips it alike, because state and step alone decide. The result does
+    /// not depend on how far the step came. std::bad_alloc is the exception to this, because it depends on the host. It
+    /// leaves the replica unusable, so that its process must end.
     void apply(const Step& step);
     /// Returns what the last apply() has left out, as one line: the load that it has ignored, the path that was too
     /// long, or the whole step that it has skipped. Returns an empty text if it has left out nothing.
@@ -128,13 +127,19 @@ public:
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
 
 private:
+    /// What a step changes besides the sand.
+    struct Hand {
+        Tuning tuning;
+        ProbePoint probe;
+        Heading heading;
+    };
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.
     void press();
     void applyToSand(const Step& step);
-    /// Ends a step whose application has failed.
-    void skip(const Step& step, const char* why);
+    /// Ends a step whose application has failed. `before` is from before the step.
+    void skip(const Step& step, const Hand& before, const char* why);
     /// Restores the sand that is kept for an undo. Returns false if no sand is kept, or if it is not possible sand.
     bool restoreKept();
     /// Does a reset, an undo or a load. Returns false if the edit restores no sand.

@@ -13,9 +13,8 @@
 
 namespace sand::grid {
 
-/// Sand as a height field, with the scene's rock and wall cells. Surface documents the overridden functions. Only tests
-/// derive from this class.
-class GridSurface : public Surface {
+/// Sand as a height field, with the scene's rock and wall cells. Surface documents the overridden functions.
+class GridSurface final : public Surface {
 public:
     /// `options` choose how the sand is swept; they never change the result. `ground` replaces `options.ground`, and is
     /// null without rock and wall cells.

@@ -9,11 +9,13 @@
 #include <fstream>
 #include <random>
 
+#include "base/float_environment.hpp"
 #include "base/input_error.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/other_floats.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/tin_piles.hpp"
 
@@ -71,6 +73,16 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
     tin_samples::expectSameSession(start, start, session(7, 120), 37);
+}
+
+// A copy computes the heights of all vertices again from volumes and areas.
+TEST_F(TinTerrain, ACopyIsTheSameAlthoughItsCallerRoundsUp) {
+    const Replica terrain(scene());
+    const auto heightsOf = [](const Replica& replica) { return samples::tinOf(replica).heights; };
+    const test::OtherFloats other;
+    const Replica copy(terrain);
+    EXPECT_EQ(base::unusualFloats(), "");
+    EXPECT_EQ(heightsOf(copy), heightsOf(terrain));
 }
 
 TEST_F(TinTerrain, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
