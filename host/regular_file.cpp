@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
+#include <system_error>
 
 #include "host/whole_file.hpp"
 
@@ -77,7 +77,12 @@ int makeFile(const std::filesystem::path& path, mode_t mode) {
 }
 
 bool appendText(const std::filesystem::path& path, std::string_view text) {
-    const int descriptor = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
+    constexpr int kFlags = O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    int descriptor = open(path.c_str(), kFlags);
+    const bool made = descriptor < 0 && errno == ENOENT;
+    if (made) {
+        descriptor = open(path.c_str(), kFlags | O_CREAT | O_EXCL, 0644);
+    }
     struct stat about {};
     if (descriptor < 0 || fstat(descriptor, &about) != 0) {
         return descriptor >= 0 && refused(descriptor, errno);
@@ -89,7 +94,7 @@ bool appendText(const std::filesystem::path& path, std::string_view text) {
     if (count != static_cast<ssize_t>(text.size())) {
         return refused(descriptor, count < 0 ? errno : ENOSPC);
     }
-    if (fdatasync(descriptor) != 0) {
+    if (fdatasync(descriptor) != 0 || (made && !syncFolderOf(path))) {
         return refused(descriptor, errno);
     }
     close(descriptor);
@@ -97,9 +102,14 @@ bool appendText(const std::filesystem::path& path, std::string_view text) {
 }
 
 std::string whyUnsafeFolder(const std::filesystem::path& path) {
+    // With a slash behind its name, lstat() would follow a link.
+    std::filesystem::path name = path;
+    while ((!name.has_filename() || name.filename() == ".") && name.has_relative_path() && name.has_parent_path()) {
+        name = name.parent_path();
+    }
     struct stat link {};
     struct stat folder {};
-    if (lstat(path.c_str(), &link) != 0 || stat(path.c_str(), &folder) != 0) {
+    if (lstat(name.c_str(), &link) != 0 || stat(name.c_str(), &folder) != 0) {
         return "";
     }
     if (link.st_uid != geteuid()) {
@@ -112,20 +122,25 @@ std::string whyUnsafeFolder(const std::filesystem::path& path) {
 }
 
 void makeFolders(const std::filesystem::path& path) {
-    std::vector<std::filesystem::path> made;
-    for (std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
-         !std::filesystem::exists(folder); folder = folder.parent_path()) {
+    // The path is not simplified: behind a link, ".." is not the folder that holds the link.
+    std::vector<std::filesystem::path> missing;
+    for (std::filesystem::path folder = std::filesystem::absolute(path); !std::filesystem::exists(folder);
+         folder = folder.parent_path()) {
         // A path that ends with a slash has an empty last part.
         if (folder.has_filename()) {
-            made.push_back(folder);
+            missing.push_back(folder);
         }
     }
-    std::for_each(made.rbegin(), made.rend(), [](const std::filesystem::path& folder) {
-        std::filesystem::create_directory(folder);
-        std::error_code none;  // with a umask such as 002, the group of the user could write to the folder
-        std::filesystem::permissions(folder, std::filesystem::perms::group_write | std::filesystem::perms::others_write,
-                                     std::filesystem::perm_options::remove, none);
-        (void)syncFolderOf(folder);
+    std::for_each(missing.rbegin(), missing.rend(), [](const std::filesystem::path& folder) {
+        constexpr mode_t kMode = 0755;  // with a umask such as 002, 0777 would let the user's group write to it
+        if (mkdir(folder.c_str(), kMode) != 0 && (errno != EEXIST || !std::filesystem::is_directory(folder))) {
+            throw std::filesystem::filesystem_error("cannot make a folder", folder,
+                                                    std::error_code(errno, std::generic_category()));
+        }
+        if (!syncFolderOf(folder)) {
+            throw std::filesystem::filesystem_error("cannot sync a folder", folder.parent_path(),
+                                                    std::error_code(errno, std::generic_category()));
+        }
     });
 }
 

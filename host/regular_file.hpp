@@ -41,17 +41,18 @@ private:
 /// which can be left by a process that was killed. Never follows a symbolic link and never waits. Returns the
 /// descriptor, or -1 with errno.
 [[nodiscard]] int makeFile(const std::filesystem::path& path, mode_t mode = 0644);
-/// Appends `text` to a file, which it makes if it does not exist. The text is on disk when the function returns.
-/// Refuses everything but a regular file, without waiting. Returns false with errno if it fails.
+/// Appends `text` to a file, which it makes if it does not exist. The text is on disk when the function returns, and so
+/// is the name of a new file. Refuses everything but a regular file, without waiting; also a symbolic link to one.
+/// Returns false with errno if it fails.
 [[nodiscard]] bool appendText(const std::filesystem::path& path, std::string_view text);
 
 /// Returns why a session must not use the folder `path`: it belongs to another user, or other users may write to it.
 /// The path may also be a link of another user. Such a user could replace files while a session runs. Returns an empty
-/// text if the folder is safe or does not exist.
+/// text if the folder is safe or does not exist. A slash at the end of the path makes no difference.
 [[nodiscard]] std::string whyUnsafeFolder(const std::filesystem::path& path);
 
 /// Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss.
-/// Throws std::filesystem::filesystem_error.
+/// Throws std::filesystem::filesystem_error, also if the disk fails.
 void makeFolders(const std::filesystem::path& path);
 
 }  // namespace host

@@ -42,12 +42,7 @@ WholeFile::WholeFile(const std::filesystem::path& path, Other other) : path_(pat
     }
 }
 
-WholeFile::~WholeFile() {
-    if (!beside_.empty()) {
-        std::error_code none;
-        std::filesystem::remove(beside_, none);
-    }
-}
+WholeFile::~WholeFile() { removePart(); }
 
 void WholeFile::keepSynced() {
     stream_.flush();
@@ -90,15 +85,26 @@ bool syncFolderOf(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) {
-        return true;  // a folder may be used without the right to read it
+        return errno == EACCES;  // a folder may be used without the right to read it
     }
-    const bool failed = ::fsync(descriptor) != 0 && (errno == EIO || errno == ENOSPC || errno == EDQUOT);
+    const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;  // EINVAL: this file system cannot sync a folder
+    const int error = errno;
     ::close(descriptor);
-    return !failed;
+    errno = error;
+    return synced;
 }
 
-void WholeFile::fail() const {
+void WholeFile::fail() {
+    removePart();
     throw base::InputError(fmt::format("{}: cannot be written; check path and free space", path_.string()));
+}
+
+void WholeFile::removePart() {
+    if (!beside_.empty()) {
+        std::error_code none;
+        std::filesystem::remove(beside_, none);
+        beside_.clear();
+    }
 }
 
 }  // namespace host

@@ -9,7 +9,8 @@ namespace host {
 
 /// File that is written completely or not at all. keep() replaces the previous file at its path.
 ///
-/// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it.
+/// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it,
+/// and a failure removes it at once.
 /// Throws base::InputError in one line if the path cannot be written. To test whether a path can be written, create a
 /// WholeFile and destroy it.
 class WholeFile {
@@ -30,7 +31,8 @@ public:
     void keepSynced();
 
 private:
-    [[noreturn]] void fail() const;
+    [[noreturn]] void fail();
+    void removePart();
 
     std::filesystem::path path_;    // as the user gave it
     std::filesystem::path target_;  // `path_` with links resolved
@@ -38,8 +40,8 @@ private:
     std::ofstream stream_;
 };
 
-/// Syncs the folder of `file`, so that created and removed names survive a power loss. Returns false if the disk fails.
-/// Returns true on file systems that cannot sync a folder.
+/// Syncs the folder of `file`, so that created and removed names survive a power loss. Returns false with errno if that
+/// fails. Returns true if the folder must not be read, and on file systems that cannot sync a folder.
 bool syncFolderOf(const std::filesystem::path& file);
 
 }  // namespace host

@@ -20,11 +20,14 @@ class InUse(Exception):
 
 def make(path):
     """Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss."""
-    path = pathlib.Path(os.path.abspath(path))
+    path = pathlib.Path.cwd() / path  # not simplified: behind a link, ".." is not the folder that holds the link
     missing = [folder for folder in (path, *path.parents) if not folder.exists()]
     for folder in reversed(missing):
         folder.mkdir(mode=0o755, exist_ok=True)
-        descriptor = os.open(folder.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            descriptor = os.open(folder.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        except PermissionError:
+            continue  # a folder may be used without the right to read it
         try:
             os.fsync(descriptor)
         except OSError:

@@ -56,6 +56,24 @@ TEST_F(Files, TextIsAppendedToAnOldOrNewFile) {
     EXPECT_EQ(textOf(folder_ / "log"), "one\ntwo\n");
     EXPECT_FALSE(host::appendText(folder_ / "none" / "log", "x"));
     EXPECT_EQ(errno, ENOENT);
+    std::filesystem::create_symlink(folder_ / "log", folder_ / "link");
+    EXPECT_FALSE(host::appendText(folder_ / "link", "x")) << "a link of another program";
+    EXPECT_EQ(textOf(folder_ / "log"), "one\ntwo\n");
+}
+
+TEST_F(Files, AWholeFileThatCannotBeKeptLeavesNoPart) {
+    host::WholeFile whole(folder_ / "file");
+    whole.stream() << "text";
+    std::filesystem::create_directory(folder_ / "file");  // which a file cannot replace
+    EXPECT_THROW(whole.keep(), base::InputError);
+    std::filesystem::remove(folder_ / "file");
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(Files, OnlyAFolderThatMustNotBeReadIsNotSynced) {
+    EXPECT_TRUE(host::syncFolderOf(folder_ / "file"));
+    EXPECT_FALSE(host::syncFolderOf(folder_ / "none" / "file"));
+    EXPECT_FALSE(host::syncFolderOf(written("text", "x") / "file"));
 }
 
 TEST_F(Files, ANewFileReplacesAPipeOrLinkOfItsName) {
@@ -119,7 +137,9 @@ TEST_F(Files, AFolderOrLinkOfAnotherUserIsUnsafe) {
     std::filesystem::create_directory_symlink(ours, link);
     EXPECT_EQ(host::whyUnsafeFolder(link), "");
     ASSERT_EQ(lchown(link.c_str(), 1, 1), 0);
-    EXPECT_EQ(host::whyUnsafeFolder(link), "is a link of another user");
+    for (const char* end : {"", "/", "//", "/.", "/./"}) {
+        EXPECT_EQ(host::whyUnsafeFolder(link.string() + end), "is a link of another user") << end;
+    }
 }
 
 TEST_F(Files, NewFoldersAreWritableForThisUserAlone) {
@@ -131,6 +151,9 @@ TEST_F(Files, NewFoldersAreWritableForThisUserAlone) {
         EXPECT_TRUE(std::filesystem::is_directory(folder_ / made));
     }
     host::makeFolders(folder_ / "a" / "b");
+    std::filesystem::create_directory_symlink(folder_ / "a" / "b" / "c", folder_ / "link");
+    host::makeFolders(folder_ / "link" / ".." / "d");
+    EXPECT_TRUE(std::filesystem::is_directory(folder_ / "a" / "b" / "d")) << "beside the folder that the link names";
     EXPECT_THROW(host::makeFolders(written("file", "x") / "d"), std::filesystem::filesystem_error);
 }
 
