@@ -19,13 +19,15 @@ constexpr int kWidestMap = 12;  // [tile]; so many columns fit into a hundred le
 
 using Cell = std::pair<int, int>;  // row from the top, column
 
-/// Returns how far a screen is turned in its own plane, as the viewer sees it [degree]: counter-clockwise, from -180 to
-/// 180. Returns 0 for a screen at the viewer's side, whose rows lead away from the viewer.
+/// Returns how far a screen is turned in its own plane, as a viewer who faces it sees it [degree]: counter-clockwise,
+/// from -180 to 180. A viewer does not turn to face a floor or a ceiling.
 double turnOf(const Wall& wall, const Screen& screen) {
-    constexpr double kSide = 0.5;  // shortest part of `right` that the viewer sees
-    const double along = glm::dot(screen.right(), wall.viewer.right);
-    const double upward = screen.right().y;
-    return std::hypot(along, upward) < kSide ? 0 : glm::degrees(std::atan2(upward, along));
+    constexpr double kFlat = 0.9;  // least vertical part of the normal of a floor or a ceiling
+    const glm::dvec3 normal = screen.normal(), right = wall.viewer.right;
+    const glm::dvec3 level = glm::normalize(std::abs(normal.y) < kFlat ? glm::cross(glm::dvec3(0, 1, 0), normal)
+                                                                       : right - normal * glm::dot(normal, right));
+    return glm::degrees(
+        std::atan2(glm::dot(screen.right(), glm::cross(normal, level)), glm::dot(screen.right(), level)));
 }
 
 /// Returns the number of quarter turns counter-clockwise, 0 to 3, that are nearest to `degrees`.
@@ -99,13 +101,20 @@ Cell beyond(Cell cell, Edge edge) {
     return {cell.first - 1, cell.second};
 }
 
+constexpr std::array<Edge, 4> kCounterClockwise{Edge::right, Edge::top, Edge::left, Edge::bottom};
+
+int numberOf(Edge edge) {
+    return static_cast<int>(std::find(kCounterClockwise.begin(), kCounterClockwise.end(), edge) -
+                            kCounterClockwise.begin());
+}
+
 /// Returns the edge of a screen that the viewer sees at `edge` of a screen with level rows, after quarter turns.
 Edge turned(Edge edge, int quarters) {
-    constexpr std::array<Edge, 4> kCounterClockwise{Edge::right, Edge::top, Edge::left, Edge::bottom};
-    const auto* const at = std::find(kCounterClockwise.begin(), kCounterClockwise.end(), edge);
-    const auto index = static_cast<std::size_t>(at - kCounterClockwise.begin());
-    return kCounterClockwise.at((index + static_cast<std::size_t>(quarters)) % kCounterClockwise.size());
+    return kCounterClockwise.at(static_cast<std::size_t>(numberOf(edge) + quarters) % kCounterClockwise.size());
 }
+
+/// Returns the quarter turns after which the viewer sees `edge` of a screen opposite to `other`.
+int quartersTowards(Edge edge, Edge other) { return (numberOf(other) + 2 - numberOf(edge) + 4) % 4; }
 
 /// Returns the index of the explicit screen without a place that the viewer faces most, or the number of tiles if all
 /// have one.
@@ -129,14 +138,16 @@ std::map<std::size_t, Cell> unfolded(const Wall& wall) {
     const std::vector<Seam> seams = seamsOf(wall);
     std::map<std::size_t, Cell> placed;
     std::map<Cell, std::size_t> taken;
-    const auto place = [&](std::size_t tile, Cell cell) {
+    std::map<std::size_t, int> quarters;  // turns of the placed screens in the map
+    const auto place = [&](std::size_t tile, Cell cell, int turns) {
         placed[tile] = cell;
         taken[cell] = tile;
+        quarters[tile] = turns;
     };
     for (std::size_t front = frontOf(wall, placed); front < wall.tiles.size(); front = frontOf(wall, placed)) {
         // Starts a row below all others. Leaves one row free for a screen that joins above.
-        place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0});
-        const int quarters = quartersOf(turnOf(wall, wall.tiles[front].screen));
+        place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0},
+              quartersOf(turnOf(wall, wall.tiles[front].screen)));
         std::queue<std::size_t> next({front});
         for (; !next.empty(); next.pop()) {
             for (const Seam& seam : seams) {
@@ -145,10 +156,11 @@ std::map<std::size_t, Cell> unfolded(const Wall& wall) {
                     continue;
                 }
                 const std::size_t other = forth ? seam.second : seam.first;
-                const Edge edge = forth ? seam.edgeOfFirst : seam.edgeOfSecond;
-                const Cell cell = beyond(placed[next.front()], turned(edge, quarters));
+                const Edge edge =
+                    turned(forth ? seam.edgeOfFirst : seam.edgeOfSecond, quarters[next.front()]);  // in the map
+                const Cell cell = beyond(placed[next.front()], edge);
                 if (wall.tiles[other].row == 0 && !placed.contains(other) && !taken.contains(cell)) {
-                    place(other, cell);
+                    place(other, cell, quartersTowards(forth ? seam.edgeOfSecond : seam.edgeOfFirst, edge));
                     next.push(other);
                 }
             }

@@ -190,8 +190,30 @@ TEST(TextMap, UnfoldsTurnedScreensAsTheViewerSeesThem) {
               "  +---------+\n"
               "  | 1 left  |\n"
               "  +---------+\n"
+              "  left is turned by 90 degrees counter-clockwise\n"
               "  front is turned by 90 degrees counter-clockwise\n"
+              "  right is turned by 90 degrees counter-clockwise\n"
               "  floor is turned by 90 degrees counter-clockwise\n");
+}
+
+TEST(TextMap, FollowsTheTurnOfEachScreen) {
+    Wall wall = config("flex_cave.toml");
+    wall.tiles.resize(3);
+    // Three squares side by side. The monitor in the middle stands on its left edge.
+    wall.tiles[0].screen = {{-1.5, 1, 0}, {-0.5, 1, 0}, {-1.5, 2, 0}};
+    wall.tiles[1].screen = {{0.5, 1, 0}, {0.5, 2, 0}, {-0.5, 1, 0}};
+    wall.tiles[2].screen = {{0.5, 1, 0}, {1.5, 1, 0}, {0.5, 2, 0}};
+    const std::string rule = "  +---------++---------++---------+\n";
+    EXPECT_EQ(textMap(wall), rule + "  | 1 left  || 2 front || 3 right |\n" + rule +
+                                 "  front is turned by 90 degrees counter-clockwise\n");
+}
+
+TEST(TextMap, ShowsALevelScreenBehindTheViewerAsLevel) {
+    Wall wall = config("flex_cave.toml");
+    wall.tiles.resize(1);
+    const glm::dvec3 eye = wall.viewer.eye;
+    wall.tiles[0].screen = {eye + glm::dvec3{1, -1, 2}, eye + glm::dvec3{-1, -1, 2}, eye + glm::dvec3{1, 1, 2}};
+    EXPECT_EQ(textMap(wall).find("turned"), std::string::npos) << textMap(wall);
 }
 
 TEST(Report, NamesTheModesToWhichTheWallCanSwitch) {
