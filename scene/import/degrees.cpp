@@ -5,7 +5,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
+#include "base/input_error.hpp"
 #include "scene/import/metric_system.hpp"
 
 namespace scene {
@@ -46,21 +48,33 @@ bool mostSlopesAreSteep(const EsriGrid& grid) {
     return slopes.mostAreSteep();
 }
 
-}  // namespace
-
+/// Returns why the lengths seem to be degrees, or nullopt.
 std::optional<std::string> whyDegrees(const EsriGrid& grid) {
+    const double depth = grid.cellDepth.value_or(grid.cellSize);
     const double east = grid.westEdge + grid.columns * grid.cellSize;
-    const double north = grid.southEdge + grid.rows * grid.cellDepth.value_or(grid.cellSize);
-    const bool onGlobe = grid.westEdge >= -180 && east <= 180 && grid.southEdge >= -90 && north <= 90;
+    const double north = grid.southEdge + grid.rows * depth;
+    // A grid whose outer cells have their middles on the date line or a pole reaches half a cell beyond. The rest is
+    // for rounded corners and cell sizes.
+    constexpr double kSlack = 0.51;
+    const double beyond = kSlack * grid.cellSize, beyondPole = kSlack * depth;
+    const bool onGlobe = grid.westEdge >= -180 - beyond && east <= 180 + beyond && grid.southEdge >= -90 - beyondPole &&
+                         north <= 90 + beyondPole;
     if (!grid.units.crs.empty() || !onGlobe || !mostSlopesAreSteep(grid)) {
         return std::nullopt;
     }
-    const int epsg = metricSystemAt((grid.westEdge + east) / 2, (grid.southEdge + north) / 2);
     return fmt::format(
         "{}: its lengths seem to be degrees: from the corner ({}, {}) on, cells of {} would make most slopes steeper "
-        "than 80 degrees; make metres of them: gdalwarp -s_srs EPSG:4326 -t_srs EPSG:{} -r bilinear {} metres.tif",
-        grid.file, grid.westEdge, grid.southEdge, grid.cellSize, epsg,
-        std::filesystem::path(grid.file).filename().string());
+        "than 80 degrees; make metres of them: {}",
+        grid.file, grid.westEdge, grid.southEdge, grid.cellSize,
+        warpCommand(grid.file, (grid.westEdge + east) / 2, (grid.southEdge + north) / 2, "-s_srs EPSG:4326 "));
+}
+
+}  // namespace
+
+void requireLengths(const EsriGrid& grid, const std::string& otherwise) {
+    if (const std::optional<std::string> why = whyDegrees(grid)) {
+        throw base::InputError(*why + otherwise);
+    }
 }
 
 }  // namespace scene

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "scene/import/esri_grid.hpp"
 
 namespace scene {
 
-/// Returns why the lengths of a grid without a coordinate system seem to be degrees, with the command that makes metres
-/// of them. Returns nullopt if they can be lengths, or if the grid has a coordinate system.
+/// Throws base::InputError if the lengths of a grid without a coordinate system seem to be degrees. The line has the
+/// command that makes metres of them, and then `otherwise`, which says how to insist on lengths.
 ///
 /// Lengths seem to be degrees if all coordinates can be a longitude and a latitude, and the median slope would be
-/// steeper than 80 degrees. No sand and hardly any terrain is so steep.
-[[nodiscard]] std::optional<std::string> whyDegrees(const EsriGrid& grid);
+/// steeper than 80 degrees. No sand and hardly any terrain is so steep. The grid may reach half a cell beyond the date
+/// line and the poles.
+void requireLengths(const EsriGrid& grid, const std::string& otherwise);
 
 }  // namespace scene

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <string>
 
 namespace scene {
 
@@ -18,6 +22,14 @@ namespace scene {
     const double turned = std::fmod(longitude + 180, 360);
     const double fromDateLine = turned < 0 ? turned + 360 : turned;
     return (latitude < 0 ? 32700 : 32600) + std::clamp(static_cast<int>(fromDateLine / 6) + 1, 1, 60);
+}
+
+/// Returns the command that converts a raster in degrees to metres, for messages. Its middle is at this place.
+/// `options` come first, such as "-s_srs EPSG:4326 " for a file without a coordinate system.
+[[nodiscard]] inline std::string warpCommand(const std::string& file, double longitude, double latitude /* [degree] */,
+                                             const std::string& options = "") {
+    return fmt::format("gdalwarp {}-t_srs EPSG:{} -r bilinear {} metres.tif", options,
+                       metricSystemAt(longitude, latitude), std::filesystem::path(file).filename().string());
 }
 
 }  // namespace scene

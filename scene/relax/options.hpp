@@ -22,7 +22,7 @@ struct Options {
 };
 
 /// Throws base::InputError if the lengths of IN seem to be degrees, unless `lengths` is set.
-void requireLengths(const EsriGrid& raster, const Options& options);
+void checkLengths(const EsriGrid& raster, const Options& options);
 
 /// Both functions read IN, write OUT and print the report line. They throw base::InputError.
 void relaxGrid(const Options& options);

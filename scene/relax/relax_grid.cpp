@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "base/input_error.hpp"
 #include "host/memory.hpp"
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
@@ -125,19 +124,16 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
 
 }  // namespace
 
-void requireLengths(const EsriGrid& raster, const Options& options) {
-    if (options.lengths) {
-        return;
-    }
-    if (const std::optional<std::string> why = whyDegrees(raster)) {
-        throw base::InputError(*why + "; or insist on lengths with --lengths");
+void checkLengths(const EsriGrid& raster, const Options& options) {
+    if (!options.lengths) {
+        requireLengths(raster, "; or insist on lengths with --lengths");
     }
 }
 
 void relaxGrid(const Options& options) {
     const std::int64_t free = host::freeMemoryOfProcess();
     const EsriGrid grid = readRaster(options.in, true, fitsMemory(options.in, free));
-    requireLengths(grid, options);
+    checkLengths(grid, options);
     std::optional<EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
         bedrock = readRaster(options.bedrock, false, fitsMemory(options.bedrock, free));

@@ -96,7 +96,7 @@ void relaxTin(const Options& options) {
     } else {
         const EsriGrid raster =
             withoutEmptyEdges(readRaster(options.in, true, fitsMemory(options.in, host::freeMemoryOfProcess())));
-        requireLengths(raster, options);
+        checkLengths(raster, options);
         warnings = raster.warnings;
         thinned = thin(raster, {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }

@@ -54,17 +54,15 @@ double metresOf(const std::string& unit, const GdalRaster& raster) {
 
 /// Returns the command that converts degrees to metres. It uses the UTM zone of the raster's middle, or a system around
 /// a pole.
-std::string warpCommand(const GdalRaster& raster, OGRSpatialReferenceH reference) {
+std::string warpCommandOf(const GdalRaster& raster, OGRSpatialReferenceH reference) {
     std::array<double, 6> place{};
-    int epsg = 3857;
+    double longitude = std::nan(""), latitude = std::nan("");
     const double degrees = OSRGetAngularUnits(reference, nullptr) / 0.017453292519943295;
     if (GDALGetGeoTransform(raster.dataset(), place.data()) == CE_None) {
-        const double longitude = (place[0] + place[1] * raster.columns() / 2) * degrees;
-        const double latitude = (place[3] + place[5] * raster.rows() / 2) * degrees;
-        epsg = metricSystemAt(longitude, latitude);
+        longitude = (place[0] + place[1] * raster.columns() / 2) * degrees;
+        latitude = (place[3] + place[5] * raster.rows() / 2) * degrees;
     }
-    const std::string file = std::filesystem::path(raster.name()).filename().string();
-    return fmt::format("gdalwarp -t_srs EPSG:{} -r bilinear {} metres.tif", epsg, file);
+    return warpCommand(raster.name(), longitude, latitude);
 }
 
 std::string wktOf(OGRSpatialReferenceH reference) {
@@ -91,7 +89,7 @@ RasterUnits unitsOf(const GdalRaster& raster) {
     if (OSRIsGeographic(reference) != 0 || OSRIsGeocentric(reference) != 0) {
         const char* name = OSRGetName(reference);
         raster.fail(fmt::format("its coordinates ({}) are degrees, but sand needs lengths; make metres of them: {}",
-                                name == nullptr ? "no name" : name, warpCommand(raster, reference)));
+                                name == nullptr ? "no name" : name, warpCommandOf(raster, reference)));
     }
     units.crs = wktOf(reference);
     units.lengthMetres = OSRGetLinearUnits(reference, nullptr);

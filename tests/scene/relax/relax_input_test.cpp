@@ -157,6 +157,8 @@ TEST_F(RelaxInput, LengthsThatAreNoDegreesAreNotRefused) {
     EXPECT_EQ(status("xllcorner -105.56\nyllcorner 40.09", "0.000833", 0.005), 2);
     EXPECT_EQ(status("xllcorner -105.56\nyllcorner 40.09", "0.000833", 0.0045), 0) << "the slopes can be real";
     EXPECT_EQ(status("xllcorner 179.995\nyllcorner 40.09", "0.000833", 0.005), 0) << "beyond 180 degrees east";
+    EXPECT_EQ(status("xllcorner -180.0004165\nyllcorner 40.09", "0.000833", 0.005), 2) << "half a cell beyond";
+    EXPECT_EQ(status("xllcorner 10\nyllcorner 89.9904205", "0.000833", 0.005), 2) << "half a cell beyond the pole";
     EXPECT_EQ(status("xllcorner 10\nyllcorner 89.995", "0.000833", 0.005), 0) << "beyond the pole";
     EXPECT_EQ(status("xllcorner 478000\nyllcorner 4437000", "0.000833", 0.005), 0) << "no place on the globe";
 }
