@@ -69,16 +69,28 @@ def is_endless(command):
                                            for program, ends in ENDLESS.items())
 
 
+def out_of(command):
+    """Returns the folder after --out. Throws ValueError if the command names none: its session could not be asked."""
+    words = shlex.split(command, comments=True)
+    folders = [after for word, after in zip(words, words[1:]) if word == "--out"] + [
+        word.partition("=")[2] for word in words if word.startswith("--out=")]
+    if not folders:
+        raise ValueError(f"a session that continues until Ctrl-C needs --out FOLDER: {' '.join(words)}")
+    return folders[-1]
+
+
 def script_of(group):
-    """Returns the bash script that runs the blocks of a group. It appends the number of each block to the file $BLOCKS."""
+    """Returns the bash script that runs the blocks of a group. It appends the number of each block to the file $BLOCKS.
+
+    Throws ValueError with one line if a command cannot be run.
+    """
     lines, endless = [BEGIN], False
     for number, block in enumerate(group):
         lines.append(f'echo {number} >>"$BLOCKS"')
         for command in block.commands():
             if is_endless(command):
                 endless, session = True, "scripts/sandwall run" in command
-                words = shlex.split(command, comments=True)
-                out = shlex.quote(words[words.index("--out") + 1]) if session else "-"
+                out = shlex.quote(out_of(command)) if session else "-"
                 lines.append(f"{{\n{command}\n}} &\ngoing+=($!) expected+=({0 if session else 130}) outs+=({out})")
                 if session:
                     lines.append(f"ready {out}")
@@ -124,12 +136,16 @@ def kill_descendants():
 def run(group, folder, seconds):
     """Runs the blocks of a group in a folder. Returns (blocks that ended in order, complaint or an empty string)."""
     ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)  # a process whose parent has ended becomes a child of this one
+    try:
+        script = script_of(group)
+    except ValueError as error:
+        return 0, str(error)
     progress, output = folder / ".blocks", folder / ".output"
     progress.write_text("")
     environment = {**os.environ, "PATH": f"{ROOT / BIN}:{os.environ['PATH']}", "PYTHONDONTWRITEBYTECODE": "1",
                    "BLOCKS": str(progress)}
     with open(output, "wb") as stream:
-        process = subprocess.Popen(["bash", "-c", script_of(group)], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
+        process = subprocess.Popen(["bash", "-c", script], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                    stdout=stream, stderr=subprocess.STDOUT, start_new_session=True)
     try:
         status = process.wait(timeout=seconds * len(group))

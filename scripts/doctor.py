@@ -276,13 +276,23 @@ def check_out(host, out):
         host.add(True, "disk", f"{free} MiB free in {place}")
 
 
+def version_of(program):
+    """Returns (build id, complaint) of a program on this machine. The build id is None if the program prints none."""
+    try:
+        ended = subprocess.run([program, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                               errors="replace", timeout=ANSWER_SECONDS, check=False)
+    except subprocess.TimeoutExpired:
+        return None, f"no answer within {ANSWER_SECONDS} s"
+    except OSError as error:
+        return None, f"{program}: cannot be run ({error.strerror})"
+    return build_of(ended.stdout), last_line(ended.stderr)
+
+
 def check_master(host, master, build):
     """Adds whether the master's program on this machine is of the build `build`."""
-    ended = subprocess.run([master, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                           errors="replace", timeout=ANSWER_SECONDS, check=False)
-    said = build_of(ended.stdout)
+    said, complaint = version_of(master)
     host.add(said == build, "master", said if said == build else
-             f"build {said or last_line(ended.stderr)}, the ranks have {build}; cmake --build build/release")
+             f"build {said or complaint}, the ranks have {build}; cmake --build build/release")
 
 
 def machines(hosts, of_wall):
@@ -323,10 +333,8 @@ def examine(hosts, wall_text, node, master, out, gl, as_json=False):
 
     Returns the exit status: 0 if no check is red, else 1.
     """
-    said = subprocess.run([node, "--version", "--json"], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                           errors="replace", timeout=ANSWER_SECONDS, check=False).stdout
     here, *others = machines(hosts, wall_text is not None)
-    build = build_of(said)
+    build, _ = version_of(node)
     doctor = Doctor(node, build, wall_text, gl)
     check_master(here, master, build)
     check_out(here, out)

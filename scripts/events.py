@@ -58,11 +58,11 @@ def emit(name, **fields):
 
 
 def read(path):
-    """Returns the events in a file of output, in order. Returns an empty list while the file does not exist."""
+    """Returns the events in a file of output, in order. Returns an empty list while the file cannot be read."""
     try:
         with open(path, "rb") as stream:
             return [event for line in stream if line.endswith(b"\n") and (event := parse(line))]
-    except FileNotFoundError:
+    except OSError:
         return []
 
 
@@ -93,7 +93,7 @@ def main():
     if event is None or args.field not in event:
         print(f"{args.file}: no event {args.event} with the field {args.field} within {args.seconds:g} s", file=sys.stderr)
         return 1
-    print(event[args.field])
+    print(checked_json.one_line(str(event[args.field])))
     return 0
 
 

@@ -5,6 +5,7 @@ The programs of Sandwall report through events (docs/events.md). mpirun has no e
 """
 
 import collections
+import contextlib
 import ctypes
 import os
 import pathlib
@@ -204,4 +205,5 @@ def forget_tries(folder, kept):
     tries = earlier_tries(folder)
     for number in tries[:max(0, len(tries) - kept)]:
         for ending in ("out", "err"):
-            (pathlib.Path(folder) / f"try_{number}.{ending}").unlink(missing_ok=True)
+            with contextlib.suppress(OSError):  # the output of an old try is not worth the end of a session
+                (pathlib.Path(folder) / f"try_{number}.{ending}").unlink(missing_ok=True)

@@ -160,8 +160,11 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
         if events.wait_for(log, "link", START_SECONDS, lambda: run.poll() is None, state="linked") is None:
             raise Failed(f"no hand was linked: {log.read_text(errors='replace').strip()[-300:]}")
         time.sleep(args.warm_up + args.seconds)
-        run.stdin.write("stop\n")
-        run.stdin.flush()
+        try:
+            run.stdin.write("stop\n")
+            run.stdin.flush()
+        except BrokenPipeError:
+            pass  # the session has ended, and its status says why
         if run.wait(timeout=START_SECONDS) != 0:
             raise Failed(f"the session failed: {log.read_text(errors='replace').strip()[-300:]}")
     except subprocess.TimeoutExpired:
@@ -177,12 +180,21 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
 
 
 def floor(*words):
-    said = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=START_SECONDS,
-                          env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                                   OMPI_MCA_mpi_yield_when_idle="1", HWLOC_COMPONENTS="-gl"))
+    command = " ".join(map(str, words))
+    try:
+        said = subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=START_SECONDS,
+                              env=dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                                       OMPI_MCA_mpi_yield_when_idle="1", HWLOC_COMPONENTS="-gl"))
+    except subprocess.TimeoutExpired:
+        raise Failed(f"{command}: not done after {START_SECONDS} s") from None
+    except OSError as error:
+        raise Failed(f"{command}: cannot be run ({error.strerror})") from None
     if said.returncode != 0:
-        raise Failed(f"{' '.join(map(str, words))}: {said.stderr.strip()[-300:]}")
-    return json.loads(said.stdout.splitlines()[-1])
+        raise Failed(f"{command}: {said.stderr.strip()[-300:]}")
+    try:
+        return json.loads(said.stdout.splitlines()[-1])
+    except (IndexError, ValueError):
+        raise Failed(f"{command}: printed no result: {said.stdout.strip()[-300:]}") from None
 
 
 def message_floor(link, size, args):
@@ -209,7 +221,7 @@ def measure(wall, link, load, args):
                     "--die-with-parent") as server, Through(link, server.address, args.seed) as haptic:
             summary = session(folder, wall_file, load, haptic, args)
     haptic = summary["haptic"]
-    if "half_round_trip_ms" not in haptic or haptic["half_round_trip_ms"]["count"] == 0:
+    if not haptic or "half_round_trip_ms" not in haptic or haptic["half_round_trip_ms"]["count"] == 0:
         raise Failed(f"{wall.name}: no timing test was answered")
     message = message_floor(link, round(haptic["step_message_bytes"]), args)
     frame = frame_floor(summary["ranks"], round(summary["broadcast_bytes"]["p50"]), args)
@@ -338,7 +350,11 @@ def main():
     said = notes(args, before)
     print("\n" + "\n".join(f"- {line}" for line in said))
     if args.out:
-        write_csv(args.out, rows, said, "sandwall-bench latency " + " ".join(sys.argv[1:]))
+        try:
+            write_csv(args.out, rows, said, "sandwall-bench latency " + " ".join(sys.argv[1:]))
+        except OSError as error:
+            print(f"sandwall-bench latency: {args.out}: cannot be written ({error.strerror})", file=sys.stderr)
+            return 1
     return 0
 
 

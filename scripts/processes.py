@@ -174,8 +174,8 @@ class Job:
                 for process in left:
                     try:
                         os.kill(process, signal.SIGKILL)
-                    except ProcessLookupError:
-                        pass
+                    except (ProcessLookupError, PermissionError):
+                        pass  # it has ended
             time.sleep(LOOK_SECONDS)
 
 

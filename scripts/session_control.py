@@ -87,7 +87,7 @@ def ctl(args):
     if not isinstance(reply, dict) or type(reply.get("ok")) is not bool or checked_json.one_line(answer) != answer:
         raise BadInput(f"{args.session}: the program that answers there is not a session")
     if not reply["ok"]:
-        raise BadInput(f"{args.session}: {reply.get('error')}")
+        raise BadInput(f"{args.session}: {checked_json.one_line(str(reply.get('error')))}")
     print(answer)
     return 0
 

@@ -115,8 +115,8 @@ def is_held(path):
 
 
 def append_line(path, line):
-    """Appends a line to a regular file. Begins on a line of its own if a crash has cut the last line off. Throws OSError."""
-    with open(open_regular(path, os.O_RDWR | os.O_CREAT | os.O_APPEND), "ab", buffering=0) as file:
+    """Appends a line to a regular file, which must not be a link. Begins on a line of its own if a crash has cut the last line off. Throws OSError."""
+    with open(open_regular(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW), "ab", buffering=0) as file:
         size = os.fstat(file.fileno()).st_size
         torn = size > 0 and os.pread(file.fileno(), 1, size - 1) != b"\n"
         file.write((b"\n" if torn else b"") + line.encode() + b"\n")

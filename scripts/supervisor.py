@@ -222,6 +222,7 @@ class Supervisor:
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 return FAILED if self.gave_up else status if status >= 0 else 128 - status
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
+                log.close()
                 return FAILED  # the session has ended with wrong sand, which the master has printed; a restart would not help
             failure = failure_of_job(status, log, self.hosts, taken(self.out / "failure.json"))
             log.close()

@@ -160,6 +160,14 @@ class Runs(unittest.TestCase):
             time.sleep(0.01)
         self.assertFalse(pathlib.Path("/proc", str(process)).exists())
 
+    def test_of_a_session_without_a_folder_are_told_in_one_line(self):
+        block = docs_blocks.blocks("page.md", f"    {RUN}\n")[0]
+        with tempfile.TemporaryDirectory() as folder:
+            good, complaint = docs_commands.run([block], pathlib.Path(folder), 60)
+        self.assertEqual((good, complaint), (0, f"a session that continues until Ctrl-C needs --out FOLDER: {RUN}"))
+        self.assertEqual(docs_commands.out_of(RUN + " --out 'a b' --mono"), "a b")
+        self.assertEqual(docs_commands.out_of(RUN + " --out=c"), "c")
+
     def test_use_a_folder_that_shows_the_project_without_its_results(self):
         folder = docs_commands.scratch()
         self.addCleanup(shutil.rmtree, folder)
