@@ -55,15 +55,18 @@ void* loadModule(const Module& module, const std::vector<fs::path>& folders) {
                                module.ifNotLoaded);
     }
     requireSameBuild(handle, file);
-    if (const std::string was = base::repairFloats(); !was.empty()) {
-        printLine("{}: a library of it changed how this process computes: it {}; this was set back", file.string(),
-                  was);
-    }
+    repairFloatsAfter(file.string());
     void* const symbol = dlsym(handle, module.symbol.c_str());
     if (symbol == nullptr) {
         throw base::InputError(file.string() + ": does not define " + module.symbol + "; " + module.ifNotLoaded);
     }
     return symbol;
+}
+
+void repairFloatsAfter(const std::string& what) {
+    if (const std::string was = base::repairFloats(); !was.empty()) {
+        printLine("{}: changed how this process computes: it {}; this was set back", what, was);
+    }
 }
 
 }  // namespace host

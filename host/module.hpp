@@ -27,4 +27,8 @@ struct Module {
 [[nodiscard]] void* loadModule(const Module& module,
                                const std::vector<std::filesystem::path>& folders = moduleFolders());
 
+/// Sets the calling thread to compute with floats as the sand needs it (base/float_environment.hpp). Prints a line if
+/// that changed something. Call it after loading or opening what is not ours; `what` names it in the line.
+void repairFloatsAfter(const std::string& what);
+
 }  // namespace host

@@ -4,11 +4,9 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include "base/float_environment.hpp"
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
 #include "host/module.hpp"
-#include "host/print_line.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -25,10 +23,7 @@ void* loadDriver(const fs::path& file, const std::string& option) {
             fmt::format("{}: {}; give a driver's module, and its libraries where the loader finds them", option,
                         reason == nullptr ? file.string() + " cannot be loaded" : reason));
     }
-    if (const std::string was = base::repairFloats(); !was.empty()) {
-        host::printLine("{}: the driver changed how this process computes: it {}; this was set back", file.string(),
-                        was);
-    }
+    host::repairFloatsAfter(file.string());
     return handle;
 }
 
@@ -54,11 +49,13 @@ void requireInterface(void* handle, const fs::path& file) {
     }
 }
 
-/// Returns what `make` returns. Its exceptions become InputErrors that begin with `option`.
+/// Returns what `make` returns. Its exceptions become InputErrors that begin with `option`. Repairs the floats, because
+/// opening a device may load further libraries.
 template <class Make>
 auto made(const std::string& option, const Make& make) {
     try {
         auto thing = make();
+        host::repairFloatsAfter(option);
         if (!thing) {
             throw base::InputError("the driver has opened no device");
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cfenv>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -14,12 +15,16 @@ using haptic_bridge::ArmReading;
 using sand::force::Vec3;
 
 /// A faulty arm. It presses into the sand, and after half a second has the fault `what`. With "press:FILE" it keeps
-/// pressing. Its destructor writes the greatest force that it was pushed with.
+/// pressing. With "rough" its constructor leaves another rounding behind. Its destructor writes the greatest force that
+/// it was pushed with.
 class BadArm : public haptic_bridge::Arm {
 public:
     explicit BadArm(std::string what) : what_(std::move(what)) {
         if (what_ == "throws") {
             throw std::runtime_error("the device on USB 3 is taken");
+        }
+        if (what_ == "rough") {
+            std::fesetround(FE_UPWARD);  // as a library of fast-math that the driver loads when it opens its device
         }
         physics_.name = "bad";
         physics_.reach = 0.1;

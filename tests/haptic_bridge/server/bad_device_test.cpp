@@ -50,6 +50,18 @@ TEST_F(BadDevice, ThatCannotBeOpenedIsNamed) {
         << server.errors();
 }
 
+TEST_F(BadDevice, WhoseDriverChangesTheRoundingWhenItOpensIsSetBack) {
+    ServerProcess server(folder_, words("rough", "fast"));
+    Client client(server.address(), offerOf(scene_));
+    Wall wall(scene_);
+    ASSERT_TRUE(wall.follow(client, 10)) << client.link().message << "\n" << server.errors();
+    EXPECT_NE(server.errors().find("rough: changed how this process computes: it rounds up; this was set back"),
+              std::string::npos)
+        << server.errors();
+    client.stop();
+    EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
+}
+
 TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeel) {
     for (const bool asked : {false, true}) {
         auto all = words("press:" + folder_.file("pushed"), "realtime");
