@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -17,9 +18,15 @@ namespace haptic_bridge {
 TickFile::TickFile(std::string file, std::function<void(const std::string&)> log)
     : file_(std::move(file)),
       log_(std::move(log)),
-      descriptor_(open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)),
+      // Without O_NONBLOCK, open() would wait until a process reads from a pipe.
+      descriptor_(open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644)),
       rows_(tickTitles()) {
-    if (descriptor_ < 0) {
+    struct stat about {};
+    if (descriptor_ >= 0 && fstat(descriptor_, &about) == 0 && !S_ISREG(about.st_mode)) {
+        close(descriptor_);
+        throw base::InputError(fmt::format("--record {}: is not a regular file; give the name of a new file", file_));
+    }
+    if (descriptor_ < 0 || ftruncate(descriptor_, 0) != 0) {
         throw base::InputError(fmt::format("--record {}: cannot be created ({}); give a file in a folder that exists",
                                            file_, std::strerror(errno)));
     }

@@ -13,7 +13,8 @@ namespace haptic_bridge {
 /// Used by one thread.
 class TickFile {
 public:
-    /// `log` gets one line for the user. Throws base::InputError if the file cannot be created.
+    /// `log` gets one line for the user. Throws base::InputError if the file cannot be created, or if it is
+    /// not a regular file.
     TickFile(std::string file, std::function<void(const std::string&)> log);
     ~TickFile();
     TickFile(const TickFile&) = delete;

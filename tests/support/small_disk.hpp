@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cerrno>
-#include <cstring>
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -10,6 +8,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <fstream>
@@ -52,6 +52,17 @@ int onSmallDisk(const std::filesystem::path& folder, const char* size, const Wor
     int status = 0;
     waitpid(child, &status, 0);
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/// Runs `work` as onSmallDisk() does, and expects that it succeeds. Skips the test if this machine does not allow the
+/// mount. Call it as the last statement of a test.
+template <class Work>
+void testOnSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
+    const int status = onSmallDisk(folder, size, work, flags);
+    if (status == 77) {
+        GTEST_SKIP() << "this machine does not allow a file system of a test's own";
+    }
+    EXPECT_EQ(status, 0);
 }
 
 /// Fills the file system with a file of zeros.

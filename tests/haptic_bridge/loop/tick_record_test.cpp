@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <numbers>
@@ -16,7 +17,9 @@
 #include "scene/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/blocked_child.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/small_disk.hpp"
 
 namespace {
 
@@ -143,7 +146,7 @@ TEST_F(Recorded, IgnoresTheTailOfALinkBefore) {
 
 // A paused session makes no steps, and the hand still feels the sand. The server sends all pieces before the next step.
 TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
-    open("/dev/null");
+    open(folder_.file("ticks.csv"));
     hand_->restart();
     recorder_->begin();
     takeSurface(terrain_, hand_->where(), surface_);
@@ -161,16 +164,29 @@ TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
 }
 
 TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
-    open("/dev/full");
-    sit(20);
-    recorder_.reset();
-    ASSERT_EQ(told_.size(), 1U);
-    EXPECT_EQ(told_[0],
-              "--record /dev/full: cannot be written (No space left on device); the file ends here, and the session "
-              "continues");
-    TickReplay replay(scene_, pieces_);
-    const std::string rows = replayed(replay, steps_.size());
-    EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 20 * 16);
+    const std::string file = folder_.file("ticks.csv");
+    support::testOnSmallDisk(std::filesystem::path(file).parent_path(), "size=16k", [&] {
+        open(file);
+        sit(20);
+        recorder_.reset();
+        ASSERT_EQ(told_.size(), 1U);
+        EXPECT_EQ(told_[0], "--record " + file +
+                                ": cannot be written (No space left on device); the file ends here, and the session "
+                                "continues");
+        const std::string written = folder_.read("ticks.csv");
+        EXPECT_TRUE(written.empty() || written.ends_with('\n')) << "a whole row";
+        TickReplay replay(scene_, pieces_);
+        const std::string rows = replayed(replay, steps_.size());
+        EXPECT_EQ(std::count(rows.begin(), rows.end(), '\n'), 1 + 20 * 16);
+        EXPECT_EQ(rows.find(written), 0U) << "the file is the beginning of the rows";
+    });
+}
+
+TEST_F(Recorded, IntoAPipeOrADeviceIsRefusedWithoutWaiting) {
+    const std::string pipe = folder_.file("pipe");
+    support::makePipe(pipe);
+    EXPECT_TRUE(support::endsByItself([&] { EXPECT_THROW(open(pipe), base::InputError); }));
+    EXPECT_THROW(open("/dev/null"), base::InputError);
 }
 
 TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/ticks.csv"), base::InputError); }
