@@ -59,7 +59,7 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
       epoch_(epoch),
       waitingSinceNs_(now_()),
       positions_(scene),
-      tickBudget_(scene.rules.stepsPerSecond, now_()) {
+      tickBudget_(pace == Pace::fast ? scene.rules.stepsPerSecond : 0, now_()) {
     if (server_) {
         connect();
     } else {

@@ -21,11 +21,12 @@ public:
     // [byte] that may come at once. A recorder keeps less than 1 MiB while the wall stands still.
     static constexpr double kBurst = 20 * kPerSecond;
 
-    /// `stepsPerSecond` is that of the scene.
-    TickBudget(int stepsPerSecond, std::int64_t nowNs)
-        : perStep_(kPerSecond / std::max(stepsPerSecond, 1)), countedNs_(nowNs) {}
+    /// `fastStepsPerSecond` is that of the scene under the fast pace, in which the hand's seconds are those of the
+    /// steps. It is 0 in real time, in which steps give no budget.
+    TickBudget(int fastStepsPerSecond, std::int64_t nowNs)
+        : perStep_(fastStepsPerSecond > 0 ? kPerSecond / fastStepsPerSecond : 0), countedNs_(nowNs) {}
 
-    /// Counts a step of the server. Under the fast pace the hand's seconds are those of the steps.
+    /// Counts a step of the server.
     void step() { left_ = std::min(kBurst, left_ + perStep_); }
     /// Returns whether a piece of `bytes` bytes may be kept, and counts it if so.
     [[nodiscard]] bool take(std::size_t bytes, std::int64_t nowNs) {
