@@ -58,7 +58,7 @@ Account judge(const std::vector<Account>& accounts, const Arbiter& arbiter, Dive
     const Vote vote = countVotes(accounts);
     result.rightHash = vote.hash;
     if (vote.tie || arbiter.overrules) {
-        result.outvoted = !vote.tie;
+        result.outvoted = arbiter.overrules;
         result.journal = arbiter.sand ? arbiter.sand() : nullptr;
         result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
         result.rightHash = result.journal ? result.journal->stateHash() : accounts[kMaster].hash;

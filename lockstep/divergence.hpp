@@ -31,7 +31,7 @@ struct Divergence {
     };
     std::uint64_t rightHash = 0;  // state hash of the right sand
     Judge judge = Judge::majority;
-    bool outvoted = false;                   // the journal has outvoted a majority
+    bool outvoted = false;                   // Arbiter::overrules: the journal has outvoted a majority
     int agreeing = 0;                        // number of ranks with the right hash
     int source = 0;                          // first of these ranks
     std::unique_ptr<sand::Replica> journal;  // the right sand, if no rank has it

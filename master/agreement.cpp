@@ -84,9 +84,6 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
         lines.insert(lines.end(), healed.begin(), healed.end());
     }
     tell(lines, out_ / "divergence.txt");
-    if (!broken && !odd.empty() && divergence.judge == lockstep::Divergence::Judge::majority) {
-        decision_ = JournalEnd{sand.replica().stepNumber(), divergence.rightHash};
-    }
     if (!broken && divergence.journal) {
         // No rank has the right sand, so the master takes it from the journal and sends it to the others.
         sand.replica().decodeState(divergence.journal->encodeState());
@@ -94,6 +91,11 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
         std::erase(remedy.odd, lockstep::kMaster);
     }
     const lockstep::Healing healing = ranks_.heal(sand.replica(), remedy);
+    if (healing != lockstep::Healing::ended && !odd.empty() &&
+        divergence.judge == lockstep::Divergence::Judge::majority) {
+        // Now, because the master's own sand may have been the wrong one, with another step number.
+        decision_ = JournalEnd{sand.replica().stepNumber(), divergence.rightHash};
+    }
     if (std::find(odd.begin(), odd.end(), lockstep::kMaster) != odd.end()) {
         steps.healed(sand.replica());
     }
@@ -111,8 +113,8 @@ std::vector<std::string> Agreement::countHealed(std::uint64_t frame, const locks
     for (const int rank : odd) {
         const auto index = static_cast<std::size_t>(rank);
         const std::uint64_t times = strikes_[index];
-        lines.push_back(fmt::format("frame {}: {} takes the sand of {}; healed {} of at most {} times", frame,
-                                    labels_.names[index], from, times, kMostHealings));
+        lines.push_back(fmt::format("frame {}: {} takes the sand of {}; {} of at most {} healings count against it",
+                                    frame, labels_.names[index], from, times, kMostHealings));
         host::emitEvent("healed", {{"frame", frame},
                                    {"rank", rank},
                                    {"source", divergence.journal ? "journal" : "rank"},

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
@@ -99,8 +100,11 @@ void IncidentFile::write(const Incidents& incidents) {
         whole.stream() << jsonOf(incidents).dump() << '\n';
         whole.keep();
         kept_ = incidents;
-    } catch (const base::InputError&) {
-        // Prints nothing, because the journal prints that the same disk is full.
+        toldFailure_ = false;
+    } catch (const base::InputError& error) {
+        if (!std::exchange(toldFailure_, true)) {  // once, because it tries again four times a second
+            host::printLine("{}; the incidents are counted, and written when that is possible", error.what());
+        }
     }
 }
 

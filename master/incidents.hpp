@@ -30,8 +30,8 @@ public:
 
     /// Returns the counts from before the last restart.
     [[nodiscard]] const Incidents& before() const { return before_; }
-    /// Writes the counts if they have changed, at most four times per second. If the disk is full, tries again in later
-    /// calls, because a full disk is itself an incident.
+    /// Writes the counts if they have changed, at most four times per second. If that fails, prints it once and tries
+    /// again in later calls, because a full disk is itself an incident.
     void keep(const Incidents& sinceTheBeginning, std::int64_t nowNs);
     /// Writes the counts at the end of the session, at once, if they have changed.
     void keepLast(const Incidents& sinceTheBeginning);
@@ -42,6 +42,7 @@ private:
     std::filesystem::path file_;
     Incidents before_, kept_;
     std::int64_t triedNs_ = 0;
+    bool toldFailure_ = false;  // since the last write that succeeded
 };
 
 }  // namespace master

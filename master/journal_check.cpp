@@ -29,6 +29,7 @@ void JournalCheck::begin(std::uint64_t frame, const JournalEnd& sand) {
         return;
     }
     tries_ = 0;
+    doubt_.clear();  // if this sand is confirmed, so are all decisions before
     start();
     tell(frame, "begun", sand.hash,
          fmt::format("frame {}: the journal is replayed to step {}, to confirm the majority", frame, sand.step));
@@ -106,7 +107,10 @@ void JournalCheck::finish(std::uint64_t frame, const JournalEnd& shown, std::chr
         std::this_thread::sleep_for(kPause);
         look(frame, shown);
     }
-    failed_ = failed_ || pending();
+    if (pending()) {
+        doubt_ = wrong_ || taking_ ? "the replay has other sand, which the ranks could not take any more"
+                                   : "the replay of its journal was not done in time";
+    }
     replay_.reset();
     wrong_ = holds_ = taking_ = false;
 }
@@ -127,7 +131,7 @@ void JournalCheck::fail(std::uint64_t frame, const std::string& error) {
         return;
     }
     replay_.reset();
-    failed_ = true;
+    doubt_ = "its journal could not be replayed: " + error;
     tell(frame, "failed", 0,
          fmt::format("frame {}: the journal cannot be replayed, so the majority of frame {} is not confirmed: {}",
                      frame, majority_.frame, error));

@@ -56,8 +56,10 @@ public:
     [[nodiscard]] bool taking() const { return taking_; }
     /// Returns whether the wall must take no steps, so that the replay can catch up with it.
     [[nodiscard]] bool holds() const { return holds_; }
-    /// Returns whether a decision could not be compared, so that the sand may be wrong.
-    [[nodiscard]] bool failed() const { return failed_; }
+    /// Returns whether the latest decision could not be compared, so that the sand may be wrong.
+    [[nodiscard]] bool failed() const { return !doubt_.empty(); }
+    /// Returns why failed() is true, such as "its journal could not be replayed"; an empty text if it is false.
+    [[nodiscard]] const std::string& doubt() const { return doubt_; }
     /// Returns how often the journal has outvoted a majority since this process began.
     [[nodiscard]] std::uint64_t outvoted() const { return outvoted_; }
     /// Returns the step that the replay has reached, for people.
@@ -75,7 +77,8 @@ private:
     std::unique_ptr<BackgroundReplay> replay_;
     bool wrong_ = false;           // the journal disagrees with majority_
     std::uint64_t rightHash_ = 0;  // after the step of majority_
-    bool holds_ = false, taking_ = false, failed_ = false;
+    bool holds_ = false, taking_ = false;
+    std::string doubt_;      // why the latest decision is in doubt; empty if it is not
     std::uint64_t way_ = 0;  // [step], by which the replay was behind when it last set out
     int tries_ = 0;
     std::uint64_t outvoted_ = 0;

@@ -23,7 +23,7 @@ double unixTime() { return std::chrono::duration<double>(std::chrono::system_clo
 
 const double kStarted = unixTime();
 
-std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / "recoveries.jsonl"; }
+std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / kRecoveriesFile; }
 
 /// Returns the text of the file, or an empty text if it cannot be read.
 std::string textOf(const std::filesystem::path& file) {
@@ -72,6 +72,18 @@ std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
         }
     }
     return lines;
+}
+
+std::size_t RecoveryCount::count() {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(fileIn(folder_), error);
+    if (error || bytes == 0) {
+        bytes_ = count_ = 0;
+    } else if (bytes != bytes_) {
+        bytes_ = bytes;
+        count_ = recoveriesOf(folder_).size();
+    }
+    return count_;
 }
 
 void forgetRecoveries(const std::filesystem::path& folder) {

@@ -9,6 +9,8 @@
 
 namespace master {
 
+inline constexpr const char* kRecoveriesFile = "recoveries.jsonl";  // in the folder of a session
+
 /// Reason why a session stopped before it was resumed. The launcher passes it on the command line.
 struct Failure {
     std::string what = "the start";  // for people
@@ -31,6 +33,18 @@ struct Recovery {
 void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder);
 /// Returns the lines of `folder`/recoveries.jsonl. Each line is a JSON object.
 [[nodiscard]] std::vector<std::string> recoveriesOf(const std::filesystem::path& folder);
+/// Number of the lines that recoveriesOf() returns. The launcher also appends to the file while a session runs. So the
+/// file is read again when its length has changed, and not for each `ctl status`.
+class RecoveryCount {
+public:
+    explicit RecoveryCount(const std::filesystem::path& folder) : folder_(folder) {}
+    [[nodiscard]] std::size_t count();
+
+private:
+    std::filesystem::path folder_;
+    std::uintmax_t bytes_ = 0;
+    std::size_t count_ = 0;
+};
 void forgetRecoveries(const std::filesystem::path& folder);
 
 }  // namespace master

@@ -82,7 +82,9 @@ void Session::waitForFrame() {
 }
 
 Session::Steps Session::takeSteps() {
-    if (!desk_.paused() && !record_.hasRoom(desk_.edits().sandBytes(), sand_)) {
+    // Also asked while the session is paused, so that it does not continue with an old answer about the disk.
+    const bool room = record_.hasRoom(desk_.edits().sandBytes(), sand_);
+    if (!room && !desk_.paused()) {
         desk_.tellWhoWaitsForRoom();
     }
     const std::uint64_t left = options_.steps - std::min(options_.steps, sand_.replica().stepNumber());
@@ -185,10 +187,13 @@ void Session::followCheck(std::uint64_t frame) {
     if (check_.taking()) {
         check_.taken(frame, shownSand());
     }
-    check_.look(frame, shownSand());
-    if (const auto decided = agreement_.takeDecision()) {
+    // Begins before it looks, so that a confirmation in this frame does not cover a newer decision.
+    const auto decided = agreement_.takeDecision();
+    if (decided) {
         check_.begin(frame, *decided);
-    } else if (!check_.pending()) {
+    }
+    check_.look(frame, shownSand());
+    if (!decided && !check_.pending()) {
         agreement_.confirmed();
     }
 }
@@ -250,8 +255,10 @@ Summary Session::finish(bool agreed) {
         host::printLine("{}", failure.what());
     }
     if (agreed) {
-        // A third, because the ranks wait for the master meanwhile, and their own limit must not end the job.
-        const double patience = options_.frameTimeout * 1e3 / 3;
+        // A third, because the ranks wait for the master meanwhile, and their own limit must not end the job. A person
+        // who has stopped the session waits, too.
+        constexpr double kMostPatience = 20e3;  // [ms]
+        const double patience = std::min(kMostPatience, options_.frameTimeout * 1e3 / 3);
         check_.finish(frame_, shownSand(), std::chrono::milliseconds(static_cast<std::int64_t>(patience)));
     }
     record_.keepLastIncidents(incidents());
@@ -305,9 +312,9 @@ Summary Session::summary() {
 std::string Session::doubtAbout(const Summary& told) const {
     if (check_.failed()) {
         return fmt::format(
-            "the session ends with sand that its journal does not confirm; sandwall-replay {} computes the right sand, "
-            "and --resume continues with it",
-            record_.journalFile().string());
+            "the session ends with sand that its journal does not confirm, because {}; sandwall-replay {} computes the "
+            "right sand, and --resume continues with it",
+            check_.doubt(), record_.journalFile().string());
     }
     return told.exact()
                ? std::string()

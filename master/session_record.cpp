@@ -48,7 +48,8 @@ SessionRecord::SessionRecord(std::filesystem::path out, RecordOptions options, c
     : out_(std::move(out)),
       options_(std::move(options)),
       labels_(std::move(labels)),
-      incidents_(out_, options_.resumed != nullptr) {
+      incidents_(out_, options_.resumed != nullptr),
+      recoveries_(out_) {
     if (options_.keepsJournal) {
         journal_.emplace(out_, options_.journal, scene, options_.resumed.get(), options_.failure.what, host::buildId());
     }
@@ -67,46 +68,32 @@ bool SessionRecord::hasRoomForEdit(std::int64_t bytes, const MasterSand& sand) {
     return !journal_ || journal_->hasRoomFor(kFrameBytes + bytes, endOf(sand));
 }
 
-void SessionRecord::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
+template <class Write>
+void SessionRecord::onDisk(const Write& write) {
     if (!journal_) {
         return;
     }
     try {
-        journal_->keep(frame, materials);
+        write(*journal_);
     } catch (const DiskFailure& failure) {
         endForDisk(failure);
     }
+}
+
+void SessionRecord::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
+    onDisk([&](JournalKeeper& journal) { journal.keep(frame, materials); });
 }
 
 void SessionRecord::keepTicks(const std::vector<base::Bytes>& pieces) {
-    if (!journal_) {
-        return;
-    }
-    try {
-        journal_->keepTicks(pieces);
-    } catch (const DiskFailure& failure) {
-        endForDisk(failure);
-    }
+    onDisk([&](JournalKeeper& journal) { journal.keepTicks(pieces); });
 }
 
 void SessionRecord::doubt(const JournalDoubt& doubt) {
-    try {
-        if (journal_) {
-            journal_->doubt(doubt);
-        }
-    } catch (const DiskFailure& failure) {
-        endForDisk(failure);
-    }
+    onDisk([&](JournalKeeper& journal) { journal.doubt(doubt); });
 }
 
 void SessionRecord::checked(const JournalChecked& checked) {
-    try {
-        if (journal_) {
-            journal_->checked(checked);
-        }
-    } catch (const DiskFailure& failure) {
-        endForDisk(failure);
-    }
+    onDisk([&](JournalKeeper& journal) { journal.checked(checked); });
 }
 
 void SessionRecord::endForDisk(const DiskFailure& failure) const {
@@ -163,7 +150,7 @@ void SessionRecord::describe(nlohmann::json& status) const {
     status["journal_policy"] = std::string(journalPolicyName(options_.journal.policy));
     status["journal_state"] = std::string(journal_ ? journal_->state() : "off");
     status["checkpoints_failed"] = journal_ ? journal_->checkpointsFailed() : 0;
-    status["restarts"] = recoveriesOf(out_).size();
+    status["restarts"] = recoveries_.count();
 }
 
 Summary::Journal SessionRecord::summary() const {

@@ -79,6 +79,10 @@ public:
     [[nodiscard]] Summary::Journal summary() const;
 
 private:
+    /// Calls `write` with the journal if there is one. If the disk refuses it and the policy is `required`, ends the
+    /// session as keep() describes.
+    template <class Write>
+    void onDisk(const Write& write);
     [[noreturn]] void endForDisk(const DiskFailure& failure) const;
     void tellRecovery(std::uint64_t frame, const MasterSand& sand) const;
 
@@ -86,6 +90,7 @@ private:
     const RecordOptions options_;
     const RankLabels labels_;
     IncidentFile incidents_;
+    mutable RecoveryCount recoveries_;
     std::optional<JournalKeeper> journal_;
     bool full_ = false;
 };

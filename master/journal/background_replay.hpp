@@ -22,7 +22,7 @@ public:
     /// Begins to compute the sand after step `step`, which must be in the journal on disk. Uses no checkpoint after
     /// step `newestCheckpoint`.
     BackgroundReplay(std::filesystem::path journal, std::uint64_t step, std::uint64_t newestCheckpoint);
-    /// Ends the replay within one step.
+    /// Ends the replay within one step or record.
     ~BackgroundReplay();
     BackgroundReplay(const BackgroundReplay&) = delete;
     BackgroundReplay& operator=(const BackgroundReplay&) = delete;

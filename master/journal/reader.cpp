@@ -80,7 +80,7 @@ void JournalReader::open(std::uint32_t part) {
         throw base::InputError(fmt::format("{}: cannot be read; it is not a plain file", file.string()));
     }
     if (size_ == 0) {
-        throw base::InputError(fmt::format("{}: is empty", file.string()));
+        throw base::FormatError("is empty");
     }
     header_ = readHeader(stream_, size_, place_.chain, place_.offset);
     place_.session = header_.session;

@@ -51,6 +51,9 @@ public:
                 break;
             }
             std::visit(*this, *record);
+            if (how_.each) {
+                how_.each(terrain_.stepNumber());
+            }
         }
         if (terrain_.stepNumber() < step_) {
             throw base::InputError(
@@ -161,6 +164,20 @@ void requireScene(const JournalReader& reader, const std::string& file) {
     }
 }
 
+/// Returns the sand of a checkpoint, or nullopt after a line that says why it is left out. Only the checkpoint is left
+/// out if this machine has no memory: without memory for a step, the replay cannot go on from any checkpoint.
+std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const JournalHeader& header,
+                                              const sand::Replica& start) {
+    try {
+        return sandOfCheckpoint(file, header, start);
+    } catch (const base::FormatError& error) {
+        host::printLine("{}: {}; it is left out", file.string(), error.what());
+    } catch (const std::bad_alloc&) {
+        host::printLine("{}: this machine has no memory for it; it is left out", file.string());
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Replica& start) {
@@ -186,17 +203,18 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
     const sand::Replica start(sceneOf(head), how.sweeps);
     const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
+        if (at > std::min(step, how.newestCheckpoint)) {
+            continue;
+        }
         const fs::path file = checkpointFile(journal, at);
+        std::optional<sand::Replica> terrain = usableCheckpoint(file, head.header(), start);
+        if (!terrain) {
+            continue;
+        }
         try {
-            if (at <= std::min(step, how.newestCheckpoint)) {
-                RestoredSand restored{sandOfCheckpoint(file, head.header(), start), at, 0, volume, {}};
-                replayFurther(journal, step, restored, how);
-                return restored;
-            }
-        } catch (const base::FormatError& error) {
-            host::printLine("{}: {}; it is left out", file.string(), error.what());
-        } catch (const std::bad_alloc&) {
-            host::printLine("{}: this machine has no memory for it; it is left out", file.string());
+            RestoredSand restored{std::move(*terrain), at, 0, volume, {}};
+            replayFurther(journal, step, restored, how);
+            return restored;
         } catch (const OtherSand& error) {
             host::printLine("{}: it is left out: {}", file.string(), error.what());
         }

@@ -37,7 +37,8 @@ struct Restoring {
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
     // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
     bool beingWritten = false;
-    std::function<void(std::uint64_t)> each{};  // called after each step with its number; may throw to end the replay
+    // Called after each step and after each record, with the last step; may throw to end the replay.
+    std::function<void(std::uint64_t)> each{};
 };
 
 /// A checkpoint of the last steps before a divergence may hold an error that is not in its hash yet: fluxes show in the

@@ -57,7 +57,7 @@ public:
         result.rightHash = vote.hash;
         result.agreeing = vote.agreeing;
         if (vote.tie || arbiter.overrules) {
-            result.outvoted = !vote.tie;
+            result.outvoted = arbiter.overrules;
             result.journal = arbiter.sand();
             result.judge = result.journal ? Divergence::Judge::journal : Divergence::Judge::master;
             result.rightHash = result.journal ? hashOf(*result.journal) : hashes[0];
@@ -230,12 +230,36 @@ TEST_F(AgreementTest, AMajorityDecidesUntilTheJournalOutvotesIt) {
     EXPECT_EQ(ranks_.meetings, 5) << "two, two and one";
 }
 
-// The master was right. A wrong majority has healed it twice, which must not count against it.
+TEST_F(AgreementTest, TheDecisionOfAMajorityIsAboutTheSandAfterHealing) {
+    sand_.replica().apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
+    sand_.rehash();
+    EXPECT_TRUE(reach());
+    const auto decided = agreement_.takeDecision();
+    ASSERT_TRUE(decided.has_value());
+    EXPECT_EQ(decided->step, 0U) << "the master's own sand was the wrong one";
+    EXPECT_EQ(decided->hash, right_);
+}
+
+TEST_F(AgreementTest, ARankThatIsGivenUpIsNoDecision) {
+    for (int bit = 3; bit < 6; ++bit) {
+        (void)agreement_.takeDecision();
+        spoil(2, bit);
+        EXPECT_EQ(reach(), bit < 5);
+    }
+    EXPECT_FALSE(agreement_.takeDecision().has_value());
+}
+
+// The master was right. A wrong majority has healed it twice, which must not count against it. The second time, no hash
+// has a majority any more when the journal outvotes the earlier one.
 TEST_F(AgreementTest, ARankThatAWrongMajorityHealedIsNotBroken) {
     for (int time = 0; time < 2; ++time) {
         spoil(1, 3);
         spoil(2, 3);
         EXPECT_TRUE(reach());
+        if (time == 1) {
+            spoil(1, 5);
+            spoil(2, 6);
+        }
         agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
         EXPECT_TRUE(reach());
     }

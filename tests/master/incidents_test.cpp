@@ -55,7 +55,12 @@ TEST_F(IncidentFileTest, IsWrittenWhenSomethingWasAddedAndNotForEveryFrame) {
 TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
     master::IncidentFile file(folder_, false);
     std::filesystem::remove_all(folder_);  // acts like a full disk
+    testing::internal::CaptureStderr();
     file.keep({.stands = 1}, kSecond);
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("incidents.json: cannot be written"), std::string::npos);
+    testing::internal::CaptureStderr();
+    file.keep({.stands = 1}, kSecond * 3 / 2);
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "it was told already";
     std::filesystem::create_directories(folder_);
     file.keep({.stands = 1}, 2 * kSecond);
     EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 1U);

@@ -181,6 +181,7 @@ TEST_F(Check, TheEndOfTheSessionWaitsForTheReplay) {
     decide();
     check_.finish(frame_, shown(), std::chrono::minutes(2));
     EXPECT_TRUE(check_.failed()) << "no rank can take the journal's sand any more";
+    EXPECT_EQ(check_.doubt(), "the replay has other sand, which the ranks could not take any more");
     EXPECT_FALSE(check_.pending());
 }
 
@@ -193,7 +194,38 @@ TEST_F(Check, AJournalThatCannotBeReplayedConfirmsNothing) {
     decide();
     EXPECT_EQ(follow(), nullptr);
     EXPECT_TRUE(check_.failed());
+    EXPECT_EQ(check_.doubt().find("its journal could not be replayed: "), 0U) << check_.doubt();
     EXPECT_EQ(check_.outvoted(), 0U);
+}
+
+TEST_F(Check, OfALaterDecisionEndsTheDoubtOfAnEarlierOne) {
+    showFrames(20);
+    const master::JournalEnd sand = shown();
+    const std::uint64_t frame = frame_;
+    keeper_.reset();
+    std::filesystem::create_directory(folder_ / "other");
+    keeper_.emplace(folder_ / "other", master::JournalOptions{}, scene_, nullptr, "", "test");
+    std::filesystem::rename(journal(), folder_ / "away");
+    decide();
+    EXPECT_EQ(follow(), nullptr);
+    ASSERT_TRUE(check_.failed());
+    std::filesystem::rename(folder_ / "away", journal());
+    check_.begin(frame, sand);
+    EXPECT_EQ(follow(), nullptr);
+    EXPECT_FALSE(check_.failed()) << check_.doubt();
+}
+
+// The replay has not been looked at when the majority decides again. Its result is about the newer decision.
+TEST_F(Check, OfANewerDecisionIsNotEndedByTheOlderOne) {
+    showFrames(20);
+    decide();
+    showFrames(5);
+    spoil();
+    decide();
+    EXPECT_EQ(doubts_.size(), 2U);
+    const std::unique_ptr<sand::Replica> right = follow();
+    ASSERT_NE(right, nullptr) << "the newer decision was wrong";
+    EXPECT_TRUE(checked_.empty()) << "no confirmation between the decisions";
 }
 
 TEST_F(Check, WithoutAJournalTheMajorityDecides) {
