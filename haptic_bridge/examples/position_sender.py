@@ -122,15 +122,18 @@ def secret_of(file):
         hard = resource.getrlimit(resource.RLIMIT_CORE)[1]
         least = 0 if hard == 0 else 1  # with 1 the kernel also starts no program that collects cores
         resource.setrlimit(resource.RLIMIT_CORE, (least, least))
-    with open(file, encoding="ascii") as lines:
-        about = os.fstat(lines.fileno())
-        if os.name == "posix" and (about.st_mode & 0o077 or about.st_uid != os.geteuid()):
-            sys.exit(f"{file}: belongs to another user, or other users may read it; make a new secret in a file of your own, "
-                     "and run chmod 600 on it")
-        for words in map(str.split, lines):
-            if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
-                return words[1].encode()
-    sys.exit(f"{file}: holds no line: move SECRET, of at least 16 characters")
+    try:
+        with open(file, encoding="ascii") as lines:
+            about = os.fstat(lines.fileno())
+            if os.name == "posix" and (about.st_mode & 0o077 or about.st_uid != os.geteuid()):
+                sys.exit(f"{file}: belongs to another user, or other users may read it; make a new secret in a file of your own, "
+                         "and run chmod 600 on it")
+            for words in map(str.split, lines):
+                if len(words) == 2 and words[0] == "move" and len(words[1]) >= 16:
+                    return words[1].encode()
+    except (OSError, ValueError) as error:
+        sys.exit(f"{file}: cannot be read ({getattr(error, 'strerror', None) or error}); give --secret-file a file that you can read")
+    sys.exit(f"{file}: holds no line: move SECRET, of at least 16 characters; openssl rand -hex 32 makes one")
 
 
 def main():
@@ -157,4 +160,10 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except BrokenPipeError:  # nobody reads what it prints, for example after: | head -1
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes the rest when it ends
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(130)

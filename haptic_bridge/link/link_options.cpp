@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/link/link_options.hpp"
 
+#include <string_view>
+
 #include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/regular_file.hpp"
@@ -17,6 +19,21 @@ LinkSecurity withSecrets(const LinkOptions& options) {
         throw base::InputError("--tls: needs --secret-file, which detects an attacker in between");
     }
     return security;
+}
+
+/// Throws base::InputError if the certificate cannot be read. The file may also hold the key, and must then be private.
+void requireCertificate(const std::string& file) {
+    constexpr std::size_t kMostBytes = 1 << 20;  // of a chain of certificates, some kilobytes each
+    const host::RegularFile opened(file);
+    requireOpen(opened, file, "--tls-cert");
+    const auto bytes = opened.read(kMostBytes);
+    if (!bytes) {
+        throw base::InputError(file + ": cannot be read; check the disk");
+    }
+    const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+    if (text.find("PRIVATE KEY-----") != std::string_view::npos) {
+        requirePrivate(opened, file, "--tls-cert", "key");
+    }
 }
 
 }  // namespace
@@ -37,7 +54,8 @@ LinkSecurity LinkOptions::forServer() const {
         throw base::InputError("--tls-cert and --tls-key: give both or neither, and --tls with them");
     }
     if (!key.empty()) {
-        requirePrivate(host::RegularFile(key), key, "--tls-key");
+        requirePrivate(host::RegularFile(key), key, "--tls-key", "key");
+        requireCertificate(certificate);
     }
     try {
         security.tls = tls ? security.functions->tlsServer(certificate, key) : nullptr;

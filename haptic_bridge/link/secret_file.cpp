@@ -77,20 +77,26 @@ Secrets parseSecrets(std::string_view text, const std::string& file) {
     return secrets;
 }
 
-void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option) {
+void requireOpen(const host::RegularFile& opened, const std::string& file, const std::string& option) {
     if (!opened.error().empty()) {
-        throw base::InputError(fmt::format("{}: cannot be read ({}); check {}", file, opened.error(), option));
+        throw base::InputError(
+            fmt::format("{}: cannot be read ({}); give {} a file that you can read", file, opened.error(), option));
     }
+}
+
+void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option,
+                    const std::string& thing) {
+    requireOpen(opened, file, option);
     if (const std::string why = opened.whyNotPrivate(); !why.empty()) {
         throw base::InputError(
-            fmt::format("{}: {}; make a new secret in a file of your own, and run chmod 600 on it", file, why));
+            fmt::format("{}: {}; make a new {} in a file of your own, and run chmod 600 on it", file, why, thing));
     }
 }
 
 Secrets readSecrets(const std::string& file) {
     host::forbidCoreDumps();
     const host::RegularFile opened(file);
-    requirePrivate(opened, file, "--secret-file");
+    requirePrivate(opened, file, "--secret-file", "secret");
     if (opened.size() > kMaxSecretFile) {
         throw base::InputError(
             fmt::format("{}: is larger than {} bytes; a secret file has two lines at most", file, kMaxSecretFile));

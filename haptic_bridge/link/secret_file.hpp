@@ -29,9 +29,12 @@ inline constexpr std::size_t kMaxSecretFile = 4096;  // [byte]
 /// `file` and the line; its text never contains a secret.
 [[nodiscard]] Secrets parseSecrets(std::string_view text, const std::string& file);
 
-/// Throws base::InputError if `opened`, the file that `option` names, is not open, belongs to another user, or is one
-/// that other users may read or change.
-void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option);
+/// Throws base::InputError if `opened`, the file that `option` names, is not open.
+void requireOpen(const host::RegularFile& opened, const std::string& file, const std::string& option);
+/// Throws base::InputError as requireOpen() does, and if the file belongs to another user, or is one that other users
+/// may read or change. `thing` is what the file holds, such as "secret".
+void requirePrivate(const host::RegularFile& opened, const std::string& file, const std::string& option,
+                    const std::string& thing);
 
 /// Reads the secrets in `file`. From then on this process makes no core dumps. Throws base::InputError also as
 /// requirePrivate() does.

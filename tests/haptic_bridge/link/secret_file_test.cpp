@@ -89,6 +89,36 @@ TEST_F(LinkSecurityTest, TakesASecretOnlyFromAFileOfItsOwnUser) {
     }
 }
 
+TEST_F(LinkSecurityTest, TakesACertificateOnlyFromAFileThatItMayTrust) {
+    LinkOptions options;
+    options.secretFile = secretFile("ours", "move 0123456789abcdef\n");
+    options.tls = true;
+    options.key = secretFile("key", "-----BEGIN PRIVATE KEY-----\n");
+    const auto complaint = [&](const std::string& file) -> std::string {
+        options.certificate = file;
+        try {
+            (void)options.forServer();
+        } catch (const base::InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    const std::string none = folder_.file("none"), pipe = folder_.file("pipe");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_EQ(complaint(none),
+              none + ": cannot be read (No such file or directory); give --tls-cert a file that you can read");
+    EXPECT_EQ(complaint(pipe),
+              pipe + ": cannot be read (is not a regular file); give --tls-cert a file that you can read");
+    const std::string both = folder_.write("both", "-----BEGIN EC PRIVATE KEY-----\n");
+    chmod(both.c_str(), 0644);
+    EXPECT_EQ(complaint(both), both +
+                                   ": other users may read or change it; make a new key in a file of your own, and run "
+                                   "chmod 600 on it");
+    const std::string certificate = folder_.write("certificate", "-----BEGIN CERTIFICATE-----\n");
+    chmod(certificate.c_str(), 0644);
+    EXPECT_EQ(complaint(certificate).find("--tls: "), 0U) << "everybody may read it, but it is no certificate";
+}
+
 /// Runs `work` in a child process that may dump core into `folder`, and crashes it. Returns whether it dumped core.
 template <class Work>
 bool dumpsCore(const std::string& folder, const Work& work) {
