@@ -30,14 +30,10 @@ int rankOfJob() {
     return rank == nullptr ? 0 : std::atoi(rank);
 }
 
-Watchdog::Role roleOf(int rank) {
-    return rank == kMaster ? Watchdog::Role::master : rank == 1 ? Watchdog::Role::firstRank : Watchdog::Role::otherRank;
-}
-
 }  // namespace
 
 Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
-    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, 0, roleOf(rank_),
+    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, 0, Watchdog::roleOf(rank_),
                                            [this](const std::string& line) {
                                                const std::lock_guard lock(mutex_);
                                                if (lastWords_) {
@@ -50,9 +46,8 @@ Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
     MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided);
     int rank = 0;
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (rank != rank_) {  // usually equal; the watchdog's thread reads it
-        rank_ = rank;
-    }
+    rank_ = rank;
+    watchdog_->setRole(Watchdog::roleOf(rank));
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
     missing_ = std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(size_));
     missingSize_ = size_;
@@ -156,7 +151,7 @@ Wait Cluster::describeWait() const {
         }
     }
     wait.names = wait.names.empty() ? "the other ranks" : wait.names;
-    wait.text = fmt::format("{} of rank {} waits for {}", phase_.load(), rank_, wait.names);
+    wait.text = fmt::format("{} of rank {} waits for {}", phase_.load(), wait.by, wait.names);
     if (rank_ == kMaster) {
         wait.text = fmt::format("{} waits for {}", phase_.load(), wait.names);
     }

@@ -85,7 +85,7 @@ private:
     [[nodiscard]] Wait describeWait() const;
     [[nodiscard]] std::vector<int> missing() const;
 
-    int rank_ = 0;
+    std::atomic<int> rank_{0};  // also read by the watchdog's thread
     int size_ = 1;
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread
     std::atomic<int> missingSize_{0};               // number of entries of missing_

@@ -24,12 +24,6 @@ struct Ending {
     std::int64_t quiet = 0;  // [ns], shortest time until the next frame begins
 };
 
-Watchdog::Role roleOf(const Cluster& cluster) {
-    return cluster.isMaster()    ? Watchdog::Role::master
-           : cluster.rank() == 1 ? Watchdog::Role::firstRank
-                                 : Watchdog::Role::otherRank;
-}
-
 enum PassTag : int { kLengthTag = 20, kPieceTag };
 constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
 
@@ -48,12 +42,13 @@ FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> name
         // MPI would end the job at an arrival that is too long, before the master has printed which rank sent it.
         MPI_Comm_set_errhandler(cluster.arrivals(), MPI_ERRORS_RETURN);
     }
-    watchdog_ = std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, roleOf(cluster),
-                                           [this, lastWords = std::move(lastWords)](const std::string& line) {
-                                               if (lastWords) {
-                                                   lastWords(firstMissing(), line);
-                                               }
-                                           });
+    watchdog_ =
+        std::make_unique<Watchdog>([this] { return describeWait(); }, limitSeconds, Watchdog::roleOf(cluster.rank()),
+                                   [this, lastWords = std::move(lastWords)](const std::string& line) {
+                                       if (lastWords) {
+                                           lastWords(firstMissing(), line);
+                                       }
+                                   });
     cluster.startUpIsOver();
     watchdog_->arm();  // until the first frame
     wakePunctually();

@@ -60,6 +60,10 @@ Watchdog::~Watchdog() {
     thread_.join();
 }
 
+Watchdog::Role Watchdog::roleOf(int rank) {
+    return rank == kMaster ? Role::master : rank == 1 ? Role::firstRank : Role::otherRank;
+}
+
 void Watchdog::arm() { armedAt_ = host::monotonicNs(); }
 void Watchdog::disarm() { armedAt_ = 0; }
 
@@ -69,10 +73,6 @@ void Watchdog::look() {
     std::int64_t watched = 0;   // begin of the wait that `waited` measures
     std::int64_t lastLook = host::monotonicNs();
     double waited = 0;  // [s]
-    const double later = role_ == Role::master ? 0 : kRankAfterMaster;
-    // The rank that prints must end first, because the first process that ends takes all others with it.
-    const double patience = role_ == Role::otherRank ? kOthersAfterRank : 0;
-    const bool speaks = role_ != Role::otherRank;
     const double startUp = startUpLimit();
     while (!stop_.wait_for(lock, std::chrono::milliseconds(100), [this] { return stopping_; })) {
         const std::int64_t since = armedAt_;
@@ -84,11 +84,21 @@ void Watchdog::look() {
         // Time in which this process itself was stopped does not count as a wait for the others.
         waited = (since == watched ? waited : 0) + std::min(sinceLook, kLongestLook);
         watched = since;
+        const Role role = role_;
+        const bool speaks = role != Role::otherRank;
+        // The rank that prints must end first, because the first process that ends takes all others with it.
+        const double patience = role == Role::otherRank ? kOthersAfterRank : 0;
+        const double later = role == Role::master ? 0 : kRankAfterMaster;
         const double seconds = waited - later;
         const double limit = patient_ ? kPatientLimit : startingUp_ ? std::max(limit_.load(), startUp) : limit_.load();
-        if (seconds > limit + patience) {
+        const bool ends = seconds > limit + patience;
+        const bool longEnough = seconds > (startingUp_ ? kStartUpFirstWord : kFirstWord);
+        const Wait wait = speaks && (ends || (longEnough && spokenOf != since)) ? describe_() : Wait();
+        if (armedAt_ != since) {
+            continue;  // the wait has ended meanwhile
+        }
+        if (ends) {
             if (speaks) {
-                const Wait wait = describe_();
                 const std::string line = fmt::format("{} for {:.1f} s; the limit is {:.0f} s, ending the job",
                                                      wait.text, seconds + later, limit);
                 host::printLine("{}", line);
@@ -100,9 +110,8 @@ void Watchdog::look() {
             }
             std::_Exit(1);
         }
-        if (speaks && seconds > (startingUp_ ? kStartUpFirstWord : kFirstWord) && spokenOf != since) {
+        if (speaks && longEnough && spokenOf != since) {
             spokenOf = since;
-            const Wait wait = describe_();
             host::printLine("{} for {:.1f} s", wait.text, seconds + later);
             emitWait(wait, seconds + later, limit, false);
         }

@@ -23,16 +23,19 @@ struct Wait {
 
 /// Thread that reports every long wait, and ends the job if a wait reaches its limit.
 ///
-/// The thread watches while the main thread is inside a call that may block. After 1 s it prints which ranks are
-/// missing. After the limit it prints them again and ends this process, so that mpirun ends the job. Until
-/// startUpIsOver() both times are longer, because shaders compile and sand settles before the first frame. The limit is
-/// then at least 120 s, or the seconds in the environment variable SANDWALL_START_TIMEOUT.
+/// The thread watches while the main thread is inside a call that may block. All functions may be called by any thread.
+/// After 1 s it prints which ranks are missing. After the limit it prints them again and ends this process, so that
+/// mpirun ends the job. Until startUpIsOver() both times are longer, because shaders compile and sand settles before
+/// the first frame. The limit is then at least 120 s, or the seconds in the environment variable
+/// SANDWALL_START_TIMEOUT.
 ///
 /// The master is the first to print and the first to end the job, because only the master knows which ranks are
 /// missing. Other ranks wait some seconds longer, in case the master itself has stopped.
 class Watchdog {
 public:
     enum class Role { master, firstRank, otherRank };
+    /// Returns the role of this rank.
+    [[nodiscard]] static Role roleOf(int rank);
 
     /// `describe` describes the present wait. It runs on the watchdog's thread and must only read atomics.
     /// `limitSeconds` is the limit of a wait [s]. Only the master and the first render rank print.
@@ -45,9 +48,12 @@ public:
     Watchdog(const Watchdog&) = delete;
     Watchdog& operator=(const Watchdog&) = delete;
 
-    /// Begins to measure a wait, which lasts until disarm(). Another arm() begins a new wait.
+    /// Begins to measure a wait, which lasts until disarm(). Another arm() begins a new wait. A wait that ends while
+    /// the watchdog describes it is neither printed nor ends the job.
     void arm();
     void disarm();
+    /// Changes the role. A process learns its rank for certain only from MPI_Init.
+    void setRole(Role role) { role_ = role; }
     void startUpIsOver() { startingUp_ = false; }
     /// Sets the limit of a wait [s].
     void setLimit(double seconds) { limit_ = seconds; }
@@ -60,7 +66,7 @@ private:
 
     std::function<Wait()> describe_;
     std::atomic<double> limit_;
-    Role role_;
+    std::atomic<Role> role_;
     std::function<void(const std::string&)> lastWords_;
     std::atomic<bool> startingUp_{true}, patient_{false};
     std::atomic<std::int64_t> armedAt_{0};  // [ns]; 0 while no wait is measured

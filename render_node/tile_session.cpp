@@ -73,6 +73,7 @@ public:
         for (bool more = true; more;) {
             std::size_t bytes = 0;
             lockstep::FrameMessage frame = barrier.begin({}, bytes);
+            barrier.watchdog().setLimit(message_.frameTimeout);  // longer after pictures
             applyFaults(frame);
             applySteps(frame);
             changeStereo(frame.view);
@@ -104,7 +105,7 @@ public:
                 (void)lockstep::gatherReports(barrier, report());
             }
             if (frame.capture) {
-                sendPictures(barrier);
+                sendPictures(barrier, frame.stop);
             }
         }
     }
@@ -167,20 +168,21 @@ private:
         return keys.empty() ? '\0' : keys.front();
     }
 
-    /// The master takes the pictures in order of rank, and may take the limit of a frame for each. So a later rank
-    /// waits longer, and after the last frame every rank waits until the master has written all pictures.
-    void sendPictures(lockstep::FrameBarrier& barrier) const {
+    /// The master may take the limit of a frame for each picture of each rank. So a rank may wait longer until all have
+    /// been received: for the master to take its pictures, and then for the next frame or for the end of the session.
+    void sendPictures(lockstep::FrameBarrier& barrier, bool last) const {
         const auto pictures = static_cast<double>(painter_->pictures().size());
-        lockstep::Watchdog& watchdog = barrier.watchdog();
-        watchdog.setLimit(message_.frameTimeout * pictures * cluster_.rank());
-        barrier.setEndLimit(message_.frameTimeout * (1 + pictures * cluster_.renderRanks()));
-        const lockstep::Watched watched(watchdog);
+        const double limit = message_.frameTimeout * (1 + pictures * cluster_.renderRanks());  // [s]
+        barrier.watchdog().setLimit(limit);
+        if (last) {
+            barrier.setEndLimit(limit);
+        }
+        const lockstep::Watched watched(barrier.watchdog());
         int eye = 0;
         for (const EyeTarget* target : painter_->pictures()) {
             lockstep::sendPicture(cluster_,
                                   {cluster_.rank(), eye++, target->width(), target->height(), target->read()});
         }
-        watchdog.setLimit(message_.frameTimeout);
     }
 
     [[nodiscard]] lockstep::RankReport report() const {
