@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <exception>
 #include <filesystem>
+
+#include "tests/support/in_child.hpp"
 
 namespace support {
 
@@ -18,19 +18,10 @@ inline void makePipe(const std::filesystem::path& path) { ASSERT_EQ(mkfifo(path.
 /// of these tests computes. Returns whether `work` ended by itself and without a failure.
 template <class Work>
 bool endsByItself(const Work& work) {
-    const pid_t child = fork();
-    if (child == 0) {
-        alarm(20);
-        try {
-            work();
-        } catch (const std::exception& error) {
-            ADD_FAILURE() << error.what();
-        }
-        _exit(testing::Test::HasFailure() ? 1 : 0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    return statusOfChild([&] {
+               alarm(20);
+               work();
+           }) == 0;
 }
 
 }  // namespace support

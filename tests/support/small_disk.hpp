@@ -5,15 +5,15 @@
 #include <gtest/gtest.h>
 #include <sched.h>
 #include <sys/mount.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <string>
+
+#include "tests/support/in_child.hpp"
 
 namespace support {
 
@@ -28,30 +28,23 @@ inline bool mapIds(uid_t user, gid_t group) {
            say("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
 }
 
+inline constexpr int kNoMount = 77;
+
 /// Runs `work` in a child process, in whose mount namespace a file system of `size` is mounted at `folder`. Returns the
-/// child's exit status, or 77 if this machine does not allow the mount.
+/// child's exit status, or kNoMount if this machine does not allow the mount.
 template <class Work>
 int onSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
-    const pid_t child = fork();
-    if (child == 0) {
+    return statusOfChild([&] {
         const uid_t user = getuid();
         const gid_t group = getgid();
         const std::string options = std::string("mode=700,") + size;  // a session refuses a folder of all users
         if (unshare(user == 0 ? CLONE_NEWNS : CLONE_NEWNS | CLONE_NEWUSER) != 0 ||
             (user != 0 && !mapIds(user, group)) || mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
             mount("none", folder.c_str(), "tmpfs", flags, options.c_str()) != 0) {
-            _exit(77);
+            _exit(kNoMount);
         }
-        try {
-            work();
-        } catch (const std::exception& error) {
-            ADD_FAILURE() << error.what();
-        }
-        _exit(testing::Test::HasFailure() ? 1 : 0);
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        work();
+    });
 }
 
 /// Runs `work` as onSmallDisk() does, and expects that it succeeds. Skips the test if this machine does not allow the
@@ -59,7 +52,7 @@ int onSmallDisk(const std::filesystem::path& folder, const char* size, const Wor
 template <class Work>
 void testOnSmallDisk(const std::filesystem::path& folder, const char* size, const Work& work, unsigned long flags = 0) {
     const int status = onSmallDisk(folder, size, work, flags);
-    if (status == 77) {
+    if (status == kNoMount) {
         GTEST_SKIP() << "this machine does not allow a file system of a test's own";
     }
     EXPECT_EQ(status, 0);

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/journal/keeper.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -18,91 +15,13 @@
 #include "base/input_error.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
-#include "scene/scene.hpp"
+#include "tests/master/journal/keeper_fixture.hpp"
 #include "tests/support/blocked_child.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/small_disk.hpp"
 
 namespace {
 
-/// A session of one process, without a wall.
-class Keeper : public test::FolderTest {
-protected:
-    void begin(const master::JournalOptions& options, const master::ResumedSession* resumed = nullptr) {
-        keeper_.emplace(folder_, options, scene_, resumed, "a test", "test");
-    }
-    /// Shows a frame with a step. Returns false if the keeper does not allow a step.
-    bool showFrame(const sand::Edit& edit = {}) {
-        if (!keeper_->mayTake(1 << 16, {terrain_.stepNumber(), terrain_.stateHash()})) {
-            return false;
-        }
-        sand::Step step = samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_);
-        step.edit = edit;
-        keeper_->keep({++frame_, terrain_.stateHash(), {step}}, {});
-        terrain_.apply(step);
-        keeper_->shown(terrain_, frame_, 1, terrain_.stateHash());
-        return true;
-    }
-    [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
-    void expectWhole(std::uint64_t steps) {
-        master::RestoredSand restored = master::restoreSand(journal(), steps);
-        EXPECT_EQ(restored.terrain.stateHash(), terrain_.stateHash());
-        const master::Journal journal = master::readJournal(this->journal());
-        EXPECT_EQ(journal.frames.size(), steps);
-        EXPECT_EQ(journal.tornBytes, 0);
-    }
-
-    scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica terrain_{scene_};
-    std::mt19937 random_{61};
-    std::uint64_t frame_ = 0;
-    std::optional<master::JournalKeeper> keeper_;
-};
-
-/// Scope in which no file of this process may be longer than a limit.
-class FileLimit {
-public:
-    explicit FileLimit(std::uintmax_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &before_);
-        rlimit small = before_;
-        small.rlim_cur = bytes;
-        setrlimit(RLIMIT_FSIZE, &small);
-    }
-    ~FileLimit() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-    FileLimit(const FileLimit&) = delete;
-    FileLimit& operator=(const FileLimit&) = delete;
-
-private:
-    rlimit before_{};
-    void (*handler_)(int);
-};
-
-TEST_F(Keeper, ARequiredJournalThatCannotBeWrittenEndsTheSession) {
-    begin({});
-    ASSERT_TRUE(showFrame());
-    const FileLimit limit(std::filesystem::file_size(journal()) + 9);
-    EXPECT_THROW(showFrame(), master::DiskFailure);
-    EXPECT_EQ(terrain_.stepNumber(), 1U) << "a step that is not on disk is not applied";
-    expectWhole(1);
-}
-
-TEST_F(Keeper, WithBestEffortTheSessionGoesOnWithoutAJournal) {
-    begin({.policy = master::JournalPolicy::bestEffort});
-    ASSERT_TRUE(showFrame());
-    {
-        const FileLimit limit(std::filesystem::file_size(journal()) + 9);
-        EXPECT_TRUE(showFrame());
-    }
-    EXPECT_TRUE(showFrame());
-    EXPECT_EQ(terrain_.stepNumber(), 3U);
-    EXPECT_EQ(keeper_->state(), "failed");
-    EXPECT_EQ(master::readJournal(journal()).frames.size(), 1U);
-}
+class Keeper : public test::KeeperTest {};
 
 TEST_F(Keeper, SwitchedOffItWritesNothing) {
     begin({.policy = master::JournalPolicy::off, .checkpointSeconds = 1e-9});
@@ -305,86 +224,6 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     expectWhole(steps + 1);
 }
 
-TEST_F(Keeper, AFullDiskStopsTheSandUntilThereIsRoom) {
-    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
-        begin({.checkpointSeconds = 0});
-        ASSERT_TRUE(showFrame());
-        // The session first uses the reserved room, and no accepted step is refused.
-        support::fill(folder_ / "filler");
-        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
-        int frames = 1;
-        while (showFrame(large)) {
-            ASSERT_LT(++frames, 1000);
-        }
-        EXPECT_GT(frames, 2);
-        EXPECT_EQ(keeper_->state(), "no_room");
-        EXPECT_FALSE(showFrame()) << "the sand is stopped";
-        expectWhole(terrain_.stepNumber());
-        const std::uint64_t stood = terrain_.stepNumber();
-        std::filesystem::remove(folder_ / "filler");
-        while (!showFrame()) {  // the keeper tries the disk about once per second
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        EXPECT_EQ(keeper_->state(), "written");
-        EXPECT_EQ(keeper_->stands(), 1U);
-        EXPECT_EQ(terrain_.stepNumber(), stood + 1);
-        expectWhole(terrain_.stepNumber());
-        keeper_.reset();
-    });
-    if (status == 77) {
-        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
-    }
-    EXPECT_EQ(status, 0);
-}
-
-// Room for a few steps must not start the sand again, because it would soon stop again.
-TEST_F(Keeper, ALittleRoomDoesNotEndTheStop) {
-    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
-        begin({.checkpointSeconds = 0});
-        support::fill(folder_ / "filler");
-        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
-        int frames = 1;
-        while (showFrame(large)) {
-            ASSERT_LT(++frames, 1000);
-        }
-        const auto place = [this] { return master::JournalEnd{terrain_.stepNumber(), terrain_.stateHash()}; };
-        EXPECT_FALSE(keeper_->hasRoomFor(0, place())) << "a command right after the stop";
-        const auto filled = std::filesystem::file_size(folder_ / "filler");
-        std::filesystem::resize_file(folder_ / "filler", filled - (256 << 10));  // more than the steps of a frame need
-        for (int turn = 0; turn < 3; ++turn) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the keeper tries the disk once per second
-            EXPECT_FALSE(keeper_->mayTake(1 << 16, place()));
-            EXPECT_FALSE(keeper_->hasRoomFor(1 << 10, place()));
-        }
-        std::filesystem::resize_file(folder_ / "filler", filled - (2 << 20));
-        while (!showFrame()) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        }
-        EXPECT_EQ(keeper_->stands(), 1U);
-        EXPECT_TRUE(keeper_->hasRoomFor(1 << 10, place()));
-        keeper_.reset();
-    });
-    if (status == 77) {
-        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
-    }
-    EXPECT_EQ(status, 0);
-}
-
-TEST_F(Keeper, SandThatDoesNotFitStopsNothing) {
-    const int status = support::onSmallDisk(folder_, "size=4m", [this] {
-        begin({.checkpointSeconds = 0});
-        EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, terrain_.stateHash()}));
-        EXPECT_EQ(keeper_->state(), "written");
-        EXPECT_TRUE(showFrame());
-        EXPECT_EQ(keeper_->stands(), 0U);
-        keeper_.reset();
-    });
-    if (status == 77) {
-        GTEST_SKIP() << "a small disk cannot be mounted on this machine";
-    }
-    EXPECT_EQ(status, 0);
-}
-
 TEST_F(Keeper, AnEmptyJournalIsCalledEmpty) {
     std::ofstream(journal()).flush();
     try {
@@ -393,27 +232,6 @@ TEST_F(Keeper, AnEmptyJournalIsCalledEmpty) {
     } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()), journal().string() + ": is empty");
     }
-}
-
-TEST_F(Keeper, AReadOnlyFolderIsNamed) {
-    const int status = support::onSmallDisk(
-        folder_, "size=4m",
-        [this] {
-            try {
-                begin({});
-                ADD_FAILURE() << "not refused";
-            } catch (const base::InputError& error) {
-                EXPECT_NE(
-                    std::string(error.what()).find("cannot be made (Read-only file system); choose another --out"),
-                    std::string::npos)
-                    << error.what();
-            }
-        },
-        MS_RDONLY);
-    if (status == 77) {
-        GTEST_SKIP() << "a disk cannot be mounted on this machine";
-    }
-    EXPECT_EQ(status, 0);
 }
 
 // The parent kills the child at any place. The child sends each step through a pipe when append() has returned. These

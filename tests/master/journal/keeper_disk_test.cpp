@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// A disk that is full, read-only or refuses a write.
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "base/input_error.hpp"
+#include "tests/master/journal/keeper_fixture.hpp"
+#include "tests/support/small_disk.hpp"
+
+namespace {
+
+class KeeperDisk : public test::KeeperTest {};
+
+/// Scope in which no file of this process may be longer than a limit.
+class FileLimit {
+public:
+    explicit FileLimit(std::uintmax_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+        getrlimit(RLIMIT_FSIZE, &before_);
+        rlimit small = before_;
+        small.rlim_cur = bytes;
+        setrlimit(RLIMIT_FSIZE, &small);
+    }
+    ~FileLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileLimit(const FileLimit&) = delete;
+    FileLimit& operator=(const FileLimit&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int);
+};
+
+TEST_F(KeeperDisk, ARequiredJournalThatCannotBeWrittenEndsTheSession) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    const FileLimit limit(std::filesystem::file_size(journal()) + 9);
+    EXPECT_THROW(showFrame(), master::DiskFailure);
+    EXPECT_EQ(terrain_.stepNumber(), 1U) << "a step that is not on disk is not applied";
+    expectWhole(1);
+}
+
+TEST_F(KeeperDisk, WithBestEffortTheSessionGoesOnWithoutAJournal) {
+    begin({.policy = master::JournalPolicy::bestEffort});
+    ASSERT_TRUE(showFrame());
+    {
+        const FileLimit limit(std::filesystem::file_size(journal()) + 9);
+        EXPECT_TRUE(showFrame());
+    }
+    EXPECT_TRUE(showFrame());
+    EXPECT_EQ(terrain_.stepNumber(), 3U);
+    EXPECT_EQ(keeper_->state(), "failed");
+    EXPECT_EQ(master::readJournal(journal()).frames.size(), 1U);
+}
+
+TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
+    support::testOnSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        ASSERT_TRUE(showFrame());
+        // The session first uses the reserved room, and no accepted step is refused.
+        support::fill(folder_ / "filler");
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
+        int frames = 1;
+        while (showFrame(large)) {
+            ASSERT_LT(++frames, 1000);
+        }
+        EXPECT_GT(frames, 2);
+        EXPECT_EQ(keeper_->state(), "no_room");
+        EXPECT_FALSE(showFrame()) << "the sand is stopped";
+        expectWhole(terrain_.stepNumber());
+        const std::uint64_t stood = terrain_.stepNumber();
+        std::filesystem::remove(folder_ / "filler");
+        while (!showFrame()) {  // the keeper tries the disk about once per second
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        EXPECT_EQ(keeper_->state(), "written");
+        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_EQ(terrain_.stepNumber(), stood + 1);
+        expectWhole(terrain_.stepNumber());
+        keeper_.reset();
+    });
+}
+
+// Room for a few steps must not start the sand again, because it would soon stop again.
+TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
+    support::testOnSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        support::fill(folder_ / "filler");
+        const sand::Edit large = sand::Edit::loaded(base::Bytes(60'000, 7));  // not sand, so the load is ignored
+        int frames = 1;
+        while (showFrame(large)) {
+            ASSERT_LT(++frames, 1000);
+        }
+        const auto place = [this] { return master::JournalEnd{terrain_.stepNumber(), terrain_.stateHash()}; };
+        EXPECT_FALSE(keeper_->hasRoomFor(0, place())) << "a command right after the stop";
+        const auto filled = std::filesystem::file_size(folder_ / "filler");
+        std::filesystem::resize_file(folder_ / "filler", filled - (256 << 10));  // more than the steps of a frame need
+        for (int turn = 0; turn < 3; ++turn) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // the keeper tries the disk once per second
+            EXPECT_FALSE(keeper_->mayTake(1 << 16, place()));
+            EXPECT_FALSE(keeper_->hasRoomFor(1 << 10, place()));
+        }
+        std::filesystem::resize_file(folder_ / "filler", filled - (2 << 20));
+        while (!showFrame()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_TRUE(keeper_->hasRoomFor(1 << 10, place()));
+        keeper_.reset();
+    });
+}
+
+TEST_F(KeeperDisk, SandThatDoesNotFitStopsNothing) {
+    support::testOnSmallDisk(folder_, "size=4m", [this] {
+        begin({.checkpointSeconds = 0});
+        EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, terrain_.stateHash()}));
+        EXPECT_EQ(keeper_->state(), "written");
+        EXPECT_TRUE(showFrame());
+        EXPECT_EQ(keeper_->stands(), 0U);
+        keeper_.reset();
+    });
+}
+
+TEST_F(KeeperDisk, AReadOnlyFolderIsNamed) {
+    support::testOnSmallDisk(
+        folder_, "size=4m",
+        [this] {
+            try {
+                begin({});
+                ADD_FAILURE() << "not refused";
+            } catch (const base::InputError& error) {
+                EXPECT_NE(
+                    std::string(error.what()).find("cannot be made (Read-only file system); choose another --out"),
+                    std::string::npos)
+                    << error.what();
+            }
+        },
+        MS_RDONLY);
+}
+
+}  // namespace
