@@ -94,7 +94,7 @@ class WallFiles(unittest.TestCase):
         watched = self.folder / "w"  # a short path, because texts of a wall file have at most so many characters
         watched.mkdir()
         self.program = watched / "p"
-        self.program.write_text(f"#!/bin/sh\ntouch {self.folder}/ran\n")
+        self.program.write_text(f"#!/bin/sh\ntouch {self.folder}/ran\nexit 255\n")
         self.program.chmod(0o755)
         (watched / "p.so").write_bytes(self.program.read_bytes())
         agent = self.folder / "agent"
@@ -107,13 +107,13 @@ class WallFiles(unittest.TestCase):
 
     def wall(self, key, form):
         """Returns a wall file with the path of the program, in this form, as one of its texts."""
-        text = '"' + form % self.program + '"'
+        text = '"' + (form % self.program if "%s" in form else form) + '"'
         path = self.folder / "wall.toml"
         path.write_text(WALL.format(**{**PLAIN, key: KEYS[key] % text}))
         return path
 
-    def status(self, *command, stdin=subprocess.DEVNULL):
-        return subprocess.run([str(word) for word in command], env=self.environment, stdin=stdin, stdout=subprocess.DEVNULL,
+    def status(self, *command, stdin=subprocess.DEVNULL, **environment):
+        return subprocess.run([str(word) for word in command], env={**self.environment, **environment}, stdin=stdin, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL, timeout=120).returncode
 
     def nothing_happened(self, what):
@@ -131,6 +131,24 @@ class WallFiles(unittest.TestCase):
         self.assertTrue((self.folder / "ran").exists())
         self.assertEqual(self.watch.opened(), set())
 
+    def run_on_another_host(self, form, **environment):
+        """Runs the launcher on a wall whose host is the path of the program, in this form."""
+        self.status(ROOT / "scripts" / "sandwall", "run", "--wall", self.wall("host", form), "--scene", ROOT / "scenes" / "dunes.toml",
+                    "--out", self.folder / "out", "--frames", "1", **environment)
+
+    def probe(self, key, form, gl, **environment):
+        with open(self.wall(key, form), "rb") as wall:
+            self.status(BIN / "sandwall-render-node", "--probe", "1", "--gl", gl, stdin=wall, **environment)
+
+    def test_the_watch_sees_a_program_that_the_launcher_starts(self):
+        self.run_on_another_host("elsewhere", OMPI_MCA_plm_rsh_agent=str(self.program))
+        self.assertEqual(self.watch.opened(), {"p"}, "the launcher asks the hosts of a wall through this agent")
+        self.assertTrue((self.folder / "ran").exists())
+
+    def test_the_watch_sees_a_file_that_a_render_rank_opens(self):
+        self.probe("display", "%s", "osmesa", LD_PRELOAD=f"{self.program}.so")
+        self.assertEqual(self.watch.opened(), {"p.so"}, "the loader of the rank opens it")
+
     def test_no_text_is_opened_or_started_by_the_check(self):
         for key in KEYS:
             for form in FORMS:
@@ -139,16 +157,14 @@ class WallFiles(unittest.TestCase):
 
     def test_no_text_is_opened_or_started_by_the_launcher(self):
         for form in FORMS:
-            self.status(ROOT / "scripts" / "sandwall", "run", "--wall", self.wall("host", form), "--scene", ROOT / "scenes" / "dunes.toml",
-                        "--out", self.folder / "out", "--frames", "1")
+            self.run_on_another_host(form)
             self.nothing_happened(form)
 
     def test_no_text_is_opened_or_started_by_a_render_rank(self):
         for key in ("display", "monitors"):
             for form in FORMS:
                 for gl in ("glfw", "egl", "osmesa"):
-                    with open(self.wall(key, form), "rb") as wall:
-                        self.status(BIN / "sandwall-render-node", "--probe", "1", "--gl", gl, stdin=wall)
+                    self.probe(key, form, gl)
                     self.nothing_happened((key, form, gl))
 
     def test_a_source_of_tracking_opens_the_file_of_a_trace_alone(self):
