@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "tests/haptic_bridge/client/sand_server.hpp"
@@ -184,6 +185,26 @@ TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAske
     EXPECT_EQ(server.guests(), 1);
     pass(0.04);
     EXPECT_TRUE(showUntil(live, [&] { return server.guests() == 2; }));
+}
+
+// The pauses before the next four links are 0.1, 0.2, 0.4 and 0.8 s. Without longer pauses four links take 0.4 s. A
+// slow machine only makes them longer.
+TEST_F(LiveStepsTest, AServerThatFailsRightAfterEachLinkIsAskedMoreRarelyEachTime) {
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (guest.await<haptic_bridge::Hello>()) {
+            guest.send(haptic_bridge::Welcome{
+                {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
+            if (guest.await<haptic_bridge::Start>()) {
+                guest.send(haptic_bridge::Ready{});
+            }
+        }
+    });
+    const auto began = std::chrono::steady_clock::now();
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return server.guests() >= 5; }));
+    EXPECT_GE(std::chrono::steady_clock::now() - began, 1500ms);
+    EXPECT_GE(live.counters().links, 3U) << "the server was linked each time";
+    EXPECT_TRUE(eventually([&] { return !live.linked() && numbersAlone(live); })) << "the wall continues meanwhile";
 }
 
 TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
