@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuzzes a checkpoint, either as it is on disk or with a correct checksum. The correct checksum lets the fuzzer reach
 // the state behind it, which a replica would load.
-#include <xxhash.h>
-
 #include "master/journal/checkpoint.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
+#include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -14,13 +13,7 @@ SANDWALL_FUZZER(checkpoint) {
         return 0;
     }
     static const scene::Scene kScene = samples::flatScene(24, 16);
-    const fuzz::Input input = fuzz::Input(data, size).subspan(1);
-    base::ByteWriter bytes;
-    bytes.putBytes(input);
-    if ((data[0] & 1U) != 0) {
-        bytes.put(XXH3_64bits(input.data(), input.size()));
-    }
-    const fuzz::MemoryFile file(bytes.bytes());
+    const fuzz::MemoryFile file(fuzz::checksummed({data, size}));
     fuzz::takeOrRefuse([&] {
         const master::Checkpoint checkpoint = master::readCheckpoint(file.path());
         sand::Replica terrain(kScene);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuzzes a file of saved sand, either as it is on disk or with a correct checksum. The correct checksum lets the fuzzer
 // reach the header and the sand behind it. Accepted sand must be equal after it is written and read again.
-#include <xxhash.h>
-
 #include <array>
 
 #include "master/journal/saved_sand.hpp"
 #include "sand/replica.hpp"
+#include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
 #include "tests/fuzz/tin_scene.hpp"
@@ -18,13 +17,7 @@ SANDWALL_FUZZER(saved) {
     static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), fuzz::tinScene()};
     static const fuzz::ScratchFolder kScratch;
     const scene::Scene& scene = kScenes.at((data[0] >> 1U) & 1U);
-    const fuzz::Input input = fuzz::Input(data, size).subspan(1);
-    base::ByteWriter bytes;
-    bytes.putBytes(input);
-    if ((data[0] & 1U) != 0) {
-        bytes.put(XXH3_64bits(input.data(), input.size()));
-    }
-    const fuzz::MemoryFile file(bytes.bytes());
+    const fuzz::MemoryFile file(fuzz::checksummed({data, size}));
     fuzz::takeOrRefuse([&] {
         const auto place = master::SandPlace::of(scene);
         const auto read = sand::Replica(scene).sandReader();
