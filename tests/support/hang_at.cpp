@@ -1,34 +1,32 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes one rank hang in a function of MPI or OSMesa (LD_PRELOAD), as in a faulty driver. SANDWALL_HANG_RANK is the
-// rank, SANDWALL_HANG_AT the name of the function.
+// rank, SANDWALL_HANG_AT the name of the function. With SANDWALL_HANG_STOPPED the whole process is stopped there, also
+// its watchdog.
 #include <dlfcn.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 
+#include "tests/support/preloaded.hpp"
+
 namespace {
 
-using Plain = void (*)();
+using preloaded::ofOsMesa;
+using preloaded::Plain;
 
 void hangAt(const char* function) {
-    const char* const rank = std::getenv("OMPI_COMM_WORLD_RANK");
-    const char* const which = std::getenv("SANDWALL_HANG_RANK");
     const char* const at = std::getenv("SANDWALL_HANG_AT");
-    if (rank == nullptr || which == nullptr || at == nullptr || std::strcmp(rank, which) != 0 ||
-        std::strcmp(at, function) != 0) {
+    if (!preloaded::isRankOf("SANDWALL_HANG_RANK") || at == nullptr || std::strcmp(at, function) != 0) {
         return;
+    }
+    if (std::getenv("SANDWALL_HANG_STOPPED") != nullptr) {
+        raise(SIGSTOP);
     }
     while (true) {
         pause();
     }
-}
-
-template <class Function>
-Function realOf(const char* symbol) {
-    // RTLD_NEXT would not find it, because the module with OSMesa is loaded with RTLD_LOCAL.
-    static void* const library = dlopen("libOSMesa.so.8", RTLD_NOW | RTLD_LOCAL);
-    return reinterpret_cast<Function>(library == nullptr ? nullptr : dlsym(library, symbol));
 }
 
 void (*realRead)(int, int, int, int, unsigned, unsigned, void*) = nullptr;
@@ -43,19 +41,19 @@ void hangingRead(int x, int y, int width, int height, unsigned format, unsigned 
 extern "C" {
 
 void* OSMesaCreateContextAttribs(const int* attributes, void* shared) {
-    static const auto real = realOf<void* (*)(const int*, void*)>("OSMesaCreateContextAttribs");
+    static const auto real = ofOsMesa<void* (*)(const int*, void*)>("OSMesaCreateContextAttribs");
     hangAt("OSMesaCreateContextAttribs");
     return real(attributes, shared);
 }
 
 void OSMesaDestroyContext(void* context) {
-    static const auto real = realOf<void (*)(void*)>("OSMesaDestroyContext");
+    static const auto real = ofOsMesa<void (*)(void*)>("OSMesaDestroyContext");
     hangAt("OSMesaDestroyContext");
     real(context);
 }
 
 Plain OSMesaGetProcAddress(const char* name) {
-    static const auto real = realOf<Plain (*)(const char*)>("OSMesaGetProcAddress");
+    static const auto real = ofOsMesa<Plain (*)(const char*)>("OSMesaGetProcAddress");
     const Plain found = real(name);
     if (std::strcmp(name, "glReadPixels") != 0) {
         return found;
