@@ -19,13 +19,18 @@ namespace test {
 /// A plain socket that sends to a server whatever a test wants.
 class RawPeer {
 public:
-    explicit RawPeer(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    /// Connects to `port` of this machine. `receiveBuffer` limits what the kernel takes before a test reads it [byte]; 0
+    /// leaves the limit of the machine, which may be tens of megabytes.
+    explicit RawPeer(std::uint16_t port, int receiveBuffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in address{};
         address.sin_family = AF_INET;
         address.sin_port = htons(port);
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         const timeval patience{.tv_sec = 10, .tv_usec = 0};
         setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+        if (receiveBuffer > 0) {  // before the connection is made, because its window follows from the buffer
+            EXPECT_EQ(setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receiveBuffer, sizeof receiveBuffer), 0);
+        }
         EXPECT_EQ(connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
     }
     ~RawPeer() { ::close(socket_); }
