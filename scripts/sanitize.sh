@@ -21,13 +21,11 @@ build() {
     cmake --build "build/$preset" --parallel "$jobs" --target "$@"
 }
 
-# Leaks are not detected here, because Open MPI leaks and Mesa's compiler keeps its results. The preset asan-sand detects
-# leaks.
+# tests/cluster/CMakeLists.txt sets ASAN_OPTIONS. Leaks are not detected here; the preset asan-sand detects them.
 sessions() {
     build asan cluster_tests
     echo "== sessions with the address and undefined sanitizers"
-    # Some tests preload a library that stands for a faulty disk or driver, which the sanitizer would refuse.
-    export ASAN_OPTIONS=detect_leaks=0:verify_asan_link_order=0 UBSAN_OPTIONS=print_stacktrace=1
+    export UBSAN_OPTIONS=print_stacktrace=1
     local suites='Lockstep|Recovery|Ending|Drill|Healing|Resuming|Operator|HeadTracking|BadInput|BadLink|ForeignBuild'
     suites+='|WrongServer|Watched|FloatEnvironment'
     ctest --test-dir build/asan/tests/cluster --output-on-failure --no-tests=error -R "^($suites)\."
