@@ -14,7 +14,7 @@ namespace {
 
 struct Options {
     std::string wall, stereo, svg;
-    bool mono = false, ranks = false, hosts = false;
+    bool mono = false, ranks = false, hosts = false, outputs = false;
 };
 
 int check(const Options& options) {
@@ -26,6 +26,8 @@ int check(const Options& options) {
     }
     if (options.ranks) {
         fmt::print("{}\n", wall.ranks());
+    } else if (options.outputs) {
+        fmt::print("{}", walls::outputsLine(wall));
     } else {
         fmt::print("{}", options.hosts ? walls::hostLines(wall) : walls::describe(wall));
     }
@@ -45,6 +47,10 @@ int main(int argc, char** argv) {
     line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
     line.option("--svg", options.svg, "draw front view and plan into this file");
     const host::Option ranks = line.flag("--ranks", options.ranks, "print only the number of render ranks");
-    line.flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'").excludes(ranks);
+    const host::Option hosts = line.flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'");
+    hosts.excludes(ranks);
+    line.flag("--outputs", options.outputs, "print only the number of outputs, and of those with a place on a screen")
+        .excludes(ranks)
+        .excludes(hosts);
     return host::runMain(line, argc, argv, [&] { return check(options); });
 }

@@ -113,4 +113,16 @@ std::string hostLines(const Wall& wall) {
     return lines;
 }
 
+std::string outputsLine(const Wall& wall) {
+    std::size_t outputs = 0;
+    std::size_t placed = 0;
+    for (const Tile& tile : wall.tiles) {
+        for (const Output& output : tile.outputs) {
+            ++outputs;
+            placed += !tile.place.display.empty() || !output.monitor.empty() || output.window.has_value() ? 1 : 0;
+        }
+    }
+    return fmt::format("{} {}\n", outputs, placed);
+}
+
 }  // namespace walls

@@ -15,4 +15,8 @@ namespace walls {
 /// Returns one line per rank, from 1, with its host, or "-" if the wall names none. Launchers read these lines.
 [[nodiscard]] std::string hostLines(const Wall& wall);
 
+/// Returns a line with two numbers: the outputs of the wall, and those to which the wall file gives a display, a
+/// monitor or a window's place. Launchers read this line.
+[[nodiscard]] std::string outputsLine(const Wall& wall);
+
 }  // namespace walls

@@ -41,6 +41,19 @@ TEST(CheckProgram, ExitsWithTwoAndOneLineForWhatItCannotUse) {
     }
 }
 
+TEST(CheckProgram, CountsOutputsAndThoseWithAPlace) {
+    for (const auto& [arguments, line] : {std::pair{"desktop.toml", "1 0\n"},
+                                          {"tiled_3x4.toml", "24 0\n"},
+                                          {"desktop.toml --stereo passive", "2 0\n"}}) {
+        EXPECT_EQ(support::runProgram("sandwall-check", pathOf(arguments) + " --outputs").output, line) << arguments;
+    }
+    Wall wall = loadWallAs(pathOf("tiled_3x4.toml"), "");
+    wall.tiles[0].place.display = ":0";               // both outputs of the tile
+    wall.tiles[1].outputs[0].monitor = "HDMI-1";      // one of them
+    wall.tiles[2].outputs[1].window = glm::ivec2(0);  // one of them
+    EXPECT_EQ(outputsLine(wall), "24 4\n");
+}
+
 TEST(CheckProgram, ShowsAnyWallInAnyMode) {
     for (const std::string& name : configNames()) {
         for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
