@@ -34,6 +34,7 @@ struct Options {
     std::vector<std::string> layers;
     std::vector<std::string> injections;
     bool noPictures = false;
+    bool noReport = false;
     master::SessionOptions session;
     bool resume = false;
     std::string journal = "required";
@@ -106,6 +107,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         }
         return scene;
     }
+    options.replay = master::journalAt(options.replay).string();
     if (std::filesystem::exists(std::filesystem::path(options.out) / "session.journal")) {
         throw base::InputError(
             fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
@@ -151,6 +153,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     }
     options.session.pace = options.pace == "fast" || options.session.film ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
+    options.session.report = !options.noReport;
     options.session.out = options.out;
     options.session.desk.pattern = lockstep::parsePattern(options.pattern);
     options.session.desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
@@ -258,6 +261,7 @@ void describeOptions(host::CommandLine& line, Options& options) {
         .range(2.0, 3600.0);
     host::addSandThreads(line, options.sandThreads);
     line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
+    line.flag("--no-report", options.noReport, "print no figures at the end, because another program prints them");
     line.flag("--control-stdin", session.desk.readInput,
               "read commands from standard input (docs/operator.md); its end stops the session");
     line.option("--inject", options.injections, "inject a fault, such as slow:rank=5,ms=30 (docs/operator.md)");
@@ -288,7 +292,7 @@ void describeResume(host::CommandLine& line, Options& options) {
 
 void describeReplay(host::CommandLine& line, Options& options) {
     const host::Option replay =
-        line.option("--replay", options.replay, "journal of a session, shown again instead of a scene");
+        line.option("--replay", options.replay, "journal of a session, or its folder, shown again instead of a scene");
     for (const char* other : {"--scene", "--haptic", "--refresh"}) {
         replay.excludes(line.named(other));
     }

@@ -355,7 +355,9 @@ int Session::run() {
     } else if (agreed && options_.pictures) {
         writeWallPictures(barrier_, desk_.shownWall(), options_.out);
     }
-    fmt::print("{}", describe(told));
+    if (options_.report) {
+        fmt::print("{}", describe(told));
+    }
     barrier_.watchdog().arm();  // until the destructor of the barrier, because the members after it wait for the disk
     return status;
 }

@@ -33,6 +33,7 @@ struct SessionOptions {
     std::uint64_t settlingFrames = 0;  // number of first frames whose times do not count
     double frameTimeout = 30;          // [s], time that a frame may take before the job ends
     bool pictures = true;
+    bool report = true;  // prints the main figures at the end; the launcher prints its own from summary.json
     std::filesystem::path out;
     DeskOptions desk;
     RecordOptions record;

@@ -42,6 +42,11 @@ scene::Scene sceneOf(const JournalReader& reader) { return decoded(reader, scene
 
 sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decodeRules); }
 
+std::filesystem::path journalAt(const std::filesystem::path& named) {
+    std::error_code none;
+    return std::filesystem::is_directory(named, none) ? named / "session.journal" : named;
+}
+
 Journal readJournal(const std::filesystem::path& file) {
     JournalReader reader(file);
     Journal journal;

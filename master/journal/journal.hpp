@@ -25,6 +25,9 @@ struct Journal {
     std::int64_t tornBytes = 0;     // [byte], behind the last whole record of the last part; ignored
 };
 
+/// Returns the journal that a user has named: `named` itself, or the journal in it if it is a session's folder.
+[[nodiscard]] std::filesystem::path journalAt(const std::filesystem::path& named);
+
 /// Reads a whole journal. Throws base::InputError if the file is missing, is not a journal, has another format or
 /// algorithm, or is damaged before its end. Also throws if one of its parts is missing.
 [[nodiscard]] Journal readJournal(const std::filesystem::path& file);

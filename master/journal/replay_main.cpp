@@ -253,7 +253,7 @@ std::string notEmpty(const std::string& text) { return text.empty() ? "name a fi
 /// Describes the options. All options that read the replayed sand can be combined, also with --export. --verify and
 /// --recover read every record themselves, so they exclude all other options.
 void describe(host::CommandLine& line, Options& options) {
-    line.option("FILE", options.file, "session.journal of a session").required();
+    line.option("FILE", options.file, "session.journal of a session, or the session's folder").required();
     const std::vector<host::Option> combined{
         line.flag("--hash", options.hash, "print the state hash after the last step"),
         line.option(
@@ -302,6 +302,7 @@ int main(int argc, char** argv) {
     return host::runMain(
         line, argc, argv,
         [&] {
+            options.file = master::journalAt(options.file).string();
             const int status = run(options);
             requirePrinted();
             return status;
