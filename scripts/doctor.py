@@ -27,6 +27,7 @@ CLOCK_ROUNDS = 5
 MOST_CLOCK_SECONDS = 1.0  # a session subtracts the difference; a larger one makes logs unreadable
 RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds about 140
 OUT_MEGABYTES = 256
+COLOURS = {"ok ": 32, "RED": 31, "no ": 33}
 MOST_HOSTS_AT_ONCE = 32
 # Commands for a host, which prints one answer per line. {node} is the path of the render rank's program there.
 QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
@@ -305,17 +306,22 @@ def machines(hosts, of_wall):
     return list(found.values())
 
 
+def is_red(good, details):
+    """Returns whether a finding is red. What no session needs is not red."""
+    return not good and details.get("needed", True)
+
+
 def report(hosts, colours):
     """Prints all findings and returns the number of red ones."""
     red = 0
     width = max(len(host.shown_name()) for host in hosts)
     for host in hosts:
-        for good, check, words, _ in host.findings:
-            mark = "ok " if good else "RED"
+        for good, check, words, details in host.findings:
+            mark = "ok " if good else "RED" if is_red(good, details) else "no "
             if colours:
-                mark = f"\033[{32 if good else 31}m{mark}\033[0m"
+                mark = f"\033[{COLOURS[mark]}m{mark}\033[0m"
             print(f"{host.shown_name():<{width}}  {mark}  {check:<7} {words}")
-            red += 0 if good else 1
+            red += is_red(good, details)
     return red
 
 
@@ -323,15 +329,24 @@ def report_json(hosts):
     """Prints all findings as one JSON object and returns the number of red ones."""
     findings = [{"host": host.shown_name(), "check": check, "good": bool(good), "message": words, **details}
                 for host in hosts for good, check, words, details in host.findings]
-    red = sum(not finding["good"] for finding in findings)
+    red = sum(is_red(finding["good"], finding) for finding in findings)
     print(json.dumps({"red": red, "findings": findings}, indent=1))
     return red
+
+
+def show(hosts, as_json):
+    """Prints all findings. Returns the exit status: 0 if no check is red, else 1."""
+    if as_json:
+        return 1 if report_json(hosts) else 0
+    red = report(hosts, sys.stdout.isatty() and "NO_COLOR" not in os.environ)
+    print(f"{red} red" if red else "all green")
+    return 1 if red else 0
 
 
 def examine(hosts, wall_text, node, master, out, gl, as_json=False):
     """Checks this machine and the host of every rank. `wall_text` is None if the hosts come from a file of hosts.
 
-    Returns the exit status: 0 if no check is red, else 1.
+    Returns the exit status of show().
     """
     here, *others = machines(hosts, wall_text is not None)
     build, _ = version_of(node)
@@ -341,8 +356,4 @@ def examine(hosts, wall_text, node, master, out, gl, as_json=False):
     doctor.examine(here)  # first, because the other hosts are compared with this machine
     with concurrent.futures.ThreadPoolExecutor(MOST_HOSTS_AT_ONCE) as pool:
         list(pool.map(doctor.examine, others))
-    if as_json:
-        return 1 if report_json([here, *others]) else 0
-    red = report([here, *others], sys.stdout.isatty() and "NO_COLOR" not in os.environ)
-    print(f"{red} red" if red else "all green")
-    return 1 if red else 0
+    return show([here, *others], as_json)

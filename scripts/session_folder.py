@@ -36,6 +36,15 @@ def make(path):
             os.close(descriptor)
 
 
+def remove_empty(path):
+    """Removes a session's folder, and the one that holds it, if they are empty because the session was refused."""
+    try:
+        os.rmdir(path)
+        os.rmdir(os.path.dirname(path))
+    except OSError:
+        pass  # they hold files
+
+
 def why_unsafe(path):
     """Returns why a session must not use the folder, or None. The programs have the same check, host::whyUnsafeFolder().
 

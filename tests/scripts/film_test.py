@@ -82,13 +82,13 @@ class Film(LauncherTest):
     def test_a_rate_of_no_frames_is_refused(self):
         self.assertEqual(self.film("--fps", "0"), (2, "", "sandwall film: argument --fps: 0 must be 1 or more; try --help\n"))
 
-    def test_a_journal_that_is_missing_or_a_folder_is_refused(self):
+    def test_a_journal_that_is_missing_is_refused(self):
         (self.folder / "s.journal").unlink()
         refusal = (2, "", "sandwall: s.journal: cannot be read; check the path\n")
         self.assertEqual(self.film(), refusal)
         self.assertFalse((self.folder / "out %d").exists())
-        (self.folder / "s.journal").mkdir()
-        self.assertEqual(self.film(), refusal)
+        (self.folder / "s.journal").mkdir()  # a session's folder without a journal
+        self.assertEqual(self.film(), (2, "", "sandwall: s.journal/session.journal: cannot be read; check the path\n"))
 
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
         self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")

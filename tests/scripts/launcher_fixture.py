@@ -14,6 +14,7 @@ sys.path.insert(0, str(ROOT / "scripts"))
 CHECK = """#!/bin/sh
 [ "$2" = --ranks ] && exec grep -c . "$1"
 [ "$2" = --hosts ] && exec cat "$1"
+[ "$2" = --outputs ] && { echo "${MADE_UP_OUTPUTS:-$(grep -c . "$1") 0}"; exit; }
 echo "made-up sandwall-check: $*" >&2
 exit 2
 """
@@ -47,7 +48,8 @@ class LauncherTest(unittest.TestCase):
             self.script(name, SAY)
         self.agent = self.script("agent", AGENT)
         self.write("scene.toml", "")
-        os.environ.pop("SANDWALL_EVENTS", None)
+        for variable in ("SANDWALL_EVENTS", "DISPLAY"):
+            os.environ.pop(variable, None)
         self.environment = {**os.environ, "SANDWALL_BIN": str(self.folder / "bin"),
                             "OMPI_MCA_plm_rsh_agent": self.agent,
                             "PATH": f"{self.folder / 'bin'}:{os.environ['PATH']}"}

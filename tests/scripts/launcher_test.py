@@ -6,6 +6,7 @@ import contextlib
 import os
 import pty
 import signal
+import socket
 import subprocess
 import tempfile
 import time
@@ -26,7 +27,22 @@ exit 9
 """
 
 
-class PrintedCommands(LauncherTest):
+class DisplayTest(LauncherTest):
+    def display(self):
+        """Returns the name of a display at which a made-up X server of this test accepts connections."""
+        server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self.addCleanup(server.close)
+        for number in range(20000, 30000):
+            try:
+                server.bind(f"\0/tmp/.X11-unix/X{number}")
+                break
+            except OSError:
+                continue
+        server.listen(64)
+        return f":{number}"
+
+
+class PrintedCommands(DisplayTest):
     def test_one_machine_talks_through_shared_memory(self):
         command = self.printed(["-", "-"])
         self.assertIn("mpirun -q --oversubscribe --bind-to none --mca btl self,vader --mca oob_tcp_if_include lo "
@@ -76,6 +92,21 @@ class PrintedCommands(LauncherTest):
         for gl in ("auto", "osmesa", "egl", "glfw"):
             self.assertIn(f"sandwall-render-node --gl {gl}", self.printed(["-"], "--gl", gl))
 
+    def test_a_small_wall_opens_windows_where_a_display_is(self):
+        self.environment["DISPLAY"] = self.display()
+        for outputs in ("1 0", "2 0"):
+            self.environment["MADE_UP_OUTPUTS"] = outputs
+            self.assertIn("sandwall-render-node --gl glfw", self.printed(["-"]))
+            self.assertIn("sandwall-render-node --gl osmesa", self.printed(["-"], "--gl", "osmesa"))
+        for hosts, outputs in ((["-"], "3 0"), (["-"], "2 1"), (["node1"], "1 0")):
+            self.environment["MADE_UP_OUTPUTS"] = outputs
+            self.assertIn("sandwall-render-node --gl auto", self.printed(hosts))
+
+    def test_a_display_that_accepts_no_connection_opens_no_windows(self):
+        for display in (":64999", "unix:64999", "no display", ":99999999", "127.0.0.1:59999"):
+            self.environment["DISPLAY"] = display
+            self.assertIn("sandwall-render-node --gl auto", self.printed(["-"]))
+
     def test_a_device_needs_a_server_started_before(self):
         server, job = self.printed(["-"], "--device", "script:gis").splitlines()
         self.assertEqual(server, "sandwall-haptic-server --scene scene.toml --device script:gis --pace realtime "
@@ -105,6 +136,16 @@ class PrintedCommands(LauncherTest):
         self.script("mpirun", "#!/bin/sh\ntouch " + str(self.folder / "started"))
         self.printed(["away1"])
         self.assertFalse((self.folder / "started").exists())
+
+
+class LargeWall(DisplayTest):
+    def test_a_large_wall_tells_that_it_is_drawn_in_memory(self):
+        self.script("mpirun", "#!/bin/sh\n")
+        self.environment.update(DISPLAY=self.display(), MADE_UP_OUTPUTS="24 0")
+        line = ("sandwall: draws the wall's 24 outputs in memory, because only up to 2 open windows by themselves; --gl glfw opens "
+                "windows\n")
+        self.assertEqual(self.start(["-"]).stderr, line)
+        self.assertEqual(self.start(["-"], "--gl", "osmesa").stderr, "")
 
 
 class Refusals(LauncherTest):

@@ -77,11 +77,13 @@ class SessionTest(SchemaTest):
         (self.folder / "scene.toml").write_text(SCENE)
         self.out, self.log = self.folder / "out", self.folder / "log.txt"
 
+    def command(self, *options):
+        return [ROOT / "scripts" / "sandwall", "run", "--wall", self.folder / "wall.toml", "--scene", self.folder / "scene.toml",
+                "--out", self.out, "--gl", "osmesa", "--no-pictures", *options]
+
     def start(self, *options):
-        command = [ROOT / "scripts" / "sandwall", "run", "--wall", self.folder / "wall.toml", "--scene", self.folder / "scene.toml",
-                   "--out", self.out, "--gl", "osmesa", "--no-pictures", *options]
         with self.log.open("wb") as log:
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=log, stderr=log,
+            process = subprocess.Popen(self.command(*options), stdin=subprocess.PIPE, stdout=log, stderr=log,
                                        env={**os.environ, events.VARIABLE: "1"})
         self.addCleanup(self.end, process)
         return process

@@ -55,9 +55,21 @@ class RealSessions(SessionTest):
         self.assertTrue({"drill", "restart", "resumed", "recovered"} <= set(found), found)
         self.assertEqual((found["restart"][0]["rank"], found["restart"][0]["how"]), (2, "SIGKILL"))
         film = self.folder / "film"
-        subprocess.run([ROOT / "scripts" / "sandwall", "film", self.out / "session.journal", "--wall", self.folder / "wall.toml",
+        subprocess.run([ROOT / "scripts" / "sandwall", "film", self.out, "--wall", self.folder / "wall.toml",
                         "--out", film], check=True, capture_output=True, timeout=200, stdin=subprocess.DEVNULL)
         self.valid("summary", session_results.summary_of(film))
+
+    def test_the_report_of_a_session(self):
+        ended = subprocess.run([*self.command("--frames", "20", "--device", "script:gis"), "--json"], capture_output=True, text=True,
+                               timeout=200, stdin=subprocess.DEVNULL)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        report = json.loads(ended.stdout)
+        self.valid("report", report)
+        self.reject_all("report", report)
+        self.reject_all("report", report["session"], lambda session: {**report, "session": session})
+        self.assertTrue(report["good"], report)
+        replayed = subprocess.run(report["session"]["replay"], capture_output=True, text=True, timeout=100)
+        self.assertEqual(replayed.stdout.split()[-1:], [report["session"]["state_hash"]], replayed.stderr)
 
     def test_a_session_that_fails(self):
         session = self.start("--restarts", "0", "--frame-timeout", "5", "--inject", "hang:rank=2,frame=20")
@@ -72,18 +84,21 @@ class RealSessions(SessionTest):
         for name in ("progress", "drill", "waiting", "failure"):
             self.reject_all("event", found[name][-1])
 
-    def reject_all(self, name, value):
-        """The schema must reject `value` without one of its fields, and `value` with an undocumented field."""
+    def reject_all(self, name, value, whole=lambda value: value):
+        """The schema must reject `value` without one of its fields, and `value` with an undocumented field.
+
+        `whole` returns the document that has `value` as a part.
+        """
         optional = {"head_tracking"} if name == "summary" else set()
         for field in set(value) - optional:
-            self.invalid(name, {key: other for key, other in value.items() if key != field})
-        self.invalid(name, {**value, "undocumented": 1})
+            self.invalid(name, whole({key: other for key, other in value.items() if key != field}))
+        self.invalid(name, whole({**value, "undocumented": 1}))
 
 
 class Schemas(SchemaTest):
     def test_every_schema_is_one(self):
         files = sorted(SCHEMAS.glob("*.json"))
-        self.assertEqual([file.name for file in files], [f"{name}.schema.json" for name in ("event", "failure", "status", "summary")])
+        self.assertEqual([file.name for file in files], [f"{name}.schema.json" for name in ("event", "failure", "report", "status", "summary")])
         for file in files:
             jsonschema.Draft7Validator.check_schema(json.loads(file.read_text()))
 
@@ -98,7 +113,7 @@ class Schemas(SchemaTest):
                 for key, part in schema.items():
                     look(part, f"{where}/{key}")
 
-        for name in ("event", "failure", "status", "summary"):
+        for name in ("event", "failure", "report", "status", "summary"):
             schema = load(name)
             definitions = schema.get("definitions", {})
             definitions.pop("count", None)  # each reference to it has a description

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: Apache-2.0
+"""`sandwall doctor` without a wall: what works on this machine, and what to install for the rest (docs/doctor.md)."""
+
+import math
+import os
+import subprocess
+
+import doctor
+import layout
+import screens
+from rank_hosts import HERE
+
+START_SECONDS = 60
+# Memory of a session on the desktop wall: three processes, and what each cell of the field adds to all of them. Measured
+# with fields of 512 x 512 and 2048 x 2048 cells, rounded up.
+FIXED_MEGABYTES = 600
+BYTES_PER_CELL = 400
+FIELD_SIDES = (512, 1024, 2048, 4096)
+# The environment with which Open MPI starts as root too.
+MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "HWLOC_COMPONENTS": "-gl"}
+
+
+def check_start(host):
+    """Adds whether mpirun starts two processes here. A version alone does not show that."""
+    try:
+        ended = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", "true"], stdin=subprocess.DEVNULL, capture_output=True,
+                               text=True, errors="replace", timeout=START_SECONDS, check=False, env={**os.environ, **MPI})
+        complaint = "" if ended.returncode == 0 else doctor.last_line(ended.stderr) or f"exit status {ended.returncode}"
+    except OSError:
+        complaint = "mpirun: not found; apt-get install openmpi-bin"
+    except subprocess.TimeoutExpired:
+        complaint = f"mpirun starts nothing within {START_SECONDS} s"
+    host.add(not complaint, "start", complaint or "mpirun starts two processes")
+
+
+def check_cores(host):
+    cores = len(os.sched_getaffinity(0))
+    host.add(cores >= 2, "cores", f"{cores} for this process" + ("" if cores >= 2 else "; a hand and a picture need two: the wall "
+             "will be slow"), needed=False, cores=cores)
+
+
+def largest_side(megabytes):
+    """Returns the side of the largest square field for which this memory is enough [cells], or 0."""
+    cells = max(0, megabytes - FIXED_MEGABYTES) * (1 << 20) // BYTES_PER_CELL
+    return math.isqrt(cells)
+
+
+def check_memory(host, answers):
+    words = answers.get("memory", "").split()
+    free = int(words[0]) // 1024 if words and words[0].isdigit() else 0
+    fitting = [side for side in FIELD_SIDES if side <= largest_side(free)]
+    words = f"{free} MiB free: " + (f"fields of up to {fitting[-1]} x {fitting[-1]} cells on the desktop wall" if fitting else
+                                    f"{FIELD_SIDES[0]} x {FIELD_SIDES[0]} cells on the desktop wall need more; end other programs")
+    host.add(bool(fitting), "memory", words, free_mebibytes=free, largest_side=fitting[-1] if fitting else 0)
+
+
+def check_display(host):
+    name = os.environ.get("DISPLAY", "")
+    if screens.present():
+        host.add(True, "display", f"{name} accepts connections", display=name)
+    else:
+        host.add(False, "display", f"{name} accepts no connection; start an X server, or unset DISPLAY" if name else
+                 "DISPLAY is not set: sessions draw in memory; start them in a desktop session to see windows", needed=False,
+                 display=name or None)
+
+
+def check_gl(host, node):
+    """Adds a finding for each backend. A wall needs only one, and osmesa is the one that needs no card and no display."""
+    for backend in ("osmesa", "egl", "glfw"):
+        try:
+            ended = subprocess.run([node, "--probe", "0", "--gl", backend, "--json"], stdin=subprocess.DEVNULL, capture_output=True,
+                                   text=True, errors="replace", timeout=doctor.PROBE_SECONDS, check=False)
+            found, complaint = doctor.probed(ended.stdout) if ended.returncode == 0 else None, doctor.last_line(ended.stderr)
+        except subprocess.TimeoutExpired:
+            found, complaint = None, f"no answer within {doctor.PROBE_SECONDS} s"
+        if found:
+            host.add(True, "gl", f"--gl {backend}: {found['renderer']}", backend=backend, renderer=found["renderer"])
+        else:
+            words = complaint.removeprefix("sandwall-render-node: ") or "does not answer"
+            host.add(False, "gl", f"{'' if words.startswith('--gl') else f'--gl {backend}: '}{words}; docs/backends.md",
+                     needed=backend == "osmesa", backend=backend)
+
+
+def examine(node, master, out, as_json):
+    """Checks this machine. Returns the exit status: 0 if a session can run here, else 1."""
+    host = doctor.Host(HERE)
+    host.slots = 1
+    build = layout.build_of(node)
+    doctor.check_master(host, master, build)
+    doctor.check_out(host, out)
+    examiner = doctor.Doctor(node, build, None, "auto")
+    answers = examiner.reach(host)
+    if answers is not None:
+        examiner.check_programs(host, answers)
+        check_start(host)
+        check_cores(host)
+        check_memory(host, answers)
+        check_display(host)
+        check_gl(host, node)
+    return doctor.show([host], as_json)

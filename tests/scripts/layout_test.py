@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests how the launcher finds walls, scenes, sessions and programs, in the sources and in an installed tree."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+from launcher_fixture import ROOT, LauncherTest
+
+import layout
+from rank_hosts import BadInput
+
+
+class Names(unittest.TestCase):
+    def setUp(self):
+        folder = self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-layout-"))
+        self.folder = pathlib.Path(folder)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+
+    def test_every_known_name_is_a_file(self):
+        for kind, least in (("walls", 14), ("scenes", 8), ("strokes", 4)):
+            names = layout.known(kind)
+            self.assertGreaterEqual(len(names), least)
+            for name in names:
+                self.assertTrue(pathlib.Path(layout.found(kind, name)).is_file(), name)
+        self.assertEqual(layout.found("walls", "desktop"), layout.found("walls", "desktop.toml"))
+
+    def test_a_file_of_the_current_folder_goes_before_a_known_name(self):
+        (self.folder / "dunes").write_text("")
+        self.assertEqual(layout.found("scenes", "dunes"), "dunes")
+
+    def test_a_path_is_left_to_its_reader(self):
+        self.assertEqual(layout.found("scenes", "no/such.toml"), "no/such.toml")
+
+    def test_an_unknown_name_lists_the_known_ones(self):
+        with self.assertRaisesRegex(BadInput, "^dnes: no file and no known name; scenes .*: dunes, .*, writing$"):
+            layout.found("scenes", "dnes")
+
+    def test_known_strokes_are_a_device(self):
+        self.assertEqual(layout.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
+        (self.folder / "stroke").write_text("")
+        for spec in ("script:stroke", "script:gis", "script:none.strokes", "mouse", "none"):
+            self.assertEqual(layout.device(spec), spec)
+
+    def test_a_journal_and_its_folder_name_the_same_session(self):
+        session = self.folder / "session"
+        session.mkdir()
+        self.assertEqual(layout.session_at(str(session / "session.journal")), str(session / "session.journal"))
+        (session / "session.journal").write_text("")
+        for named in (session, session / "session.journal"):
+            self.assertEqual(layout.session_at(str(named)), str(session))
+            self.assertEqual(layout.journal_at(str(named)), str(session / "session.journal"))
+
+
+class InstalledTree(LauncherTest):
+    """The launcher in a made-up installed tree, called through the link in its bin folder."""
+
+    def setUp(self):
+        super().setUp()
+        self.prefix = self.folder / "prefix"
+        self.private = self.prefix / "lib" / "sandwall"
+        (self.private / "python").mkdir(parents=True)
+        for file in [ROOT / "scripts" / "sandwall", *(ROOT / "scripts").glob("*.py")]:
+            shutil.copy(file, self.private / "python")
+        for file in (self.folder / "bin").iterdir():
+            shutil.copy(file, self.private)
+        for kind in ("walls", "scenes"):
+            (self.prefix / "share" / "sandwall" / kind).mkdir(parents=True)
+            (self.prefix / "share" / "sandwall" / kind / "small.toml").write_text("-\n")
+        (self.prefix / "bin").mkdir()
+        (self.prefix / "bin" / "sandwall").symlink_to("../lib/sandwall/python/sandwall")
+        del self.environment["SANDWALL_BIN"]
+
+    def call(self, *words):
+        return subprocess.run([str(self.prefix / "bin" / "sandwall"), *words], env=self.environment, text=True, capture_output=True,
+                              timeout=120, stdin=subprocess.DEVNULL, cwd=self.folder)
+
+    def test_it_finds_its_own_programs_walls_and_scenes(self):
+        ended = self.call("run", "--wall", "small", "--scene", "small", "--print-command")
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        for path in (self.private / "sandwall-master", *(self.prefix / "share" / "sandwall" / kind / "small.toml" for kind in ("scenes", "walls"))):
+            self.assertIn(f"{path} ", ended.stdout)
+        self.assertEqual(self.call("list", "walls").stdout, "small\n")
+
+    def test_it_works_from_another_prefix(self):
+        self.prefix = self.prefix.rename(self.folder / "moved")
+        ended = self.call("run", "--wall", "small", "--scene", "small", "--print-command")
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertIn(f"{self.prefix}/lib/sandwall/sandwall-master ", ended.stdout)
+
+    def test_tools_get_all_their_options(self):
+        ended = self.call("check", "--what", "a wall", "--help")
+        self.assertEqual((ended.returncode, ended.stderr), (2, "made-up sandwall-check: --what a wall --help\n"))
+
+    def test_programs_of_another_build_are_refused_in_one_line(self):
+        (self.private / "python" / "build.json").write_text('{"build": "0123456789abcdef"}')
+        self.script("sandwall-master", '#!/bin/sh\necho \'{"build": "00000000000000ff"}\'\n')
+        self.environment["SANDWALL_BIN"] = str(self.folder / "bin")
+        ended = self.call("run", "--wall", "small", "--scene", "small")
+        self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+        self.assertEqual(ended.stderr, f"sandwall: {self.folder / 'bin' / 'sandwall-master'}: is of build 00000000000000ff, and this launcher "
+                         "of 0123456789abcdef; install programs and launcher of one build, or unset SANDWALL_BIN\n")
+        self.assertFalse((self.folder / "sessions").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
