@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# What `cmake --install` installs (docs/install.md). Programs and modules are in one folder, so a program finds its modules
+# beside itself, and the tree works under any prefix. Test helpers, benchmarks and examples are not installed.
+# scripts/layout.py has the same folders.
+set(programs sandwall-master sandwall-render-node sandwall-haptic-server sandwall-replay sandwall-relax sandwall-check
+    sandwall-compare sandwall-track sandwall-watch)
+set(modules sandwall-import sandwall-security sandwall-gl-osmesa sandwall-gl-egl sandwall-gl-glfw sandwall-window)
+set(private lib/sandwall)
+set(shared share/sandwall)
+set(docs share/doc/sandwall)
+
+# All that a session needs. scripts/demo.sh builds only this target.
+add_custom_target(sandwall)
+add_dependencies(sandwall ${programs} ${modules})
+
+install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DESTINATION ${private})
+install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
+install(FILES
+    scripts/checked_json.py scripts/console.py scripts/doctor.py scripts/events.py scripts/film.py scripts/job_log.py
+    scripts/layout.py scripts/processes.py scripts/rank_hosts.py scripts/screens.py scripts/session_control.py
+    scripts/session_folder.py scripts/session_report.py scripts/session_results.py scripts/spare_hosts.py
+    scripts/supervisor.py scripts/this_machine.py
+    DESTINATION ${private}/python)
+install(DIRECTORY scenes/ DESTINATION ${shared}/scenes)
+install(DIRECTORY walls/configs/ DESTINATION ${shared}/walls)
+install(DIRECTORY haptic_bridge/devices/ DESTINATION ${shared}/strokes FILES_MATCHING PATTERN "*.strokes")
+install(DIRECTORY scripts/samples/ DESTINATION ${shared}/samples)
+install(PROGRAMS haptic_bridge/examples/position_sender.py DESTINATION ${shared}/examples)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff LICENSE DESTINATION ${docs})
+install(DIRECTORY docs DESTINATION ${docs})
+install(FILES scripts/completion.bash DESTINATION share/bash-completion/completions RENAME sandwall)
+install(CODE "set(sandwall_version ${PROJECT_VERSION})")
+install(SCRIPT cmake/finish_install.cmake)
