@@ -3,13 +3,14 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME sandwall)
 set(CPACK_PACKAGE_VENDOR Sandwall)
-set(CPACK_PACKAGE_CONTACT "Sandwall maintainers <maintainers@localhost.localdomain>")
+# lintian refuses the address of a host that cannot exist.
+set(SANDWALL_MAINTAINER "Sandwall maintainers <maintainers@users.noreply.github.com>" CACHE STRING "The package's maintainer")
+set(CPACK_PACKAGE_CONTACT "${SANDWALL_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "interactive sand for display walls, with haptic feedback")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-    "interactive sand for display walls, with haptic feedback
- People touch sand that a whole display cluster shows: a wall of stereo
- projectors, a CAVE or a desktop. Every tile computes the same sand, bit for bit,
- so only the path of the hand crosses the network.")
+"People touch sand that a whole display cluster shows: a wall of stereo
+projectors, a CAVE or a desktop. Every tile computes the same sand, bit for
+bit, so only the path of the hand crosses the network.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
@@ -23,5 +24,4 @@ set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, libegl-mesa0, libxcursor1,
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS ffmpeg)
 # Copyright, changelog and compressed pages, as Debian wants them.
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/finish_package.cmake)
-set(CPACK_PROJECT_CONFIG_FILE "")
 include(CPack)

@@ -155,7 +155,7 @@ export OMPI_MCA_plm_rsh_agent=$folder/agent TMPDIR=$folder/tmp-head
 mkdir -p "$TMPDIR"
 status=0
 ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$root/scripts/sandwall" run \
-    --wall "$wall" --scene "$scene" --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
+    --wall "$wall" --scene "$scene" --gl osmesa --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
 session=$!
 trap 'kill -INT $session 2>/dev/null' INT TERM HUP
 # A signal ends `wait` before the session ends.

@@ -54,7 +54,7 @@ master_of() { pgrep -n -f "^[^ ]*/sandwall-master .*--out $folder/$1( |\$)"; }
 start_session() {
     mkfifo "$folder/$1.in"
     exec 3<>"$folder/$1.in"
-    scripts/sandwall run --wall "$wall" --scene "$scene" --haptic "$2" "${link[@]}" --out "$folder/$1" --no-pictures \
+    scripts/sandwall run --wall "$wall" --scene "$scene" --gl osmesa --haptic "$2" "${link[@]}" --out "$folder/$1" --no-pictures \
         <"$folder/$1.in" >"$folder/$1.log" 2>&1 &
     session=$!
     # On a busy machine mpirun takes many seconds to start the master.

@@ -17,12 +17,12 @@ command -v ffmpeg >/dev/null || { echo "readme_film.sh: ffmpeg is missing; run: 
 cd "$root"
 scripts/install_dependencies.sh
 [[ -f build/release/build.ninja ]] || cmake --preset release >/dev/null
-cmake --build build/release
+cmake --build build/release --target sandwall
 
 # One rank records the hand; twelve ranks show the recording again. A fast session keeps every step on a busy machine.
 parts=scripts/readme_film
 scripts/sandwall run --wall walls/configs/desktop.toml --scene $parts/scene.toml --device script:$parts/hand.strokes \
-    --pace fast --steps 350 --no-pictures --out "$out/session"
+    --gl osmesa --pace fast --steps 350 --no-pictures --out "$out/session"
 scripts/sandwall film "$out/session/session.journal" --wall $parts/wall.toml --fps 25 --out "$out/film"
 
 # 175 pictures are seven seconds. The last ten fade into the first picture, so that the film loops without a jump.

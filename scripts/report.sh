@@ -62,7 +62,7 @@ rank_table() {
         echo "== session on $wall tiles"
         folder=$(mktemp -d)
         sed "s/^columns = .*/columns = ${wall#*x}/; s/^rows = .*/rows = ${wall%x*}/" walls/configs/tiled_3x4.toml >"$folder/wall.toml"
-        scripts/sandwall run --wall "$folder/wall.toml" --scene scenes/writing.toml --device script:gis --pace fast \
+        scripts/sandwall run --wall "$folder/wall.toml" --scene scenes/writing.toml --device script:gis --gl osmesa --pace fast \
             --steps 60 --out "$folder/out" >"$folder/log.txt" 2>&1 || { cat "$folder/log.txt" >&2; exit 1; }
         replay=$(build/release/bin/sandwall-replay "$folder/out/session.journal" --hash | grep -oE '[0-9a-f]{16}' | tail -1)
         /usr/bin/python3 - "$folder/out/summary.json" "$((${wall%x*} * ${wall#*x}))" "$replay" >>"$data/ranks.csv" <<'PYTHON'

@@ -93,10 +93,11 @@ def ctl(args):
 
 
 def add_parser(commands, remainder):
-    """Adds `ctl` to the launcher's commands. `remainder` is argparse.REMAINDER."""
+    """Adds `ctl` to the launcher's commands, and returns its parser. `remainder` is argparse.REMAINDER."""
     parser = commands.add_parser("ctl", help="command a running session",
                                  description="Commands a session that runs on this machine; docs/operator.md. "
                                              f"Commands: help, {', '.join(VERBS)}.")
     parser.set_defaults(run=ctl)
-    parser.add_argument("session", metavar="SESSION", help="the --out folder of the session")
+    parser.add_argument("session", metavar="SESSION", help="the session's folder, or the journal in it")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="command and its arguments")
+    return parser

@@ -12,12 +12,13 @@ BAD_INPUT = 2
 
 
 def summary_of(path):
-    """Returns the content of a summary file, or of the one in a session's folder.
+    """Returns the content of a summary file, or of the one in a session's folder or beside its journal.
 
     Raises BadInput if the file cannot be read or has another version.
     """
     path = pathlib.Path(path)
-    path = path / "summary.json" if path.is_dir() else path
+    if path.is_dir() or path.name == "session.journal":
+        path = (path if path.is_dir() else path.parent) / "summary.json"
     try:
         found = checked_json.parse(path.read_text(encoding="utf-8"))
     except OSError as error:

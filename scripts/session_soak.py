@@ -134,7 +134,7 @@ def main():
     out = pathlib.Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     command = [str(ROOT / "scripts/sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--device", args.device,
-               "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
+               "--gl", "osmesa", "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
     with open(out / "session_soak.log", "wb") as log:
         launcher = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=processes.die_with(os.getpid()))
         try:

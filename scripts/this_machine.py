@@ -11,10 +11,11 @@ import screens
 from rank_hosts import HERE
 
 START_SECONDS = 60
-# Memory of a session on the desktop wall: three processes, and what each cell of the field adds to all of them. Measured
-# with fields of 512 x 512 and 2048 x 2048 cells, rounded up.
-FIXED_MEGABYTES = 600
-BYTES_PER_CELL = 400
+# Memory of a session on the desktop wall: three processes, and what each cell of the field adds to all of them. The scene
+# sandbox took 93 MiB, and 82 bytes per cell up to 2048 x 2048 cells. Sand that was dug is drawn in more detail, so there is
+# room for twice as much.
+FIXED_MEGABYTES = 256
+BYTES_PER_CELL = 200
 FIELD_SIDES = (512, 1024, 2048, 4096)
 # The environment with which Open MPI starts as root too.
 MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "HWLOC_COMPONENTS": "-gl"}

@@ -101,7 +101,8 @@ def one_tile(folder):
 
 def session(out, scene_file, *more, wall=WALL):
     """Runs a session and returns its summary."""
-    command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--out", out, "--no-pictures", *map(str, more)]
+    command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--gl", "osmesa", "--out", out,
+               "--no-pictures", *map(str, more)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}: {ran.stderr.strip() or ran.stdout.strip()}")

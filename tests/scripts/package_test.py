@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Makes a Debian package of the build, checks it with lintian, and runs a session from the unpacked package.
+
+usage: package_test.py BUILD
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = ROOT / "build" / "release"
+SCENE = """name = "small"
+[field]
+columns = 64
+rows = 48
+[terrain]
+kind = "flat"
+height = 0.2
+[material]
+talus_deg = 34
+[tool]
+radius = 0.1
+"""
+
+
+def called(*words, **options):
+    return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL, **options)
+
+
+class Package(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="sandwall-package-")
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        made = called(ROOT / "scripts" / "package.sh", "--build", BUILD, "--out", cls.folder / "made")
+        if made.returncode != 0:
+            raise AssertionError(made.stdout + made.stderr)
+        cls.package = pathlib.Path(made.stdout.strip())
+        cls.tree = cls.folder / "another root"  # the tree must work in any folder
+        unpacked = called("dpkg-deb", "-x", cls.package, cls.tree)
+        if unpacked.returncode != 0:
+            raise AssertionError(unpacked.stderr)
+        cls.prefix = cls.tree / "usr"
+        # The unpacked programs must not find those of the build, or a display.
+        cls.environment = {key: value for key, value in os.environ.items() if key not in ("SANDWALL_BIN", "DISPLAY")}
+
+    def sandwall(self, *words):
+        return called(self.prefix / "bin" / "sandwall", *words, cwd=self.folder, env=self.environment)
+
+    def test_lintian_finds_no_error(self):
+        ended = called("lintian", "--allow-root", "--fail-on", "error", self.package)
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+
+    def test_it_depends_on_what_the_launcher_starts_and_the_programs_load(self):
+        depends = called("dpkg-deb", "-f", self.package, "Depends").stdout
+        for package in ("python3", "openmpi-bin", "libopenmpi3", "libosmesa6", "libgdal32"):
+            self.assertIn(package, depends)
+
+    def test_it_holds_only_what_a_session_needs(self):
+        found = sorted(path.name for path in (self.prefix / "lib" / "sandwall").iterdir())
+        self.assertEqual(found, ["python", *sorted(
+            f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", "gl-osmesa.so", "haptic-server", "import.so",
+                                            "master", "relax", "render-node", "replay", "security.so", "track", "watch", "window.so"))])
+        self.assertFalse([path for path in self.tree.rglob("*") if path.suffix in (".pyc", ".hpp", ".cpp")])
+
+    def test_every_command_has_a_man_page(self):
+        pages = self.prefix / "share" / "man" / "man1"
+        for name in ("sandwall", "sandwall-run", "sandwall-ctl", "sandwall-film", "sandwall-doctor", "sandwall-replay", "sandwall-master"):
+            text = called("gzip", "-dc", pages / f"{name}.1.gz").stdout
+            for part in (".SH NAME", "SYNOPSIS", "--help"):
+                self.assertIn(part, text.replace("\\-", "-"), name)
+            self.assertNotIn(str(ROOT), text, name)
+
+    def test_it_runs_a_session_with_names_and_its_replay(self):
+        (self.folder / "small.toml").write_text(SCENE)
+        versions = self.sandwall("--version", "--json")
+        self.assertEqual(versions.returncode, 0, versions.stderr)
+        self.assertEqual(len({entry["build"] for entry in json.loads(versions.stdout)["programs"]}), 1)
+        ended = self.sandwall("run", "--wall", "desktop", "--scene", "small.toml", "--device", "script:stroke", "--pace", "fast", "--steps", "30",
+                              "--gl", "osmesa", "--no-pictures", "--json")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        report = json.loads(ended.stdout)
+        self.assertTrue(report["good"], report)
+        self.assertEqual(self.sandwall("replay", report["out"], "--hash").stdout.split(), [report["session"]["state_hash"]])
+
+    def test_mixed_builds_are_refused_in_one_line(self):
+        known = self.prefix / "lib" / "sandwall" / "python" / "build.json"
+        ours = known.read_text()
+        self.addCleanup(known.write_text, ours)
+        known.write_text('{"build": "00000000000000ff"}')
+        ended = self.sandwall("run", "--wall", "desktop", "--scene", "dunes", "--gl", "osmesa", "--frames", "1")
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr.count("\n")), (2, "", 1), ended.stderr)
+        self.assertIn(f"is of build {json.loads(ours)['build']}, and this launcher of 00000000000000ff", ended.stderr)
+
+    def test_a_folder_that_cannot_be_written_is_refused_in_one_line(self):
+        for folder in ("/proc/sandwall", "/dev/null/sandwall", str(self.package)):
+            ended = called(ROOT / "scripts" / "package.sh", "--build", BUILD, "--out", folder)
+            self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+            self.assertEqual(ended.stderr, f"package.sh: {folder}: cannot be written; choose another --out\n")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 1:
+        BUILD = pathlib.Path(sys.argv.pop(1))
+    unittest.main()
