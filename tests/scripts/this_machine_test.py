@@ -74,7 +74,7 @@ class ThisMachine(LauncherTest):
         self.assertIn(":64999 accepts no connection", self.findings(0)["display"]["message"])
 
     def test_memory_decides_the_largest_field(self):
-        for megabytes, side in ((200, 0), (512, 512), (1024, 1024), (1200, 2048), (8192, 4096)):
+        for megabytes, side in ((256, 0), (310, 512), (460, 1024), (1100, 2048), (8192, 4096)):
             self.environment["MADE_UP_KILOBYTES"] = str(megabytes * 1024)
             found = self.findings(0 if side else 1)["memory"]
             self.assertEqual(found["largest_side"], side, megabytes)
