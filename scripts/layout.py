@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Where programs, walls, scenes and strokes are: in the sources, or in an installed tree (docs/install.md).
+"""Finds programs, walls, scenes and strokes: in the sources, or in an installed tree (docs/install.md).
 
 An installed tree may be moved as a whole, because every path begins at this file:
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `sandwall run` prints at its end: the main figures of summary.json, and which of them are not good (docs/summary.md)."""
+"""The report at the end of `sandwall run`: the main figures of summary.json, with marks at those that are not good (docs/summary.md)."""
 
 import json
 import os
