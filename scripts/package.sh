@@ -22,11 +22,10 @@ rm "$trial"
 for program in cpack help2man dpkg-shlibdeps strip; do
     command -v "$program" >/dev/null || refuse "$program: not found; run scripts/install_dependencies.sh --with-tests"
 done
-[[ -f $build/CPackConfig.cmake ]] || cmake --preset release -S "$root" >/dev/null
-cmake --build "$build" --target sandwall >/dev/null
-
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+{ [[ -f $build/CPackConfig.cmake ]] || (cd "$root" && cmake --preset release); } >"$work/log" 2>&1 &&
+    cmake --build "$build" --target sandwall >>"$work/log" 2>&1 || { tail -n 60 "$work/log" >&2; exit 1; }
 (cd "$work" && umask 022 && cpack --config "$build/CPackConfig.cmake" -B "$work") \
     >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 for package in "$work"/*.deb; do
