@@ -7,6 +7,7 @@ import pathlib
 import shlex
 import sys
 
+import checked_json
 import console
 import layout
 import session_results
@@ -100,10 +101,10 @@ def text_of(summary, out, status, colours):
     lines = lines_of(summary, out)
     notes = sum(mark == NOTE for mark, _, _ in lines)
     verdict = f"NOT GOOD, exit status {status}" if not is_good(lines, status) else f"good, {counted(notes, 'note')}" if notes else "good"
-    text = [f"{summary['scene']}: {verdict}"]
+    text = [f"{checked_json.one_line(summary['scene'])}: {verdict}"]
     for mark, name, words in lines:
         shown = f"\033[{COLOURS[mark]}m{mark:<4}\033[0m" if colours else f"{mark:<4}"
-        text.append(f"  {shown}  {name:<10}  {words}")
+        text.append(f"  {shown}  {name:<10}  {checked_json.one_line(words)}")
     text.append(f"        {'folder':<10}  {out}")
     if command := replay_command(summary, out):
         text.append(f"        {'replay':<10}  {shlex.join(command)}")
@@ -169,16 +170,17 @@ class Report:
     def after(self, status):
         """Prints the report of a session that has ended with this exit status. Returns the status."""
         self.__exit__()
-        summary = None
         if self.identity() not in (None, self.before):
             try:
                 summary = session_results.summary_of(self.out)
-                if not self.as_json:
-                    console.OUT.line(text_of(summary, self.out, status, sys.stdout.isatty() and "NO_COLOR" not in os.environ))
+                text = text_of(summary, self.out, status, sys.stdout.isatty() and "NO_COLOR" not in os.environ)
+                report = json.dumps(json_of(summary, self.out, status), indent=1)
+                console.OUT.line(report if self.as_json else text)
+                return status
             except BadInput as complaint:
                 console.say(complaint)
-            except (KeyError, TypeError, AttributeError):
+            except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError):
                 console.say(f"{self.out}/summary.json: is not as docs/schemas/summary.schema.json says")
         if self.as_json:
-            console.OUT.line(json.dumps(json_of(summary, self.out, status), indent=1))
+            console.OUT.line(json.dumps(json_of(None, self.out, status), indent=1))
         return status

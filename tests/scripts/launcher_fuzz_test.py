@@ -10,9 +10,6 @@ next run begins with the same input.
 
 import argparse
 import contextlib
-import functools
-import importlib.machinery
-import importlib.util
 import io
 import json
 import os
@@ -33,9 +30,11 @@ import console  # noqa: E402
 import doctor  # noqa: E402
 import events  # noqa: E402
 import job_log  # noqa: E402
+import programs  # noqa: E402
 import rank_hosts  # noqa: E402
 import session_control  # noqa: E402
 import session_folder  # noqa: E402
+import session_report  # noqa: E402
 import session_results  # noqa: E402
 import spare_hosts  # noqa: E402
 import supervisor  # noqa: E402
@@ -54,7 +53,12 @@ EVENTS = (
 )
 MPIRUN = (b"mpirun noticed that process rank 2 with PID 0 on node node02 exited on signal 9 (Killed).",
           b"  Process name: [[5156,1],2]\n  Exit code:    3", b"-" * 74, b"[node02:12345] *** Process received signal ***")
-SUMMARY = {"version": 1, "frames": 240, "recoveries": [], "haptic": {"refused": {"servers": {"limit": 0}}}}
+SUMMARY = {
+    "version": 1, "scene": "dunes", "wall": "desk", "ranks": 1, "frames": 240, "steps": 240, "seconds": 4.0, "fps": 60.0, "frame_ms": {"count": 239},
+    "late_frames": 1, "latency_ms": {"mean": 30.0, "p50": 30.0, "p99": 44.0}, "state_hash": "0123456789abcdef", "divergences": 0,
+    "server_divergences": 0, "healed": 0, "master_healed": 0, "volume_initial": 9, "volume_final": 9, "volume_outflow": 0,
+    "slowest": {"name": "rank 1", "share": 0.9}, "recoveries": [], "journal": {"state": "written", "policy": "required"},
+    "haptic": {"refused_by_server": {"limit": 0}, "refused": {"servers": {"limit": 0}, "guests": {"limit": 0}}, "steps_withheld": 1}}
 STATUS = {"ok": True, "step": 12, "material": {"talus": 34.0}}
 VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 6}
 PROBE = {"backend": "egl", "renderer": "llvmpipe", "shortcomings": ["the screen has 60 Hz"], "version": "4.5"}
@@ -146,6 +150,10 @@ def summary(folder, text):
     (folder.path / "summary.json").write_bytes(text)
     with refused():
         session_results.summary_of(folder.path)
+    for as_json in (False, True):
+        report = session_report.Report(folder.path, as_json)
+        report.before = None  # the summary counts as one of this session
+        report.after(0)
 
 
 def restarting(folder, text):
@@ -179,10 +187,10 @@ def answers_to_doctor(_, text):
 
 def versions(_, text):
     ended = mock.Mock(stdout=text.decode(errors="replace"))
-    with mock.patch.object(launcher(), "program", lambda name: __file__), mock.patch("pathlib.Path.is_file", lambda _: True), \
+    with mock.patch.object(programs, "program", lambda name: __file__), mock.patch("pathlib.Path.is_file", lambda _: True), \
             mock.patch("subprocess.run", lambda *_, **__: ended), refused():
-        launcher().versions(False)
-        launcher().versions(True)
+        programs.versions(False)
+        programs.versions(True)
 
 
 def hosts_file(folder, text):
@@ -194,15 +202,6 @@ def hosts_file(folder, text):
         rank_hosts.slots_of_file(path)
     with refused():
         rank_hosts.hosts_of_wall(text.decode(errors="replace"), "wall.toml")
-
-
-@functools.cache
-def launcher():
-    """Returns scripts/sandwall as a module."""
-    loader = importlib.machinery.SourceFileLoader("sandwall", str(ROOT / "scripts" / "sandwall"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("sandwall", loader))
-    loader.exec_module(module)
-    return module
 
 
 def changed_output(generator):
