@@ -191,7 +191,7 @@ class Doctor:
         if host.name == HERE:
             self.mpi = mpi
         if "Open MPI" not in mpi:
-            host.add(False, "mpi", f"no mpirun on the path of a command ({mpi}); scripts/install_dependencies.sh installs it")
+            host.add(False, "mpi", f"no mpirun on the path of a command ({mpi}); apt-get install openmpi-bin")
         elif self.mpi and mpi != self.mpi:
             host.add(False, "mpi", f"{mpi}, here it is {self.mpi}; install the same version on every host")
         else:
