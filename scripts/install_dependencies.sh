@@ -20,7 +20,7 @@ packages=(
 # events of sessions against the schemas, and make and check a Debian package. The report draws its curves with matplotlib.
 for option in "$@"; do
     case "$option" in
-        --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev help2man lintian) ;;
+        --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev file help2man lintian) ;;
         --with-report) packages+=(python3-matplotlib) ;;
         *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report]" >&2; exit 2 ;;
     esac

@@ -19,7 +19,7 @@ refuse() { echo "package.sh: $1" >&2; exit 2; }
 # A file shows whether the folder can be written: `test -w` is always true for root.
 mkdir -p "$out" 2>/dev/null && trial=$(mktemp "$out/trial.XXXXXX" 2>/dev/null) || refuse "$out: cannot be written; choose another --out"
 rm "$trial"
-for program in cpack help2man dpkg-shlibdeps strip; do
+for program in cpack help2man dpkg-shlibdeps file strip; do
     command -v "$program" >/dev/null || refuse "$program: not found; run scripts/install_dependencies.sh --with-tests"
 done
 work=$(mktemp -d)
