@@ -24,7 +24,7 @@ install(FILES
 install(DIRECTORY scenes/ DESTINATION ${shared}/scenes)
 install(DIRECTORY walls/configs/ DESTINATION ${shared}/walls)
 install(DIRECTORY haptic_bridge/devices/ DESTINATION ${shared}/strokes FILES_MATCHING PATTERN "*.strokes")
-install(DIRECTORY scripts/samples/ DESTINATION ${shared}/samples)
+install(DIRECTORY scripts/samples/ DESTINATION ${shared}/samples USE_SOURCE_PERMISSIONS)
 install(PROGRAMS haptic_bridge/examples/position_sender.py DESTINATION ${shared}/examples)
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md CITATION.cff LICENSE DESTINATION ${docs})
 install(DIRECTORY docs DESTINATION ${docs})
