@@ -97,6 +97,12 @@ class InstalledTree(LauncherTest):
         ended = self.call("check", "--what", "a wall", "--help")
         self.assertEqual((ended.returncode, ended.stderr), (2, "made-up sandwall-check: --what a wall --help\n"))
 
+    def test_ctl_takes_the_journal_of_a_session(self):
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "session.journal").write_text("")
+        ended = self.call("ctl", "out/session.journal", "status")
+        self.assertEqual((ended.returncode, ended.stderr), (2, "sandwall: out: no session is running in this folder\n"))
+
     def test_programs_of_another_build_are_refused_in_one_line(self):
         (self.private / "python" / "build.json").write_text('{"build": "0123456789abcdef"}')
         self.script("sandwall-master", '#!/bin/sh\necho \'{"build": "00000000000000ff"}\'\n')
