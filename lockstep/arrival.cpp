@@ -10,19 +10,26 @@
 
 namespace lockstep {
 
-Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame) {
-    static_assert(sizeof(Arrival) < kArrivalRoom);
-    constexpr int kLength = static_cast<int>(sizeof(Arrival));
+Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame,
+                    PointerReport* pointer) {
+    static_assert(sizeof(Arrival) + sizeof(PointerReport) < kArrivalRoom);
+    const int expected = static_cast<int>(sizeof(Arrival) + (pointer == nullptr ? 0 : sizeof(PointerReport)));
     if (length == kCutShort) {
         throw base::FormatError(fmt::format("longer than {} bytes", kArrivalRoom));
     }
-    if (length != kLength) {
-        throw base::FormatError(fmt::format("{} bytes instead of {}", length, kLength));
+    if (length != expected) {
+        throw base::FormatError(fmt::format("{} bytes instead of {}", length, expected));
     }
     Arrival arrival;
     std::memcpy(&arrival, room.data(), sizeof arrival);
     if (arrival.frame != frame) {
         throw base::FormatError(fmt::format("of frame {}", arrival.frame));
+    }
+    if (pointer != nullptr) {
+        PointerReport report;
+        std::memcpy(&report, room.data() + sizeof arrival, sizeof report);
+        requireValid(report);
+        *pointer = report;
     }
     return arrival;
 }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/byte_stream.hpp"
+#include "lockstep/pointer.hpp"
 
 namespace lockstep {
 
@@ -29,7 +30,11 @@ inline constexpr int kCutShort = -1;
 
 /// Decodes a rank's message at the barrier of frame `frame`, which is the first `length` bytes of `room`. `length` may
 /// be kCutShort. Throws base::FormatError, which describes the message, if it is not an arrival at that frame.
-[[nodiscard]] Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame);
+///
+/// @param pointer  Not null in a session whose hand is the pointer. The message then has a valid PointerReport behind
+///          the arrival, which is stored here.
+[[nodiscard]] Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame,
+                                  PointerReport* pointer = nullptr);
 
 /// Returns the random bytes that a drill sends instead of the arrival at frame `frame`. Their number changes from frame
 /// to frame: the length of an arrival, 200, and 4000, which is longer than the master's buffer.

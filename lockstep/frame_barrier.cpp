@@ -187,6 +187,11 @@ FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
     return FrameMessage::decode(message);
 }
 
+void FrameBarrier::carryPointers() {
+    pointer_.emplace();
+    pointers_.resize(arrivals_.size());
+}
+
 /// Receives all arrivals at the master, and lists the ranks that sent something else.
 void FrameBarrier::receiveArrivals(std::uint64_t frame) {
     std::vector<std::array<std::uint8_t, kArrivalRoom>> letters(ranks_.size());
@@ -201,11 +206,14 @@ void FrameBarrier::receiveArrivals(std::uint64_t frame) {
     for (std::size_t i = 0; i < ranks_.size(); ++i) {
         Arrival& arrival = arrivals_[i + 1];
         try {
-            arrival = readArrival(letters[i], lengths[i], frame);
+            arrival = readArrival(letters[i], lengths[i], frame, pointer_ ? &pointers_[i + 1] : nullptr);
         } catch (const base::FormatError& error) {
             nonsense_.push_back({ranks_[i], fmt::format("frame {}: {} sent an invalid arrival ({})", frame,
                                                         names_[i + 1], error.what())});
             arrival = {.frame = frame};
+            if (pointer_) {
+                pointers_[i + 1] = {};
+            }
         }
     }
 }
@@ -215,7 +223,14 @@ void FrameBarrier::sendArrival(const Arrival& mine) {
         const base::Bytes noise = noiseForArrival(mine.frame);
         MPI_Send(noise.data(), static_cast<int>(noise.size()), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
     } else {
-        MPI_Send(&mine, static_cast<int>(sizeof mine), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
+        std::array<std::uint8_t, kArrivalRoom> letter{};
+        std::size_t length = sizeof mine;
+        std::memcpy(letter.data(), &mine, sizeof mine);
+        if (pointer_) {
+            std::memcpy(letter.data() + length, &*pointer_, sizeof *pointer_);
+            length += sizeof *pointer_;
+        }
+        MPI_Send(letter.data(), static_cast<int>(length), MPI_BYTE, kMaster, kArrivalTag, cluster_.arrivals());
     }
     ring({&kMaster, 1});
 }

@@ -13,13 +13,15 @@ namespace lockstep {
 /// Something that a wall can show with the sand. Documents and commands call it a layer (docs/look.md).
 /// ViewState::layers has a bit for each overlay.
 enum class Overlay : std::uint8_t {
-    wireframe,  // the triangles' edges
-    hillShade,  // light and dark by slope, as on maps
-    force,      // the tool's force, as an arrow
-    statistics  // frame times and agreement of the wall, on every tile
+    wireframe,   // the triangles' edges
+    hillShade,   // light and dark by slope, as on maps
+    force,       // the tool's force, as an arrow
+    statistics,  // frame times and agreement of the wall, on every tile
+    help         // what buttons and keys do, on the tile of rank 1
 };
 
-inline constexpr std::array<std::string_view, 4> kOverlayNames{"wireframe", "hill-shade", "force", "statistics"};
+inline constexpr std::array<std::string_view, 5> kOverlayNames{"wireframe", "hill-shade", "force", "statistics",
+                                                               "help"};
 
 /// Bit mask of the overlays that are shown. All are off at first.
 class Overlays {

@@ -14,6 +14,7 @@ base::Bytes SessionMessage::encode() const {
     for (const Fault& fault : faults) {
         fault.encode(writer);
     }
+    writer.put(static_cast<std::uint8_t>(pointer ? 1 : 0));
     writer.putBlock(state);
     return writer.take();
 }
@@ -30,6 +31,7 @@ SessionMessage SessionMessage::decode(std::span<const std::uint8_t> bytes) {
     for (std::uint64_t i = 0; i < faults; ++i) {
         session.faults.push_back(Fault::decode(reader));
     }
+    session.pointer = reader.get<std::uint8_t>() != 0;
     const auto state = reader.getBlock();
     session.state.assign(state.begin(), state.end());
     return session;

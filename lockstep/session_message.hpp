@@ -21,6 +21,7 @@ struct SessionMessage {
     base::Bytes wall;             // walls::Wall::encode
     double frameTimeout = 0;      // [s] without a message from the master, after which a rank ends
     std::vector<Fault> faults{};  // of the session's drills
+    bool pointer = false;         // whether the hand is the pointer of the ranks' windows
     base::Bytes state{};          // sand::Replica::encodeState() of a resumed session; empty for a new one
 
     [[nodiscard]] base::Bytes encode() const;

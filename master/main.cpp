@@ -155,6 +155,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.pictures = !options.noPictures;
     options.session.report = !options.noReport;
     options.session.out = options.out;
+    options.session.desk.pointer = options.session.pointer;
     options.session.desk.pattern = lockstep::parsePattern(options.pattern);
     options.session.desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
@@ -170,6 +171,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
                      world.wall.encode(),
                      options.session.frameTimeout,
                      {},
+                     options.session.pointer,
                      options.session.record.resumed ? options.session.record.resumed->state : base::Bytes()};
     const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
                                        options.session.server.has_value()};
@@ -245,6 +247,8 @@ void describeOptions(host::CommandLine& line, Options& options) {
     line.option("--out", options.out, "folder for journal, pictures and summary").required();
     line.option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none").showDefault();
     options.link.addTo(line, false);
+    line.flag("--pointer", session.pointer, "the hand is the pointer of the ranks' windows (docs/pointer.md)")
+        .excludes(line.named("--haptic"));
     line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as possible")
         .oneOf({"realtime", "fast"});
     line.option("--refresh", session.refreshHz, "frames per second, instead of the wall file's").range(1.0, 1000.0);
@@ -293,7 +297,7 @@ void describeResume(host::CommandLine& line, Options& options) {
 void describeReplay(host::CommandLine& line, Options& options) {
     const host::Option replay =
         line.option("--replay", options.replay, "journal of a session, or its folder, shown again instead of a scene");
-    for (const char* other : {"--scene", "--haptic", "--refresh"}) {
+    for (const char* other : {"--scene", "--haptic", "--pointer", "--refresh"}) {
         replay.excludes(line.named(other));
     }
     line.option("--fps", options.framesPerSecond, "frames per second of a replay").range(1, 240).needs(replay);

@@ -10,6 +10,7 @@
 #include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "master/operator/pointer_keys.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace master {
@@ -44,7 +45,8 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       session_(std::move(session)),
       views_(wall, scene, options.tracker),
       input_(options.readInput),
-      captures_(out_) {
+      captures_(out_),
+      pointer_(options.pointer) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
     }
@@ -69,11 +71,29 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
     }
     finishJobs(false);
     for (const lockstep::Arrival& arrival : arrivals) {
-        if (arrival.key == 't') {
-            views_.show(lockstep::nextPattern(views_.pattern()));
-        } else if (arrival.key == kQuitKey) {
-            input_.stop();
+        if (arrival.key != 0) {
+            obeyKey(arrival.key);
         }
+    }
+}
+
+void OperatorDesk::obeyKey(char key) {
+    if (key == 't') {
+        views_.show(lockstep::nextPattern(views_.pattern()));
+    } else if (key == kQuitKey) {
+        input_.stop();
+    } else if (pointer_ && key == kTurnBackKey) {
+        views_.turnBack();
+    } else if (pointer_) {
+        if (const std::string command = commandOf(key, material_, views_.layers()); !command.empty()) {
+            obeyLine(command, std::nullopt);
+        }
+    }
+}
+
+void OperatorDesk::turnView(std::span<const lockstep::PointerReport> pointers) {
+    for (const lockstep::PointerReport& pointer : pointers) {
+        views_.turn(static_cast<double>(pointer.turnX), static_cast<double>(pointer.turnY));
     }
 }
 

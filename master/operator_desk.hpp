@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct DeskOptions {
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
     lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // source of the head's pose
+    bool pointer = false;  // the hand is the pointer, so that keys in the windows are commands (pointer_keys.hpp)
 };
 
 /// Carries out and answers the commands that operators give a running session, on standard input or through its control
@@ -52,6 +54,8 @@ public:
     /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
     /// windows. Answers the clients of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
+    /// Turns the view as the right button has dragged it in the ranks' windows.
+    void turnView(std::span<const lockstep::PointerReport> pointers);
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -74,6 +78,7 @@ public:
 private:
     using Client = ControlSocket::Client;
 
+    void obeyKey(char key);
     void obeyLine(const std::string& line, std::optional<Client> client);
     /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
     /// or has been sent.
@@ -103,6 +108,7 @@ private:
     EditQueue edits_;
     BackgroundJobs jobs_;
     Captures captures_;
+    const bool pointer_;
     bool paused_ = false;
 };
 

@@ -70,6 +70,9 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
     if (options_.record.resumed && options_.record.resumed->outvoted) {
         check_.tellResumed(*options_.record.resumed->outvoted);
     }
+    if (options_.pointer) {
+        barrier_.carryPointers();
+    }
     if (options_.film) {
         film_.emplace(wall, options_.filmEye, options_.out);
     }
@@ -150,6 +153,10 @@ void Session::tellLeftOut() {
 bool Session::showFrame(bool& more) {
     waitForFrame();
     desk_.obey(barrier_.arrivals());
+    if (options_.pointer) {
+        desk_.turnView(barrier_.pointers());
+        steps_->pointed(barrier_.pointers(), sand_.replica(), clock_.lastSwap());
+    }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
     const Steps steps = takeSteps();
     lockstep::FrameMessage composed = compose(steps);

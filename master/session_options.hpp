@@ -26,6 +26,7 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
     haptic_bridge::LinkSecurity security;  // of the link to the server
+    bool pointer = false;                  // the hand is the pointer of the ranks' windows
     Pace pace = Pace::realtime;
     std::optional<double> refreshHz;   // frames per second; nullopt: as in the wall file
     std::uint64_t steps = kNoLimit;    // the session ends when exactly this many steps have been shown

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <string_view>
 
 #include "lockstep/frame_message.hpp"
 #include "lockstep/test_pattern.hpp"
 #include "scene/scene.hpp"
 #include "tracking/tracked_viewer.hpp"
+#include "walls/orbit.hpp"
 #include "walls/wall.hpp"
 
 namespace master {
@@ -28,14 +30,24 @@ public:
     void show(lockstep::Overlays layers) { state_.layers = layers; }
     void show(lockstep::Overlay layer, bool shown) { state_.layers.set(layer, shown); }
     [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }
+    /// Turns the sand by a drag of the view [side of the window], right and down. Ignored unless the wall is a desktop.
+    void turn(double right, double down);
+    /// Turns the sand back to where the wall file has it.
+    void turnBack();
     /// Calls TrackedViewer::separateEyes().
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
     [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], in the last view of at()
     [[nodiscard]] const tracking::TrackedViewer& viewer() const { return viewer_; }
 
 private:
+    void place(const walls::Orbit& orbit);
+
     tracking::TrackedViewer viewer_;
     lockstep::ViewState state_;
+    walls::Stage stage_;
+    glm::dvec3 field_;  // [scene unit], width and height of the field, and its reference height
+    bool turns_;        // whether viewers may turn the sand
+    walls::Orbit orbit_;
 };
 
 }  // namespace master

@@ -100,6 +100,8 @@ public:
     /// @param cameras  The only cameras that draw before the next update. Changes that no camera sees may be postponed
     ///          until one does. An empty list means that all changes are seen.
     void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
+    /// Returns the lowest and the highest height that any sand has ever had.
+    [[nodiscard]] HeightRange heightsEver() const { return surface_->heightsEver(); }
     /// Sets the tool's centre. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
     /// Sets the tool's centre, shape and heading. Use it if the tool differs from the last one or was turned.

@@ -44,6 +44,7 @@ void TilePainter::makeTargets() {
     memories_.assign(eyes, {});
     shown_.assign(eyes, lockstep::Pattern::none);
     covered_.assign(eyes, {});
+    helped_.assign(eyes, false);
 }
 
 void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
@@ -53,6 +54,7 @@ void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
     composer_ = StereoComposer(wall.stereo, tile);
     patterns_.reset();
     overlay_.reset();
+    help_.reset();
 }
 
 void TilePainter::drawAnew() {
@@ -87,6 +89,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
         }
         overlay_->add(figures, frame);
     }
+    showHelp(view.layers.shows(lockstep::Overlay::help) && tile_->rank == 1);
     const PixelRect changed =
         pattern == lockstep::Pattern::none ? paintSand(cameras, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
@@ -94,6 +97,33 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     composer_.compose(targets_, changed);
     if (overlay_ && pattern == lockstep::Pattern::none) {
         paintOverlay(range);
+    }
+    if (help_ && pattern == lockstep::Pattern::none) {
+        paintHelp(range, changed);
+    }
+}
+
+void TilePainter::showHelp(bool shown) {
+    if (shown && !help_) {
+        help_.emplace(tile_->pixels);
+    }
+    if (!shown && help_) {
+        for (std::size_t i = 0; i < helped_.size(); ++i) {
+            memories_[i].covered = around(memories_[i].covered, helped_[i] ? help_->pixels() : PixelRect{});
+            helped_[i] = false;
+        }
+        help_.reset();
+    }
+}
+
+/// Draws the help again where anything has been drawn, because still sand must cost nothing.
+void TilePainter::paintHelp(EyeRange range, const PixelRect& changed) {
+    for (std::size_t i = range.from; i < range.end; ++i) {
+        if (!helped_[i] || !changed.empty() || overlay_) {
+            help_->draw(std::span<const EyeTarget>(targets_).subspan(i, 1));
+            helped_[i] = true;
+            composer_.compose(targets_, help_->pixels());
+        }
     }
 }
 
@@ -144,6 +174,7 @@ PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t fra
             patterns_->draw(pattern, walls::eyesOf(wall_->stereo)[i], frame, targets_[i]);
             memories_[i].drawn = false;  // the sand must be drawn whole after the pattern
             covered_[i] = {};
+            helped_[i] = false;
             changed = {0, 0, targets_[i].width(), targets_[i].height()};
         }
     }

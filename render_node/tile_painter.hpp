@@ -10,6 +10,7 @@
 #include "lockstep/frame_message.hpp"
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
+#include "render_node/overlay/help.hpp"
 #include "render_node/overlay/statistics.hpp"
 #include "render_node/overlay/test_pattern.hpp"
 #include "render_node/scene_painter.hpp"
@@ -69,6 +70,8 @@ public:
     [[nodiscard]] std::int64_t frameBufferBytes() const;
     /// Returns the counts of the sand's views so far. Test patterns and statistics do not count.
     [[nodiscard]] const ViewCounts& viewCounts() const { return counts_; }
+    /// Returns the lowest and the highest height that any sand that was drawn has ever had.
+    [[nodiscard]] HeightRange heightsEver() const { return scenePainter_.heightsEver(); }
 
 private:
     struct EyeRange {
@@ -79,6 +82,9 @@ private:
     PixelRect paintSand(std::span<const Camera> cameras, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
     void uncover(EyeRange range);
+    /// Shows or hides the help. Where it was hidden, makes the next drawing restore the sand under it.
+    void showHelp(bool shown);
+    void paintHelp(EyeRange range, const PixelRect& changed);
     void paintOverlay(EyeRange range);
 
     void makeTargets();
@@ -96,6 +102,8 @@ private:
     std::vector<lockstep::Pattern> shown_;      // for each target, the pattern that it shows
     std::optional<StatisticsOverlay> overlay_;  // only while Overlay::statistics is shown
     std::vector<PixelRect> covered_;            // for each target, the pixels under the statistics
+    std::optional<HelpOverlay> help_;           // only while Overlay::help is shown, on the tile of rank 1
+    std::vector<bool> helped_;                  // for each target, whether it shows the help
     ViewCounts counts_;
 };
 

@@ -21,6 +21,7 @@
 #include "lockstep/statistics.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "render_node/gl/gl_program.hpp"
+#include "render_node/pointer/pointer_reader.hpp"
 #include "render_node/tile_painter.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/scene.hpp"
@@ -43,8 +44,9 @@ public:
           shown_(wall_),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
-          context_(makeContext(backend, wall_, tile_)),
-          otherFloats_(base::repairFloats()) {
+          context_(makeContext(backend, wall_, tile_, message.pointer)),
+          otherFloats_(base::repairFloats()),
+          pointer_(shown_, cluster.rank()) {
         if (faults_.spoilsShader()) {
             const GlProgram broken(shaderSource("solid.vert.glsl"), shaderSource("light.glsl"),
                                    {"sand.frag.glsl", "spoilt on purpose"});
@@ -68,10 +70,14 @@ public:
     void run() {
         const std::int64_t clockAhead = lockstep::clockAheadOfMaster(cluster_);
         lockstep::FrameBarrier barrier(cluster_, {}, message_.frameTimeout);
+        if (message_.pointer) {
+            barrier.carryPointers();
+        }
         std::int64_t lastSwap = 0;
         TileFigures figures;  // of the previous frame
         for (bool more = true; more;) {
             std::size_t bytes = 0;
+            watchWindows(barrier.quietUntil());
             lockstep::FrameMessage frame = barrier.begin({}, bytes);
             barrier.watchdog().setLimit(message_.frameTimeout);  // longer after pictures
             applyFaults(frame);
@@ -86,6 +92,9 @@ public:
             drawMs_.add(figures.drawMs);
             const std::uint64_t hash = terrain_->stateHash();
             const std::int64_t arrived = monotonicNs();
+            if (message_.pointer) {
+                barrier.setPointer(readPointer(frame.view, clockAhead));
+            }
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
@@ -116,6 +125,21 @@ private:
         if (faults_.movesView(frame.frame)) {
             frame.view.head[0] += 1;
         }
+    }
+
+    /// Lets the pointer's events come in until `until` [ns], when the next frame begins at the earliest. So each event
+    /// gets its own time. All other sessions sleep in FrameBarrier::begin().
+    void watchWindows(std::int64_t until) {
+        if (!message_.pointer) {
+            return;
+        }
+        for (std::int64_t left = until - monotonicNs(); left > 0; left = until - monotonicNs()) {
+            context_->awaitEvents(static_cast<double>(left) * 1e-9);
+        }
+    }
+
+    [[nodiscard]] lockstep::PointerReport readPointer(const lockstep::ViewState& view, std::int64_t clockAhead) {
+        return pointer_.read(context_->takePointer(), *terrain_, view, painter_->heightsEver(), clockAhead);
     }
 
     /// Draws a frame from the current sand and presents it.
@@ -216,6 +240,7 @@ private:
     const std::string otherFloats_;
     std::optional<sand::Replica> terrain_;
     std::optional<TilePainter> painter_;
+    PointerReader pointer_;
     lockstep::Statistics drawMs_, waitMs_;
 };
 

@@ -157,7 +157,8 @@ std::size_t LiveSteps::ownStepsDue() {
     const std::int64_t now = now_();
     ownStepsOwed_ += static_cast<double>(now - lastOwnNs_) * 1e-9 * stepsPerSecond_;
     lastOwnNs_ = now;
-    const double due = std::floor(ownStepsOwed_);
+    // A pointer is read once per frame. Rounding gives each frame its step, although frames are never quite punctual.
+    const double due = std::floor(ownStepsOwed_ + (pointer_ ? 0.5 : 0));
     ownStepsOwed_ -= due;
     return static_cast<std::size_t>(due);
 }
@@ -228,11 +229,29 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::ui
             TimedStep& own = steps.emplace_back();
             own.step.epoch = epoch_;
             own.step.number = terrain.stepNumber() + 1 + i;
-            positions_.fill(own.step);
+            fill(own);
             own.step.edit = i < edits_.size() ? edits_[i] : sand::Edit();
         }
     }
     return steps;
+}
+
+void LiveSteps::fill(TimedStep& own) {
+    if (!pointer_) {
+        positions_.fill(own.step);
+        return;
+    }
+    own.serverTimeNs = pointer_->fill(own.step);
+    own.receivedNs = pointedNs_;
+}
+
+void LiveSteps::pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand,
+                        std::int64_t receivedNs) {
+    if (!pointer_) {
+        pointer_.emplace(stepsPerSecond_, sand);
+    }
+    pointer_->take(reports, sand);
+    pointedNs_ = receivedNs;
 }
 
 void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
@@ -242,7 +261,11 @@ void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
 }
 
 const char* LiveSteps::hand() const {
-    return linked() ? "hand linked" : streaming() ? "hand streams" : starting() ? "waiting for a hand" : "no hand";
+    return pointer_      ? "hand points"
+           : linked()    ? "hand linked"
+           : streaming() ? "hand streams"
+           : starting()  ? "waiting for a hand"
+                         : "no hand";
 }
 
 std::vector<base::Bytes> LiveSteps::ticks() {

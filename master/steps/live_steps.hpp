@@ -10,6 +10,7 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "lockstep/fault.hpp"
+#include "master/steps/pointer_hand.hpp"
 #include "master/steps/position_source.hpp"
 #include "master/steps/step_source.hpp"
 #include "master/steps/tick_budget.hpp"
@@ -54,6 +55,9 @@ public:
     [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
                                    std::uint64_t stateHash) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override;
+    /// From the first call on, the pointers are the hand. Call it only without a server.
+    void pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand,
+                 std::int64_t receivedNs) override;
     void drill(const lockstep::Fault& fault) override { drills_.push_back(fault); }
 
     /// Returns whether the session has just started and still waits for the server.
@@ -82,6 +86,8 @@ private:
     void connect();
     [[nodiscard]] double secondsSince(std::int64_t then) const;
     [[nodiscard]] std::size_t ownStepsDue();
+    /// Fills in the hand's path since the step before.
+    void fill(haptic_bridge::TimedStep& own);
     void followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain);
     void passEdits(const std::vector<haptic_bridge::TimedStep>& steps);
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& terrain, std::uint64_t stateHash,
@@ -103,6 +109,8 @@ private:
     std::optional<haptic_bridge::Report> earlierReport_;
     std::deque<sand::Edit> edits_;  // edits that are not in a step yet
     PositionSource positions_;
+    std::optional<PointerHand> pointer_;   // nullopt before pointed()
+    std::int64_t pointedNs_ = 0;           // when the last reports arrived
     std::vector<base::Bytes> ticks_;       // of a server whose link the master has ended
     TickBudget tickBudget_;                // of all servers together
     std::vector<lockstep::Fault> drills_;  // faults that wait for a link

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
 #include "lockstep/fault.hpp"
+#include "lockstep/pointer.hpp"
 #include "sand/replica.hpp"
 
 namespace master {
@@ -57,6 +59,11 @@ public:
     [[nodiscard]] virtual bool strayed() const { return false; }
     /// Returns a line for the user that describes this difference, once; an empty text if there is no new one.
     [[nodiscard]] virtual std::string takeStrayLine() { return {}; }
+
+    /// Takes the pointers of the ranks' windows at the last barrier, in order of rank. `receivedNs` is when the last of
+    /// them arrived [ns, the master's clock].
+    virtual void pointed(std::span<const lockstep::PointerReport> /* reports */, const sand::Replica& /* sand */,
+                         std::int64_t /* receivedNs */) {}
 
     /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since
     /// the swap before [ns].

@@ -110,8 +110,16 @@ PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const 
     return request;
 }
 
-std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
-    return contextOf(backendFor(backend, tile), platformRequest(backend, wall, tile));
+std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
+                                       bool pointer) {
+    PlatformRequest request = platformRequest(backend, wall, tile);
+    request.pointer = pointer;
+    if (pointer && request.windows.empty()) {
+        throw base::InputError("--gl " + std::string(backendName(backendFor(backend, tile))) +
+                               ": draws without a window, but the pointer needs one; choose --gl glfw, or another "
+                               "--device");
+    }
+    return contextOf(backendFor(backend, tile), request);
 }
 
 std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) { return contextOf(backendFor(backend, {}), {}); }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "render_node/gl/gl_platform.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -64,6 +65,11 @@ public:
     /// Returns the keys that were pressed in the windows since the last call, one character each. Off screen it returns
     /// "".
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// Returns the events of the pointer in the windows since the last call, in the order of time. Off screen, and for
+    /// a context without the pointer, it returns none.
+    [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
+    /// Waits for an event of the window system, at most `seconds` [s]. Off screen it returns at once.
+    virtual void awaitEvents(double /* seconds */) {}
     /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     /// Returns whether hardware locks the swaps of several graphics cards. Off screen it returns "none". If only the
@@ -85,8 +91,10 @@ private:
 };
 
 /// Makes a context for the outputs of `tile`, current on this thread, and loads the GL functions. Throws
-/// base::InputError, with one line that gives the package to install or the backend to choose.
-[[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
+/// base::InputError, with one line that gives the package to install or the backend to choose. With `pointer`, the
+/// windows show the pointer and report its events; throws base::InputError if the backend has no windows.
+[[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
+                                                     bool pointer = false);
 
 /// Makes a context without outputs, as makeContext() does, for tests and measurements.
 [[nodiscard]] std::unique_ptr<GlContext> makeOffscreenContext(Backend backend);

@@ -18,6 +18,24 @@ struct WindowRequest {
     glm::ivec2 pixels{1, 1};
 };
 
+/// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
+/// reports it.
+struct PointerEvent {
+    enum class Kind : std::uint8_t {
+        move,         // to `at`
+        press,        // the left button goes down, or a finger touches
+        release,      // the left button goes up
+        turnPress,    // the right button goes down
+        turnRelease,  // the right button goes up
+        wheel         // the wheel has turned by `notches`
+    };
+    Kind kind = Kind::move;
+    std::size_t window = 0;  // index in PlatformRequest::windows
+    glm::dvec2 at{0};        // [pixel] from the window's top left corner; outside of it while a button is held
+    std::int64_t ns = 0;     // [ns], monotonic clock
+    double notches = 0;      // of the wheel, positive towards the user
+};
+
 /// Request for a backend. Without windows the backend draws off screen.
 struct PlatformRequest {
     std::string who = "this process";  // such as "rank 3 (r1c3)"; begins the last line that a process prints when its X
@@ -26,6 +44,7 @@ struct PlatformRequest {
     int device = -1;                   // number of the EGL device; -1: the driver chooses
     bool eyesInTurn = false;           // active stereo; without quad buffers, one eye per frame in turn
     double refreshHz = 60;
+    bool pointer = false;  // the pointer is shown, and takePointer() returns its events
     std::vector<WindowRequest> windows;
 };
 
@@ -53,13 +72,17 @@ public:
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn.
     virtual void swap(std::uint64_t /* frame */) {}
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// Returns the events of the pointer since the last call, in the order of time.
+    [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
+    /// Waits until the window system has an event, and at most `seconds` [s]. Processes the events.
+    virtual void awaitEvents(double /* seconds */) {}
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform1";
+extern "C" GlPlatform* sandwallGlPlatform2(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform2";
 
 }  // namespace render_node

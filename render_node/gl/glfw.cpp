@@ -38,7 +38,7 @@ public:
         for (GlfwWindow& window : windows_) {
             ids.push_back(glfwGetX11Window(window.handle()));
             drawables.push_back(glfwGetGLXWindow(window.handle()));
-            window.sendKeysTo(keys_);
+            window.sendInputTo(input_, ids.size() - 1, request.pointer);
         }
         watch_.watch(ids);
         makeCurrent(0);
@@ -78,8 +78,13 @@ public:
 
     [[nodiscard]] std::string takeKeys() override {
         check();
-        return std::exchange(*keys_, {});
+        return std::exchange(input_->keys, {});
     }
+    [[nodiscard]] std::vector<PointerEvent> takePointer() override {
+        check();
+        return std::exchange(input_->pointer, {});
+    }
+    void awaitEvents(double seconds) override { glfwWaitEventsTimeout(seconds); }
 
     [[nodiscard]] std::vector<std::string> shortcomings() const override {
         std::vector<std::string> lines;
@@ -122,7 +127,7 @@ private:
     XWatch watch_;
     GlfwLibrary library_;
     std::vector<GlfwWindow> windows_;
-    std::shared_ptr<std::string> keys_ = std::make_shared<std::string>();
+    std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
     bool eyesInTurn_;
     std::optional<SwapGroup> group_;
     std::vector<std::optional<EyesByRetrace>> eyes_;
@@ -130,6 +135,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform1(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform2(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

@@ -7,6 +7,7 @@
 #include <GLFW/glfw3native.h>
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 #include <span>
 
@@ -118,6 +119,7 @@ GlfwLibrary::~GlfwLibrary() { glfwTerminate(); }
 std::string GlfwLibrary::complaint() const { return lastComplaint.empty() ? "no reason given" : lastComplaint; }
 
 void GlfwWindow::Destroy::operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
+void GlfwWindow::Destroy::operator()(GLFWcursor* cursor) const { glfwDestroyCursor(cursor); }
 
 GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display) {
     hintContext(false);
@@ -160,20 +162,53 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
     }
 }
 
-void GlfwWindow::sendKeysTo(const std::shared_ptr<std::string>& keys) {
-    keys_ = keys;
-    glfwSetWindowUserPointer(handle(), keys_.get());
+void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
+    listener_ = std::make_unique<Listener>(Listener{input, index});
+    glfwSetWindowUserPointer(handle(), listener_.get());
     constexpr char kQuit = 27;
     glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
         if (character >= ' ' && character < 127) {
-            static_cast<std::string*>(glfwGetWindowUserPointer(window))
-                ->push_back(character == 'q' ? kQuit : static_cast<char>(character));
+            static_cast<Listener*>(glfwGetWindowUserPointer(window))
+                ->input->keys.push_back(character == 'q' ? kQuit : static_cast<char>(character));
         }
     });
     glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
         if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
-            static_cast<std::string*>(glfwGetWindowUserPointer(window))->push_back(kQuit);
+            static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuit);
         }
+    });
+    if (pointer) {
+        followPointer();
+    }
+}
+
+/// Adds an event of the pointer at the place of its last motion. glfwGetCursorPos() would ask the X server, and return
+/// a later place.
+void GlfwWindow::addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches) {
+    const auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    const std::int64_t ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+    listener->input->pointer.push_back({kind, listener->window, listener->at, ns, notches});
+}
+
+void GlfwWindow::followPointer() {
+    using Kind = PointerEvent::Kind;
+    glfwSetInputMode(handle(), GLFW_CURSOR, GLFW_CURSOR_NORMAL);
+    cursor_.reset(glfwCreateStandardCursor(GLFW_CROSSHAIR_CURSOR));
+    glfwSetCursor(handle(), cursor_.get());  // without a crosshair, the arrow stays
+    glfwSetMouseButtonCallback(handle(), [](GLFWwindow* window, int button, int action, int /* shifts */) {
+        const bool down = action == GLFW_PRESS;
+        if (button == GLFW_MOUSE_BUTTON_LEFT) {
+            addPointer(window, down ? Kind::press : Kind::release);
+        } else if (button == GLFW_MOUSE_BUTTON_RIGHT) {
+            addPointer(window, down ? Kind::turnPress : Kind::turnRelease);
+        }
+    });
+    glfwSetScrollCallback(
+        handle(), [](GLFWwindow* window, double /* right */, double up) { addPointer(window, Kind::wheel, -up); });
+    glfwSetCursorPosCallback(handle(), [](GLFWwindow* window, double x, double y) {
+        static_cast<Listener*>(glfwGetWindowUserPointer(window))->at = {x, y};
+        addPointer(window, Kind::move);
     });
 }
 

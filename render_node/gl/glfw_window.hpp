@@ -10,6 +10,7 @@
 
 struct GLFWwindow;
 struct GLFWmonitor;
+struct GLFWcursor;
 
 namespace render_node {
 
@@ -24,7 +25,14 @@ public:
     [[nodiscard]] std::string complaint() const;
 };
 
-/// Window of one output, with its OpenGL context. It has no decorations and no cursor, and it cannot be resized.
+/// Input of all windows since it was taken last.
+struct WindowInput {
+    std::string keys;  // pressed characters; 27 for Escape and q
+    std::vector<PointerEvent> pointer;
+};
+
+/// Window of one output, with its OpenGL context. It has no decorations, and it cannot be resized. It shows a cursor
+/// only if the request asks for the pointer.
 class GlfwWindow {
 public:
     /// Makes a hidden window, for its context only.
@@ -38,22 +46,33 @@ public:
     [[nodiscard]] GLFWwindow* handle() const { return window_.get(); }
     [[nodiscard]] const std::string& name() const { return wanted_.output.name; }
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
-    /// Appends each pressed character to `keys`. Escape and q append character 27.
-    void sendKeysTo(const std::shared_ptr<std::string>& keys);
+    /// Appends the input of this window to `input` from now on. `index` is the number of the window in its events. With
+    /// `pointer`, the events of the pointer are appended, too.
+    void sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer);
     /// Appends a line for each property that differs from the request: place, size and refresh rate. Asks the X server.
     void addShortcomings(std::vector<std::string>& lines) const;
 
 private:
     struct Destroy {
         void operator()(GLFWwindow* window) const;
+        void operator()(GLFWcursor* cursor) const;
     };
     void open(const GlfwLibrary& library, const std::string& display, GLFWmonitor* monitor, GLFWwindow* share);
 
     WindowRequest wanted_;
     double refreshHz_ = 0;  // 0: any rate
     bool quadBuffers_ = false;
-    std::shared_ptr<std::string> keys_;
+    struct Listener {
+        std::shared_ptr<WindowInput> input;
+        std::size_t window = 0;
+        glm::dvec2 at{0};  // [pixel], of the pointer's last motion
+    };
+    static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
+    void followPointer();
+
+    std::unique_ptr<Listener> listener_;  // at an address that stays, because GLFW keeps it
     std::unique_ptr<GLFWwindow, Destroy> window_;
+    std::unique_ptr<GLFWcursor, Destroy> cursor_;
 };
 
 /// Returns the number of the X screen that the windows are on, such as 1 for display ":0.1".

@@ -78,6 +78,8 @@ public:
         platform_->check();
     }
     [[nodiscard]] std::string takeKeys() override { return platform_->takeKeys(); }
+    [[nodiscard]] std::vector<PointerEvent> takePointer() override { return platform_->takePointer(); }
+    void awaitEvents(double seconds) override { platform_->awaitEvents(seconds); }
     [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
     [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
     [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }

@@ -170,11 +170,22 @@ void GridSurface::corrupt(int column, int row, int bit) {
     field_.setHeight(column, row, field_.height(column, row) ^ (std::int32_t{1} << bit));
 }
 
-double GridSurface::height(double x, double y) const {
+namespace {
+
+std::int32_t heightAt(const HeightField& field, double x, double y) {
     const auto cell = [](double place, int cells) {
         return std::clamp(static_cast<int>(std::floor(place / kProbePerCell)), 0, cells - 1);
     };
-    return field_.height(cell(x, field_.columns()), cell(y, field_.rows()));
+    return field.height(cell(x, field.columns()), cell(y, field.rows()));
+}
+
+}  // namespace
+
+double GridSurface::height(double x, double y) const { return heightAt(field_, x, y); }
+
+std::optional<double> GridSurface::keptHeight(double x, double y) const {
+    const Snapshot* const kept = beforeStroke_.kept();
+    return kept == nullptr ? std::nullopt : std::optional<double>(heightAt(kept->field, x, y));
 }
 
 }  // namespace sand::grid

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -127,6 +128,14 @@ public:
     /// Returns the height of the sand at (x, y) [unit]. A height field returns the height of the cell there; a TIN
     /// interpolates within the triangle there. Outside the field, returns the height of the nearest place in it.
     [[nodiscard]] virtual double height(double x, double y /* [probe unit] */) const = 0;
+
+    /// Returns whether keptHeight() returns heights. A TIN's kept sand is encoded, so that it returns none.
+    [[nodiscard]] virtual bool readsKept() const { return false; }
+    /// Returns the height at (x, y) as height() does, of the sand that is kept for an undo. Returns nullopt if no sand
+    /// is kept, or if readsKept() is false.
+    [[nodiscard]] virtual std::optional<double> keptHeight(double /* x */, double /* y */) const {
+        return std::nullopt;
+    }
 
     /// Returns references to the current sand. They belong to this surface; call data() again after each change.
     [[nodiscard]] virtual SurfaceData data() const = 0;

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/pointer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/byte_stream.hpp"
+#include "sand/model/step.hpp"
+
+namespace lockstep {
+
+bool PointerReport::touches() const {
+    return pressed != 0 ||
+           std::ranges::any_of(places(), [](const PointerSample& sample) { return sample.pressed != 0; });
+}
+
+void requireValid(const PointerReport& report) {
+    if (report.count > PointerReport::kMostSamples) {
+        throw base::FormatError(fmt::format("a pointer with {} places", report.count));
+    }
+    for (const float number : {report.wheel, report.turnX, report.turnY}) {
+        if (!std::isfinite(number)) {
+            throw base::FormatError("a pointer with a number that is not finite");
+        }
+    }
+    for (const PointerSample& sample : report.places()) {
+        for (const std::int32_t number : {sample.x, sample.y, sample.z}) {
+            if (number < -sand::kMaxProbe || number >= sand::kMaxProbe) {
+                throw base::FormatError(fmt::format("a pointer at {}", number));
+            }
+        }
+    }
+}
+
+}  // namespace lockstep

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+namespace lockstep {
+
+/// One place of the pointer: where its ray meets the sand.
+struct PointerSample {
+    std::int64_t at = 0;                 // [ns], when the rank read it, on the master's clock
+    std::int32_t x = 0, y = 0, z = 0;    // [probe unit], place on the sand's surface; meaningless unless `meets`
+    std::uint8_t pressed = 0;            // 1: the left button or a finger is down
+    std::uint8_t meets = 0;              // 1: the ray meets sand
+    std::array<std::uint8_t, 2> zero{};  // fills the gap, so that no byte of the message is indeterminate
+    friend bool operator==(const PointerSample&, const PointerSample&) = default;
+};
+
+/// Pointer of a rank's windows since its arrival before. A rank sends it behind its arrival, and only in a session
+/// whose hand is the pointer.
+struct PointerReport {
+    static constexpr std::size_t kMostSamples = 6;
+
+    std::uint32_t touch = 0;     // number of touches in the rank's windows so far
+    float wheel = 0;             // notches of the wheel, positive towards the user
+    float turnX = 0, turnY = 0;  // [side of the window] that the right button has dragged the view, right and down
+    std::uint8_t count = 0;      // number of samples, in the order of time
+    std::uint8_t pressed = 0;    // 1: the left button or a finger is down now
+    std::array<std::uint8_t, 6> zero{};  // fills the gap
+    std::array<PointerSample, kMostSamples> samples{};
+
+    [[nodiscard]] std::span<const PointerSample> places() const { return {samples.data(), count}; }
+    /// Returns whether a touch lasts, or began and ended since the arrival before.
+    [[nodiscard]] bool touches() const;
+    friend bool operator==(const PointerReport&, const PointerReport&) = default;
+};
+static_assert(std::is_trivially_copyable_v<PointerReport>);
+static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 24 + 24 * PointerReport::kMostSamples,
+              "no hidden gaps, because the bytes are a message");
+
+/// Throws base::FormatError if `report` has too many samples, a place beyond sand::kMaxProbe, or a number that is not
+/// finite.
+void requireValid(const PointerReport& report);
+
+}  // namespace lockstep

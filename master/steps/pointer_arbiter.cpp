@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/steps/pointer_arbiter.hpp"
+
+#include <algorithm>
+
+namespace master {
+
+std::optional<std::size_t> PointerArbiter::hand(std::span<const lockstep::PointerReport> reports) {
+    std::erase_if(touches_, [&](const Touch& touch) {
+        return touch.rank >= reports.size() || !reports[touch.rank].touches() ||
+               reports[touch.rank].touch != touch.number;
+    });
+    for (std::size_t rank = 0; rank < reports.size(); ++rank) {
+        const bool known = std::ranges::any_of(touches_, [&](const Touch& touch) { return touch.rank == rank; });
+        if (reports[rank].touches() && !known) {
+            touches_.push_back({rank, reports[rank].touch});
+        }
+    }
+    if (!touches_.empty()) {
+        last_ = touches_.front().rank;
+        return last_;
+    }
+    const auto moved = std::ranges::find_if(reports, [](const auto& report) { return report.count > 0; });
+    if (moved != reports.end()) {
+        last_ = static_cast<std::size_t>(moved - reports.begin());
+    }
+    return last_;
+}
+
+}  // namespace master

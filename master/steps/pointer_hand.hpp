@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "haptic_bridge/hand/path_builder.hpp"
+#include "lockstep/pointer.hpp"
+#include "master/steps/pointer_arbiter.hpp"
+#include "sand/replica.hpp"
+
+namespace master {
+
+/// Makes the paths of the master's own steps from the pointers of the ranks' windows.
+///
+/// One pointer at a time is the hand (PointerArbiter). Where it is pressed, the tool's underside is `depth()` below the
+/// sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves nothing.
+/// Used by one thread.
+class PointerHand {
+public:
+    static constexpr double kHover = 1.3;          // [tool radius] from the surface to the centre of a tool that hovers
+    static constexpr double kDepthPerNotch = 0.1;  // [tool radius]
+    static constexpr double kDeepest = 2;          // [tool radius]
+
+    /// The tool is where `sand` has it. It is lifted first, because the process that made the steps before may have
+    /// left it in the sand.
+    PointerHand(int stepsPerSecond, const sand::Replica& sand);
+
+    /// Takes the reports of a frame, in order of rank. `sand` gives the size of the tool.
+    void take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand);
+    /// Fills in the hand's path since the step before. Returns when its last place was read [ns, the master's clock],
+    /// or 0 if the hand has not moved.
+    std::int64_t fill(sand::Step& step);
+
+    [[nodiscard]] double depth() const { return depth_; }  // [tool radius]
+
+private:
+    void add(const lockstep::PointerSample& sample, const sand::Replica& sand);
+
+    PointerArbiter arbiter_;
+    haptic_bridge::PathBuilder path_;
+    std::optional<std::size_t> hand_;  // rank of the frame before
+    sand::ProbePoint last_;
+    bool engaged_ = false;
+    double depth_ = 0.5;
+    bool liftFirst_;
+};
+
+}  // namespace master

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/pointer/pointer_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/type_ptr.hpp>
+
+#include "render_node/pointer/sand_ray.hpp"
+
+namespace render_node {
+namespace {
+
+using lockstep::PointerReport;
+
+/// Removes readings until a report can hold the rest. Keeps the last one, and those at which the pointer was pressed or
+/// released. Of the others it removes those that are closest to their neighbours in time.
+template <class Reading>
+void thin(std::vector<Reading>& readings) {
+    while (readings.size() > PointerReport::kMostSamples) {
+        std::size_t victim = 0;
+        std::int64_t shortest = 0;
+        for (std::size_t i = 1; i + 1 < readings.size(); ++i) {
+            const bool turning =
+                readings[i].pressed != readings[i - 1].pressed || readings[i].pressed != readings[i + 1].pressed;
+            const std::int64_t gap = readings[i + 1].ns - readings[i - 1].ns;
+            if (!turning && (victim == 0 || gap < shortest)) {
+                victim = i;
+                shortest = gap;
+            }
+        }
+        readings.erase(readings.begin() + static_cast<std::ptrdiff_t>(victim));
+    }
+}
+
+}  // namespace
+
+void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
+    using Kind = PointerEvent::Kind;
+    const glm::dvec2 before = last_.at;
+    last_ = {event.window, event.at};
+    switch (event.kind) {
+        case Kind::wheel:
+            report.wheel += static_cast<float>(event.notches);
+            break;  // the tool goes to its new depth at once
+        case Kind::turnPress:
+        case Kind::turnRelease:
+            turns_ = event.kind == Kind::turnPress;
+            return;
+        case Kind::move:
+            if (turns_ && !pressed_) {
+                const glm::dvec2 share =
+                    (event.at - before) / glm::dvec2(walls::outputPixels(wall_.stereo, tile().pixels));
+                report.turnX += static_cast<float>(share.x);
+                report.turnY += static_cast<float>(share.y);
+                return;
+            }
+            break;
+        case Kind::press:
+            pressed_ = true;
+            ++touches_;
+            touched_.reset();
+            break;
+        case Kind::release:
+            pressed_ = false;
+            break;
+    }
+    readings_.push_back({event.ns, last_, pressed_});
+}
+
+PointerReport PointerReader::read(std::span<const PointerEvent> events, const sand::Replica& terrain,
+                                  const lockstep::ViewState& view, HeightRange heights, std::int64_t clockAhead) {
+    PointerReport report;
+    readings_.clear();
+    for (const PointerEvent& event : events) {
+        follow(event, report);
+    }
+    thin(readings_);
+    for (const Reading& reading : readings_) {
+        if (reading.pressed && touched_ == nullptr && !terrain.surface().readsKept()) {
+            touched_ = terrain.surface().clone();
+        }
+        lockstep::PointerSample& sample = report.samples[report.count++] =
+            this->sample(reading, terrain, view, heights);
+        sample.at = reading.ns - clockAhead;
+    }
+    report.pressed = pressed_ ? 1 : 0;
+    report.touch = touches_;
+    if (!pressed_) {
+        touched_.reset();
+    }
+    return report;
+}
+
+lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& terrain,
+                                              const lockstep::ViewState& view, HeightRange heights) {
+    const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
+    const Ray units = sightRay(eye, roomPoint(wall_, tile(), reading.place), glm::make_mat4(view.sceneToRoom.data()));
+    const double cell = terrain.cellSize();
+    const Ray cells{units.from / cell, units.along / cell};
+    const sand::Rules& rules = terrain.rules();
+    const double margin = 2 * terrain.toolRadius() / cell;  // sand that this tile has not drawn yet may be higher
+    const bool pressed = reading.pressed;
+    const auto heightAt = [&](double x, double y) {
+        constexpr double kProbe = sand::kProbePerCell;
+        return heightOf(terrain, pressed, x * kProbe, y * kProbe) / sand::kUnitsPerCell;
+    };
+    const SandBody sand{static_cast<double>(rules.columns),
+                        static_cast<double>(rules.rows),
+                        heights.lowest / cell - margin,
+                        heights.highest / cell + margin,
+                        0.5,
+                        heightAt};
+    lockstep::PointerSample sample;
+    sample.pressed = pressed ? 1 : 0;
+    const std::optional<glm::dvec2> place = meetSand(cells, sand);
+    if (!place) {
+        return sample;
+    }
+    // The mean of the heights under the tool, because ripples smaller than the tool must not shake the hand.
+    constexpr int kHalf = 2;
+    const double reach = terrain.toolRadius() / cell / kHalf;
+    double sum = 0;
+    for (int j = -kHalf; j <= kHalf; ++j) {
+        for (int i = -kHalf; i <= kHalf; ++i) {
+            sum += heightAt(place->x + reach * i, place->y + reach * j);
+        }
+    }
+    const auto quantised = [](double number) {
+        constexpr double kFarthest = sand::kMaxProbe;
+        return static_cast<std::int32_t>(
+            std::floor(std::clamp(number * sand::kProbePerCell, -kFarthest, kFarthest - 1) + 0.5));
+    };
+    sample.x = quantised(place->x);
+    sample.y = quantised(place->y);
+    sample.z = quantised(sum / ((2 * kHalf + 1) * (2 * kHalf + 1)));
+    sample.meets = 1;
+    return sample;
+}
+
+double PointerReader::heightOf(const sand::Replica& terrain, bool pressed, double x, double y) const {
+    const sand::Surface& now = terrain.surface();
+    if (pressed && touched_ != nullptr) {
+        return touched_->height(x, y);
+    }
+    if (pressed && terrain.engaged()) {
+        if (const std::optional<double> before = now.keptHeight(x, y)) {
+            return *before;
+        }
+    }
+    return now.height(x, y);
+}
+
+}  // namespace render_node

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "lockstep/frame_message.hpp"
+#include "lockstep/pointer.hpp"
+#include "render_node/gl/gl_platform.hpp"
+#include "render_node/pointer/window_ray.hpp"
+#include "render_node/surface/height_range.hpp"
+#include "sand/replica.hpp"
+#include "walls/wall.hpp"
+
+namespace render_node {
+
+/// Makes the report that a rank sends with its arrival from the pointer's events in its windows.
+///
+/// A ray from the midpoint of the eyes through the pointer meets the rank's own sand. While the pointer is pressed, the
+/// sand from before the stroke counts, because otherwise the tool would sink into its own furrow. Used by one thread.
+class PointerReader {
+public:
+    /// `wall` is the wall as it is shown. It must outlive the reader, and may change to another stereo mode.
+    PointerReader(const walls::Wall& wall, int rank) : wall_(wall), rank_(rank) {}
+
+    /// Returns the report of `events`. All places are computed with `view` and with the sand of `terrain`, which are
+    /// those of the frame that is drawn.
+    ///
+    /// @param heights  No height of the sand is outside of these [scene unit].
+    /// @param clockAhead  This rank's clock − master's clock [ns].
+    [[nodiscard]] lockstep::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& terrain,
+                                               const lockstep::ViewState& view, HeightRange heights,
+                                               std::int64_t clockAhead);
+
+private:
+    /// A place of the pointer, before its ray is computed.
+    struct Reading {
+        std::int64_t ns;
+        WindowPlace place;
+        bool pressed;
+    };
+    void follow(const PointerEvent& event, lockstep::PointerReport& report);
+    [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
+    [[nodiscard]] lockstep::PointerSample sample(const Reading& reading, const sand::Replica& terrain,
+                                                 const lockstep::ViewState& view, HeightRange heights);
+    /// Returns a height [unit] of the current sand, or of the sand from before the stroke if `pressed`.
+    [[nodiscard]] double heightOf(const sand::Replica& terrain, bool pressed, double x,
+                                  double y /* [probe unit] */) const;
+
+    const walls::Wall& wall_;
+    int rank_;
+    std::vector<Reading> readings_;  // since the report before
+    WindowPlace last_;
+    bool pressed_ = false, turns_ = false;
+    std::uint32_t touches_ = 0;
+    std::unique_ptr<sand::Surface> touched_;  // sand at the touch, if the replica itself cannot return its heights
+};
+
+}  // namespace render_node

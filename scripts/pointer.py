@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+"""The pointer of the wall's windows as the hand, and `sandwall try`, a session on one desktop (docs/pointer.md)."""
+
+import os
+import pathlib
+import subprocess
+
+import layout
+from console import say
+from rank_hosts import BadInput
+
+DEVICE = "pointer"
+ELSEWHERE = ("run `try` in a terminal of a desktop; without one, `run --gl osmesa` draws in memory, and "
+             "`run --device script:gis` digs without a mouse")
+
+
+def choose_backend(args):
+    """Makes the ranks open windows if the hand is the pointer. Throws BadInput if the user asks for another backend."""
+    if args.device == DEVICE:
+        if args.gl not in ("auto", "glfw"):
+            raise BadInput(f"--device pointer: --gl {args.gl} draws without windows, but the pointer needs them; leave out --gl, or choose another --device")
+        args.gl = "glfw"
+
+
+def require_windows(wall, render_node):
+    """Throws BadInput in one line if this desktop cannot show the windows of the wall's first rank."""
+    if not os.environ.get("DISPLAY"):
+        raise BadInput(f"try: no X display (DISPLAY is not set); {ELSEWHERE}")
+    with open(wall, "rb") as text:
+        probed = subprocess.run([render_node, "--probe", "1", "--gl", "glfw"], stdin=text, capture_output=True, text=True, errors="replace")
+    if probed.returncode != 0:
+        lines = probed.stderr.strip().splitlines() or [f"the probe of the window ended with status {probed.returncode}"]
+        raise BadInput(f"try: {lines[-1].removeprefix('sandwall-render-node: ')}; {ELSEWHERE}")
+
+
+def session_of(args):
+    """Returns the words of `run` for `try`. Replaces the names in `args` by the paths of their files."""
+    args.wall, args.scene = layout.found("walls", args.wall), layout.found("scenes", args.scene)
+    return ["run", "--here", "--wall", args.wall, "--scene", args.scene, "--device", DEVICE, "--show", "help", "--out", args.out]
+
+
+def tell_journal(out, wall):
+    journal = pathlib.Path(out) / "session.journal"
+    say(f"all that you did is in {journal}; `sandwall film {journal} --wall {wall} --out film` makes a film of it")
+
+
+def add_parser(commands, run):
+    """Adds `try` to the launcher's commands."""
+    command = commands.add_parser("try", help="dig in sand on this desktop, with the mouse",
+                                  description="Shows sand in a window of this desktop, where the mouse digs. Escape ends it; docs/pointer.md.")
+    command.set_defaults(run=run)
+    command.add_argument("--scene", default="dunes", metavar="NAME|FILE", help="scene: a sample's name or a file (default: dunes)")
+    command.add_argument("--wall", default="desktop", metavar="NAME|FILE", help="wall: a sample's name or a file (default: desktop)")
+    command.add_argument("--out", default="out/try", help="folder for journal, pictures and summary (default: out/try)")

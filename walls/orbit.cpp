@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "walls/orbit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "walls/projection.hpp"
+
+namespace walls {
+
+Orbit Orbit::dragged(const Stage& stage, double right, double down) const {
+    constexpr double kTurn = 180, kTilt = 90;  // [deg] for a drag over the whole window
+    Orbit result;
+    result.turnDegrees = std::remainder(turnDegrees + kTurn * right, 360);
+    const double now = stage.tiltDegrees + tiltDegrees;
+    const double lowest = std::min(now, kLowest), highest = std::max(now, kHighest);
+    result.tiltDegrees = std::clamp(now + kTilt * down, lowest, highest) - stage.tiltDegrees;
+    return result;
+}
+
+glm::dmat4 stageToRoom(const Stage& stage, double fieldWidth, double fieldHeight, double referenceZ,
+                       const Orbit& orbit) {
+    Stage tilted = stage;
+    tilted.tiltDegrees += orbit.tiltDegrees;
+    const glm::dvec3 centre(fieldWidth / 2, fieldHeight / 2, referenceZ);
+    glm::dmat4 result = stageToRoom(tilted, fieldWidth, fieldHeight, referenceZ);
+    result = glm::translate(result, centre);
+    result = glm::rotate(result, glm::radians(orbit.turnDegrees), glm::dvec3(0, 0, 1));
+    return glm::translate(result, -centre);
+}
+
+bool isDesktop(const Wall& wall) {
+    if (wall.stereo != Stereo::mono || !wall.tracking.empty()) {
+        return false;
+    }
+    const Screen& first = wall.tiles.front().screen;
+    constexpr double kFlat = 1e-3;  // [m]
+    return std::ranges::all_of(wall.tiles, [&](const Tile& tile) {
+        const Screen& screen = tile.screen;
+        return std::ranges::all_of(std::array{screen.lowerLeft, screen.lowerRight, screen.upperLeft},
+                                   [&](glm::dvec3 corner) { return std::abs(first.distanceTo(corner)) < kFlat; });
+    });
+}
+
+}  // namespace walls

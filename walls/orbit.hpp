@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "walls/wall.hpp"
+
+namespace walls {
+
+/// Turn of the sand in front of a viewer who looks at it from another side.
+struct Orbit {
+    static constexpr double kLowest = 5, kHighest = 85;  // [deg], limits of the tilt of the stage
+
+    double turnDegrees = 0;  // about the sand's vertical, counter-clockwise seen from above
+    double tiltDegrees = 0;  // added to the tilt of the stage
+
+    /// Returns this orbit after a drag of the view [side of the window], right and down. The sum of both tilts stays
+    /// within its limits, or where it was if the wall file's own tilt is outside of them.
+    [[nodiscard]] Orbit dragged(const Stage& stage, double right, double down) const;
+    friend bool operator==(const Orbit&, const Orbit&) = default;
+};
+
+/// Returns stageToRoom() with the sand turned by `orbit`. The centre of the field stays at stage.centre. Throws as
+/// stageToRoom() does.
+[[nodiscard]] glm::dmat4 stageToRoom(const Stage& stage, double fieldWidth, double fieldHeight, double referenceZ,
+                                     const Orbit& orbit);
+
+/// Returns whether viewers may turn the sand of this wall: it is a desktop. All screens lie in one plane, show one
+/// picture for both eyes, and no tracker moves the viewer.
+[[nodiscard]] bool isDesktop(const Wall& wall);
+
+}  // namespace walls
