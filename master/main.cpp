@@ -147,6 +147,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         (void)master::Film(world.wall, options.session.filmEye, options.out);  // throws before anything is drawn
     }
     if (options.haptic != "none") {
+        if (options.session.pointer) {
+            throw base::InputError("--pointer: with --haptic there are two hands; leave one of them out");
+        }
         options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
         options.session.security = options.link.forClient(haptic_bridge::Role::move);
         haptic_bridge::requireSecret(*options.session.server, options.session.security, "--haptic");
@@ -247,8 +250,7 @@ void describeOptions(host::CommandLine& line, Options& options) {
     line.option("--out", options.out, "folder for journal, pictures and summary").required();
     line.option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none").showDefault();
     options.link.addTo(line, false);
-    line.flag("--pointer", session.pointer, "the hand is the pointer of the ranks' windows (docs/pointer.md)")
-        .excludes(line.named("--haptic"));
+    line.flag("--pointer", session.pointer, "the hand is the pointer of the ranks' windows (docs/pointer.md)");
     line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as possible")
         .oneOf({"realtime", "fast"});
     line.option("--refresh", session.refreshHz, "frames per second, instead of the wall file's").range(1.0, 1000.0);
