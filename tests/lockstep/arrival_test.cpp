@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <set>
 #include <string>
+
+#include "sand/model/step.hpp"
 
 namespace {
 
@@ -59,6 +62,51 @@ TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
                   std::to_string(length) + " bytes instead of " + std::to_string(kLength));
     }
     EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "longer than 256 bytes");
+}
+
+/// Returns the bytes of an arrival with a pointer behind it.
+Room letterWith(const lockstep::PointerReport& pointer) {
+    Room room = letterOf(kFrame);
+    std::memcpy(room.data() + kLength, &pointer, sizeof pointer);
+    return room;
+}
+
+constexpr int kWithPointer = kLength + static_cast<int>(sizeof(lockstep::PointerReport));
+
+TEST(Arrival, CarriesAPointerIfTheSessionsHandIsOne) {
+    lockstep::PointerReport pointer;
+    pointer.touch = 3;
+    pointer.count = 1;
+    pointer.samples[0] = {7, 1, -2, 3, 1, 1, {}};
+    lockstep::PointerReport read;
+    EXPECT_EQ(lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read).key, 'q');
+    EXPECT_EQ(read, pointer);
+    EXPECT_THROW((void)lockstep::readArrival(letterWith(pointer), kLength, kFrame, &read), base::FormatError);
+    EXPECT_THROW((void)lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame), base::FormatError)
+        << "other sessions keep their messages small";
+}
+
+TEST(Arrival, WithAnImpossiblePointerIsNone) {
+    const auto fault = [](const lockstep::PointerReport& pointer) {
+        lockstep::PointerReport read;
+        try {
+            (void)lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read);
+        } catch (const base::FormatError& error) {
+            EXPECT_EQ(read, lockstep::PointerReport{});
+            return std::string(error.what());
+        }
+        return std::string("nothing");
+    };
+    lockstep::PointerReport many;
+    many.count = lockstep::PointerReport::kMostSamples + 1;
+    EXPECT_EQ(fault(many), "a pointer with 7 places");
+    lockstep::PointerReport far;
+    far.count = 1;
+    far.samples[0].y = sand::kMaxProbe;
+    EXPECT_EQ(fault(far), "a pointer at 16777216");
+    lockstep::PointerReport wheel;
+    wheel.wheel = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
 }
 
 // Frames 30, 31 and 32 are those of the drill in tests/cluster/drills_test.cpp.

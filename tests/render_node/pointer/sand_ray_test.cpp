@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render_node/pointer/sand_ray.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace render_node {
+namespace {
+
+constexpr double kExact = 0.02;  // a hundredth of a step, from above
+
+SandBody level(double height) {
+    return {100, 60, height, height, 0.5, [height](double, double) { return height; }};
+}
+
+void expectMeets(const Ray& ray, const SandBody& sand, double x, double y) {
+    const auto met = meetSand(ray, sand);
+    ASSERT_TRUE(met.has_value());
+    EXPECT_NEAR(met->x, x, kExact);
+    EXPECT_NEAR(met->y, y, kExact);
+}
+
+TEST(SandRay, MeetsLevelSandWhereThePlaneIs) {
+    // From (50, -20, 40), 1 unit down per 1 unit north: 30 units down to height 10.
+    expectMeets({{50, -20, 40}, {0, 1, -1}}, level(10), 50, 10);
+    expectMeets({{50, -20, 40}, {0, 7, -7}}, level(10), 50, 10);
+    expectMeets({{20, 30, 40}, {0, 0, -1}}, level(10), 20, 30);
+}
+
+TEST(SandRay, MeetsARidgeBeforeTheSandBehindIt) {
+    // A ridge 8 high at y = 30 hides level sand behind it. Its southern slope rises by 1 per unit from y = 22.
+    const auto ridge = [](double, double y) { return std::max(0.0, 8 - std::abs(y - 30)); };
+    const SandBody sand{100, 60, 0, 8, 0.5, ridge};
+    // The ray falls by 1 per 4 units: height 12 - t/4 at y = t. It meets y - 22 = 12 - y / 4 at y = 27.2.
+    expectMeets({{50, 0, 12}, {0, 4, -1}}, sand, 50, 27.2);
+    // A higher ray passes over the ridge: it is 8.5 high there, and 0 high at y = 56.
+    expectMeets({{50, 0, 18.3}, {0, 3.06, -1}}, sand, 50, 56.0);
+}
+
+TEST(SandRay, PassesBesideTheSandAndAboveIt) {
+    EXPECT_FALSE(meetSand({{50, -20, 40}, {0, 1, -3}}, level(10)).has_value()) << "it falls south of the field";
+    EXPECT_FALSE(meetSand({{50, -20, 40}, {0, 1, 0.1}}, level(10)).has_value()) << "it rises";
+    EXPECT_FALSE(meetSand({{-5, 30, 40}, {0, 0, -1}}, level(10)).has_value()) << "it falls west of the field";
+    EXPECT_FALSE(meetSand({{50, -20, 40}, {0, -1, -1}}, level(10)).has_value()) << "the sand is behind the eye";
+}
+
+TEST(SandRay, IgnoresTheSidesOfTheSandFromOutside) {
+    EXPECT_FALSE(meetSand({{50, -20, 5}, {0, 1, 0}}, level(10)).has_value());
+    EXPECT_FALSE(meetSand({{50, 30, -20}, {0, 0, 1}}, level(10)).has_value()) << "from below";
+}
+
+}  // namespace
+}  // namespace render_node
