@@ -80,14 +80,4 @@ std::unique_ptr<Arm> openArmModule(const std::string& spec) {
     return made(option, [&] { return std::unique_ptr<Arm>(open(what.c_str())); });
 }
 
-std::unique_ptr<PictureWindow> openPictureWindow(const std::string& title, int width, int height) {
-    void* const symbol = host::loadModule({.file = "sandwall-window.so",
-                                           .symbol = kPictureWindowSymbol,
-                                           .askedBy = "--device mouse",
-                                           .ifMissing = "build Sandwall with Debian's libglfw3-dev",
-                                           .ifNotLoaded = "install Debian's libglfw3"});
-    const auto open = reinterpret_cast<OpenPictureWindow*>(symbol);
-    return made("--device mouse", [&] { return std::unique_ptr<PictureWindow>(open(title.c_str(), width, height)); });
-}
-
 }  // namespace haptic_bridge

@@ -8,7 +8,6 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/mapped_device.hpp"
-#include "haptic_bridge/devices/mouse.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/devices/spacenav.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
@@ -69,15 +68,15 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
     if (kind == "sim") {
         return openSimulated(spec, settings, scene);
     }
-    if (spec == "mouse") {
-        return std::make_unique<MouseDevice>([&] { return openPictureWindow("Sandwall: " + scene.name, 720, 720); });
+    if (spec == "pointer") {
+        throw base::InputError("--device pointer: needs no haptic server; give it to scripts/sandwall run");
     }
     if (kind == "spacenav" && (spec == kind || !what.empty())) {
         return std::make_unique<SpacenavDevice>(what.empty() ? "libspnav.so.0" : what);
     }
     throw base::InputError("--device " + spec +
                            ": unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, "
-                           "sim:PRESET, mouse or spacenav");
+                           "sim:PRESET or spacenav");
 }
 
 }  // namespace haptic_bridge

@@ -10,8 +10,8 @@
 
 namespace haptic_bridge {
 
-/// Opens a device of docs/devices.md: "script:gis", "script:FILE", "trace:FILE", "driver:FILE.so", "sim:PRESET",
-/// "mouse" or "spacenav". Throws base::InputError if `spec` is unknown, if a file cannot be read, or if the device does
+/// Opens a device of docs/devices.md: "script:gis", "script:FILE", "trace:FILE", "driver:FILE.so", "sim:PRESET"
+/// or "spacenav". Throws base::InputError if `spec` is unknown, if a file cannot be read, or if the device does
 /// not answer.
 [[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
                                                  const scene::Scene& scene);

@@ -22,10 +22,9 @@ struct Pose {
     bool leftFoot = false;  // with a heading: the tool's left and right are exchanged
 };
 
-class SandWatcher;
 class TroubleCounts;
 
-/// Source of a hand: a haptic arm, a mouse, a stroke list or a recording.
+/// Source of a hand: a haptic arm, a six-axis mouse, a stroke list or a recording.
 ///
 /// One thread uses a device, except where a function allows any thread.
 class Device {
@@ -40,7 +39,7 @@ public:
     /// Sends a force to the device. A device without a body shows the force or ignores it.
     virtual void sendForce(sand::force::Vec3 force /* [N], east, north, up */) = 0;
     /// Returns the physics of the arm that forces push, such as its mass and reach. Returns null if the device has no
-    /// body, as a mouse or a recording.
+    /// body, as a six-axis mouse or a recording.
     [[nodiscard]] virtual const ArmPhysics* physics() const { return nullptr; }
     /// Returns how far the tool moves when the tip of an arm moves one metre [scene unit/m]. If the vertical has a
     /// scale of its own, this is the larger of the two. The guards use it to convert the law's stiffness to [N/m].
@@ -50,8 +49,6 @@ public:
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
     /// Returns how often each kind of trouble has happened, or null if the device counts no troubles. Any thread.
     [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
-    /// Returns the object that is shown the sand after every step, or null if the device does not show the sand.
-    [[nodiscard]] virtual SandWatcher* watcher() { return nullptr; }
     /// Sets the share of each sent force that reaches the hand, 0 to 1. An arm changes to it in a ramp. Any thread.
     virtual void shareForce(double /* share */) {}
     /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended. Other devices always

@@ -196,8 +196,7 @@ void serve(const Options& options) {
     Listener listener(std::move(service), std::move(acceptor));
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
-    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()},
-                          device.watcher());
+    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()});
     const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
@@ -220,7 +219,7 @@ void serve(const Options& options) {
 void describe(host::CommandLine& line, Options& options) {
     line.option("--scene", options.scene, "scene file, the same as the wall's").required();
     line.option("--device", options.device,
-                "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, mouse or spacenav")
+                "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET or spacenav")
         .required();
     line.option("--map", options.map, "KEY=VALUE, a setting of the mapping to the sand (docs/devices.md); repeatable")
         .oneValueEach();

@@ -4,7 +4,6 @@
 #include <chrono>
 #include <utility>
 
-#include "haptic_bridge/devices/sand_watcher.hpp"
 #include "host/clock.hpp"
 
 namespace haptic_bridge {
@@ -22,12 +21,10 @@ std::unique_ptr<HandFeed> feedFor(Pace pace, HapticTick& hand, HandChannel& chan
 }  // namespace
 
 SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-                       const sand::grid::Erosion::Options& sweeps, SandWatcher* watcher)
+                       const sand::grid::Erosion::Options& sweeps)
     : pace_(pace),
       feed_(feedFor(pace, hand, channel, scene.rules.stepsPerSecond)),
-      maker_(scene, *feed_, std::move(output), sweeps),
-      watcher_(watcher) {
-    showSand();
+      maker_(scene, *feed_, std::move(output), sweeps) {
     thread_ = std::thread([this] { run(); });
 }
 
@@ -66,7 +63,6 @@ void SandThread::run() {
             maker_.makeStep();
         }
         if (steps || maker_.running() != ran) {
-            showSand();
         }
     }
 }
@@ -107,12 +103,6 @@ bool SandThread::waitForWork() {
     const std::int64_t until = running ? maker_.due() : host::monotonicNs() + kIdlePoll;
     const std::chrono::steady_clock::time_point when{std::chrono::nanoseconds(until)};
     return !wake_.wait_until(lock, when, commanded) && running;
-}
-
-void SandThread::showSand() {
-    if (watcher_ != nullptr) {
-        watcher_->stepped(maker_.sand());
-    }
 }
 
 }  // namespace haptic_bridge

@@ -26,9 +26,8 @@ public:
     using Output = StepMaker::Output;  // callbacks, called on the sand thread
 
     /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it.
-    /// `watcher` may be null. It is shown the sand after every step, on the sand thread.
     SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-               const sand::grid::Erosion::Options& sweeps = {}, SandWatcher* watcher = nullptr);
+               const sand::grid::Erosion::Options& sweeps = {});
     ~SandThread();
     SandThread(const SandThread&) = delete;
     SandThread& operator=(const SandThread&) = delete;
@@ -56,7 +55,6 @@ private:
     void run();
     bool waitForWork();
     void obey(Commands& commands);
-    void showSand();
 
     const Pace pace_;
     const std::unique_ptr<HandFeed> feed_;
@@ -67,7 +65,6 @@ private:
 
     // For the sand thread only.
     StepMaker maker_;
-    SandWatcher* watcher_;
     std::thread thread_;
 };
 

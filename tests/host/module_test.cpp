@@ -81,8 +81,6 @@ TEST_F(Modules, OfAnotherBuildAreRefusedByEveryLoader) {
     const std::string secret = write("secret", "move 0123456789abcdef0123456789abcdef\n");
     fs::permissions(secret, fs::perms::owner_read | fs::perms::owner_write);
     expectRefused("sandwall-security.so", "sandwall-haptic-server", server + flat + " --secret-file " + secret);
-    expectRefused("sandwall-window.so", "sandwall-haptic-server",
-                  "--device mouse --listen 127.0.0.1:0 --scene " + flat);
     for (const std::string gl : {"osmesa", "egl", "glfw"}) {
         const std::string wall = SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml";
         expectRefused("sandwall-gl-" + gl + ".so", "sandwall-render-node",

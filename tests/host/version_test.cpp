@@ -64,7 +64,7 @@ TEST(Version, IsAnsweredByEveryProgramOfTheBuild) {
 // name.
 TEST(Refusals, BeginWithTheProgramsName) {
     const std::vector<std::pair<std::string, std::string>> refused{
-        {"sandwall-haptic-server", "--scene /no/file.toml --device mouse"},
+        {"sandwall-haptic-server", "--scene /no/file.toml --device spacenav"},
         {"sandwall-replay", "/no/file.journal"},
         {"sandwall-relax", "/no/file.asc out.asc --talus 30"},
         {"sandwall-check", "/no/file.toml"},

@@ -109,12 +109,14 @@ TEST(SessionMessage, SurvivesItsEncoding) {
          {.kind = Fault::Kind::diverge, .rank = 0, .frame = 99, .column = 7, .row = 8, .bit = 9},
          {.kind = Fault::Kind::die, .rank = 2, .signal = 11},
          {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}},
+        true,
         {6, 7, 8}};
     const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
     EXPECT_EQ(copy.frameTimeout, 12.5);
     EXPECT_EQ(copy.faults, message.faults);
+    EXPECT_TRUE(copy.pointer);
     EXPECT_EQ(copy.state, message.state);
 }
 

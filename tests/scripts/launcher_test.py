@@ -200,7 +200,7 @@ class Refusals(LauncherTest):
             for hand in ((), ("--haptic", "127.0.0.1:7750")):
                 self.assertEqual(self.refused(["-"], option, value, *hand),
                                  f"sandwall: {option}: needs --device; with --haptic, give it to the haptic server itself\n")
-        self.assertIn("--guards: invalid choice: 'off'", self.refused(["-"], "--device", "mouse", "--guards", "off"))
+        self.assertIn("--guards: invalid choice: 'off'", self.refused(["-"], "--device", "sim:desktop", "--guards", "off"))
 
 
 class OneFolder(LauncherTest):

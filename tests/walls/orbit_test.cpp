@@ -9,42 +9,42 @@
 namespace walls {
 namespace {
 
-const Stage kStage{{0.1, 1, -0.2}, 2, 35, 10};
+const Stage kTurnedStage{{0.1, 1, -0.2}, 2, 35, 10};
 
 glm::dvec3 placed(const Orbit& orbit, glm::dvec3 place) {
-    return glm::dvec3(stageToRoom(kStage, 4, 2, 0.5, orbit) * glm::dvec4(place, 1));
+    return glm::dvec3(stageToRoom(kTurnedStage, 4, 2, 0.5, orbit) * glm::dvec4(place, 1));
 }
 
-void expectNear(glm::dvec3 got, glm::dvec3 want) {
+void expectPlaced(glm::dvec3 got, glm::dvec3 want) {
     EXPECT_LT(glm::distance(got, want), 1e-12) << got.x << ", " << got.y << ", " << got.z;
 }
 
 TEST(Orbit, WithoutADragIsTheStage) {
     for (const glm::dvec3 place : {glm::dvec3(0), glm::dvec3(4, 2, 1), glm::dvec3(1, 2, 3)}) {
-        expectNear(placed({}, place), glm::dvec3(stageToRoom(kStage, 4, 2, 0.5) * glm::dvec4(place, 1)));
+        expectPlaced(placed({}, place), glm::dvec3(stageToRoom(kTurnedStage, 4, 2, 0.5) * glm::dvec4(place, 1)));
     }
 }
 
 TEST(Orbit, TurnsTheSandAboutItsOwnVerticalThroughItsCentre) {
-    expectNear(placed({90, 0}, {2, 1, 0.5}), kStage.centre);
-    expectNear(placed({90, 0}, {3, 1, 0.5}), placed({}, {2, 2, 0.5}));  // east goes to where north was
-    expectNear(placed({180, 0}, {0, 0, 0.7}), placed({}, {4, 2, 0.7}));
+    expectPlaced(placed({90, 0}, {2, 1, 0.5}), kTurnedStage.centre);
+    expectPlaced(placed({90, 0}, {3, 1, 0.5}), placed({}, {2, 2, 0.5}));  // east goes to where north was
+    expectPlaced(placed({180, 0}, {0, 0, 0.7}), placed({}, {4, 2, 0.7}));
 }
 
 TEST(Orbit, TiltsAsTheStageDoes) {
-    Stage tilted = kStage;
+    Stage tilted = kTurnedStage;
     tilted.tiltDegrees += 20;
-    expectNear(placed({0, 20}, {3, 2, 1}), glm::dvec3(stageToRoom(tilted, 4, 2, 0.5) * glm::dvec4(3, 2, 1, 1)));
+    expectPlaced(placed({0, 20}, {3, 2, 1}), glm::dvec3(stageToRoom(tilted, 4, 2, 0.5) * glm::dvec4(3, 2, 1, 1)));
 }
 
 TEST(Orbit, ADragTurnsAndTiltsWithinLimits) {
-    const Orbit once = Orbit{}.dragged(kStage, 0.5, 0.1);
+    const Orbit once = Orbit{}.dragged(kTurnedStage, 0.5, 0.1);
     EXPECT_NEAR(once.turnDegrees, 90, 1e-12);
     EXPECT_NEAR(once.tiltDegrees, 9, 1e-12);
-    const Orbit round = once.dragged(kStage, 1.5, 100);
+    const Orbit round = once.dragged(kTurnedStage, 1.5, 100);
     EXPECT_NEAR(round.turnDegrees, 0, 1e-12);
     EXPECT_NEAR(round.tiltDegrees, Orbit::kHighest - 35, 1e-12);
-    EXPECT_NEAR(round.dragged(kStage, 0, -100).tiltDegrees, Orbit::kLowest - 35, 1e-12);
+    EXPECT_NEAR(round.dragged(kTurnedStage, 0, -100).tiltDegrees, Orbit::kLowest - 35, 1e-12);
     const Stage level{{0, 0, 0}, 1, 0, 0};
     EXPECT_NEAR(Orbit{}.dragged(level, 0, -1).tiltDegrees, 0, 1e-12) << "the file's own tilt is below the limit";
 }

@@ -1,0 +1,269 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests whole sessions whose hand is the pointer, on an X server in memory. xdotool moves the pointer.
+
+usage: pointer_test.py   (SANDWALL_BIN: folder of the programs; SANDWALL_KEEP_PICTURES: folder for screenshots)
+"""
+
+import csv
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+import events  # noqa: E402
+
+BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
+PATIENCE = 120  # seconds for work that takes a few seconds on an idle machine
+PROBE_PER_CELL = 256
+
+# Four windows without gaps on one display, of 160 x 120 pixels each. The bezels between the screens are wider than the
+# gaps of the windows, which are 0. The wall is seen from far away, straight from the front.
+WALL = """name = "four windows"
+[viewer]
+eye = [0.0, 0.0, 40.0]
+[stereo]
+mode = "mono"
+[grid]
+rows = 2
+columns = 2
+tile_size = [1.6, 1.2]
+bezel = [0.1, 0.1]
+tile_pixels = [160, 120]
+lower_left = [-1.65, -1.25, 0.0]
+[clip]
+near = 0.1
+far = 100.0
+[stage]
+centre = [0.0, 0.0, 0.0]
+width = 3.3
+tilt_deg = 90.0
+""" + "".join(f"[[place]]\ntiles = [\"{tile}\"]\nwindows = [[{x}, {y}]]\n"
+              for tile, x, y in (("r1c1", 0, 0), ("r1c2", 160, 0), ("r2c1", 0, 120), ("r2c2", 160, 120)))
+SCENE = """name = "level"
+[field]
+columns = 128
+rows = 128
+width = 2.0
+[terrain]
+height = 0.2
+[material]
+[tool]
+radius = 0.05
+"""
+
+
+class Server:
+    """An X server in memory on a free display."""
+
+    def __init__(self, size):
+        self.process = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-screen", "0", f"{size}x24"],
+                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.display = ":" + self.process.stdout.readline().strip()
+
+    def pointer(self, *words):
+        """Moves the pointer, presses buttons or types keys, as xdotool's command line says it."""
+        subprocess.run(["xdotool", *map(str, words)], env={**os.environ, "DISPLAY": self.display}, check=True, timeout=PATIENCE)
+
+    def picture(self, file):
+        subprocess.run(["import", "-window", "root", str(file)], env={**os.environ, "DISPLAY": self.display}, check=True, timeout=PATIENCE)
+
+    def end(self):
+        self.process.terminate()
+        self.process.wait()
+        self.process.stdout.close()
+
+
+class PointerSession(unittest.TestCase):
+    def setUp(self):
+        for tool in ("Xvfb", "xdotool"):
+            self.assertIsNotNone(shutil.which(tool), f"{tool} is missing; run scripts/install_dependencies.sh --with-tests")
+        temporary = tempfile.TemporaryDirectory(prefix="sandwall-pointer-")
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        self.wall, self.scene, self.out = self.folder / "wall.toml", self.folder / "scene.toml", self.folder / "out"
+        self.wall.write_text(WALL)
+        self.scene.write_text(SCENE)
+        self.server = Server("320x240")
+        self.addCleanup(self.server.end)
+
+    def start(self, *words):
+        """Starts a session, and returns it when it shows frames."""
+        self.log = self.folder / "log.txt"
+        environment = {**os.environ, "DISPLAY": self.server.display, "SANDWALL_BIN": str(BIN), events.VARIABLE: "1"}
+        with self.log.open("w") as log:
+            session = subprocess.Popen([str(ROOT / "scripts" / "sandwall"), *map(str, words)], env=environment, stdin=subprocess.DEVNULL,
+                                       stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+        self.addCleanup(self.stop, session)
+        self.assertIsNotNone(events.wait_for(self.log, "progress", PATIENCE, lambda: session.poll() is None), self.log.read_text())
+        return session
+
+    def run_session(self, *words):
+        return self.start("run", "--wall", self.wall, "--scene", self.scene, "--device", "pointer", "--out", self.out,
+                          "--restarts", 0, "--no-pictures", *words)
+
+    def stop(self, session):
+        if session.poll() is None:
+            session.terminate()
+            session.wait(PATIENCE)
+
+    def status(self):
+        asked = subprocess.run([str(ROOT / "scripts" / "sandwall"), "ctl", str(self.out), "status"], capture_output=True, text=True, timeout=PATIENCE)
+        return json.loads(asked.stdout)
+
+    def wait_for_status(self, wanted):
+        """Waits until the session's status fulfils `wanted`."""
+        deadline = time.monotonic() + PATIENCE
+        while not wanted(now := self.status()):
+            self.assertLess(time.monotonic(), deadline, now)
+            time.sleep(0.05)
+
+    def frames_pass(self, count=3):
+        """Waits until so many more frames are shown, so that the windows have read the pointer."""
+        frame = self.status()["frame"]
+        self.wait_for_status(lambda now: now["frame"] >= frame + count)
+
+    def drag(self, places, button=1):
+        """Drags the pointer through places [pixel of the screen]. Waits for frames, because a slow wall must not skip one."""
+        self.server.pointer("mousemove", *places[0])
+        self.frames_pass()
+        self.server.pointer("mousedown", button)
+        self.frames_pass()
+        for place in places[1:]:
+            self.server.pointer("mousemove", *place)
+            self.frames_pass()
+        self.server.pointer("mouseup", button)
+        self.frames_pass()
+
+    def quit(self, session):
+        self.server.pointer("key", "Escape")
+        self.assertEqual(session.wait(PATIENCE), 0, self.log.read_text())
+
+    def replay(self, *words):
+        ran = subprocess.run([str(BIN / "sandwall-replay"), str(self.out / "session.journal"), *map(str, words)],
+                             capture_output=True, text=True, timeout=PATIENCE)
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        return ran.stdout.strip()
+
+    def steps(self):
+        self.replay("--export", self.folder / "steps.csv")
+        with open(self.folder / "steps.csv", newline="") as file:
+            return list(csv.DictReader(line for line in file if not line.startswith("#")))
+
+    def heights_changed(self):
+        """Returns how much higher the sand is than at the start, by row from the north [scene unit]."""
+        self.replay("--difference", self.folder / "difference.asc")
+        rows = [line.split() for line in (self.folder / "difference.asc").read_text().splitlines()]
+        return [[float(word) for word in row] for row in rows if len(row) == 128]
+
+    def keep_picture(self, name):
+        folder = os.environ.get("SANDWALL_KEEP_PICTURES")
+        if folder and shutil.which("import"):
+            self.server.picture(pathlib.Path(folder) / name)
+
+    def cell(self, x, y):
+        """Returns row and column of the cell under a pixel of the screen. The wall is 3.3 m wide, as the field is."""
+        def metres(pixel, tile_pixels, tile_metres, bezel):
+            return pixel * tile_metres / tile_pixels + (bezel if pixel >= tile_pixels else 0)
+        east = metres(x, 160, 1.6, 0.1)
+        south = metres(y, 120, 1.2, 0.1) + 0.4  # the wall is 2.5 m high and shows the middle of 3.3 m
+        return int(south / 3.3 * 128), int(east / 3.3 * 128)
+
+    def test_a_stroke_goes_from_window_to_window_and_the_journal_has_it(self):
+        session = self.run_session()
+        path = [(40, 60), (80, 60), (120, 60), (155, 60), (165, 60), (200, 60), (240, 60)]
+        self.drag(path)
+        self.keep_picture("pointer_four_windows.png")
+        self.quit(session)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(self.replay("--hash"), summary["state_hash"])
+        self.assertEqual(summary["divergences"], 0)
+        changed = self.heights_changed()
+        for place in [*path, (159, 60)]:
+            row, column = self.cell(*place)
+            self.assertLess(changed[row][column], -0.005, f"the sand under {place} is not dug")
+        for place in ((40, 90), (240, 20), (40, 180), (280, 200)):
+            row, column = self.cell(*place)
+            self.assertEqual(changed[row][column], 0, f"the sand at {place} has moved")
+        # Behind the bezel the furrow goes on, although no window shows that sand.
+        row, first = self.cell(159, 60)
+        for column in range(first, self.cell(161, 60)[1]):
+            self.assertLess(changed[row][column], -0.005, f"column {column}")
+
+    def test_a_pointer_beside_the_sand_moves_nothing(self):
+        text = WALL.replace("width = 3.3", "width = 1.0")  # the outer part of every window shows no sand
+        self.wall.write_text(text)
+        session = self.run_session()
+        self.drag([(20, 20), (40, 20), (60, 20)])
+        self.quit(session)
+        self.assertTrue(all(value == 0 for row in self.heights_changed() for value in row))
+
+    def test_keys_are_commands_and_the_right_button_turns_the_view_alone(self):
+        session = self.run_session()
+        self.drag([(40, 60), (80, 60)])
+        self.wait_for_status(lambda now: now["can_undo"])
+        self.server.pointer("mousemove", 100, 60, "key", "3")
+        self.wait_for_status(lambda now: now["tool_shape"] == "rectangle")
+        self.server.pointer("key", "w")
+        self.wait_for_status(lambda now: now["material"]["humidity"] > 0)
+        self.server.pointer("key", "u")
+        self.wait_for_status(lambda now: not now["can_undo"])
+        undone = self.status()["state_hash"]
+        self.drag([(100, 60), (140, 90)], button=3)
+        self.keep_picture("pointer_turned.png")
+        self.wait_for_status(lambda now: now["divergences"] == 0)
+        self.quit(session)
+        self.assertNotEqual(undone, "")
+        self.assertTrue(all(value == 0 for row in self.heights_changed() for value in row))
+
+    def test_a_hand_in_memory_is_refused_in_one_line(self):
+        ran = subprocess.run([str(ROOT / "scripts" / "sandwall"), "run", "--wall", str(self.wall), "--scene", str(self.scene), "--device", "pointer",
+                              "--gl", "osmesa", "--out", str(self.out)], capture_output=True, text=True, timeout=PATIENCE,
+                             env={**os.environ, "SANDWALL_BIN": str(BIN)})
+        self.assertEqual((ran.returncode, ran.stderr.count("\n")), (2, 1), ran.stderr)
+        self.assertIn("--gl osmesa", ran.stderr)
+
+    def test_try_shows_sand_and_help_and_names_its_journal(self):
+        self.server.end()
+        self.server = Server("1280x720")
+        self.addCleanup(self.server.end)
+        session = self.start("try", "--out", self.out)
+        self.drag([(400, 400), (500, 410), (600, 400)])
+        self.keep_picture("try.png")
+        self.quit(session)
+        self.assertIn(str(self.out / "session.journal"), self.log.read_text())
+        self.assertEqual(self.replay("--hash"), json.loads((self.out / "summary.json").read_text())["state_hash"])
+        self.assertTrue(any(step["engaged"] == "1" for step in self.steps()))
+
+
+class Refused(unittest.TestCase):
+    def tried(self, *words, **environment):
+        ran = subprocess.run([str(ROOT / "scripts" / "sandwall"), "try", *words], capture_output=True, text=True, timeout=PATIENCE,
+                             env={**os.environ, "SANDWALL_BIN": str(BIN), **environment})
+        self.assertEqual((ran.returncode, ran.stdout, ran.stderr.count("\n")), (2, "", 1), ran.stderr)
+        return ran.stderr
+
+    def test_try_without_a_display_names_the_alternatives(self):
+        line = self.tried(DISPLAY="")
+        self.assertIn("DISPLAY", line)
+        self.assertIn("--gl osmesa", line)
+
+    def test_try_on_a_display_that_is_gone_names_the_alternatives(self):
+        line = self.tried(DISPLAY=":987")
+        self.assertIn(":987", line)
+        self.assertIn("--gl osmesa", line)
+
+    def test_unknown_names_list_the_known_ones(self):
+        self.assertIn("dunes, ellipses", self.tried("--scene", "nowhere"))
+        self.assertIn("desktop, fish_tank", self.tried("--wall", "nowhere"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pointer of a window on the test's own X server.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "base/input_error.hpp"
+#include "render_node/gl/gl_context.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/x_screen.hpp"
+#include "tests/support/x_server.hpp"
+
+namespace {
+
+using render_node::PointerEvent;
+using Kind = PointerEvent::Kind;
+
+/// A tile of 200 x 100 pixels in a window on a screen.
+class Pointer : public test::FolderTest {
+protected:
+    void SetUp() override {
+        server_ = std::make_unique<support::XServer>(folder_, std::vector<std::string>{"640x480x24"});
+        walls::Grid grid;
+        grid.tilePixels = {200, 100};
+        wall_.grid = grid;
+        wall_.tiles = walls::tilesOf(grid, walls::Stereo::mono);
+        wall_.tiles[0].place.display = server_->display();
+        wall_.tiles[0].outputs[0].window = glm::ivec2(30, 40);
+    }
+    void TearDown() override {
+        screen_.reset();
+        context_.reset();
+        server_.reset();
+    }
+    void open(bool pointer) {
+        context_ = render_node::makeContext(render_node::Backend::glfw, wall_, wall_.tiles[0], pointer);
+        screen_ = std::make_unique<support::XScreen>(server_->display());
+        window_ = screen_->windows().at(0);
+    }
+    /// Waits for an event of this kind. All events so far are in seen_.
+    [[nodiscard]] bool comes(Kind kind) {
+        const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (std::ranges::none_of(seen_, [&](const PointerEvent& event) { return event.kind == kind; })) {
+            if (std::chrono::steady_clock::now() > until) {
+                return false;
+            }
+            context_->awaitEvents(0.1);
+            const auto events = context_->takePointer();
+            seen_.insert(seen_.end(), events.begin(), events.end());
+        }
+        return true;
+    }
+    walls::Wall wall_;
+    std::unique_ptr<support::XServer> server_;
+    std::unique_ptr<render_node::GlContext> context_;
+    std::unique_ptr<support::XScreen> screen_;
+    unsigned long window_ = 0;
+    std::vector<PointerEvent> seen_;
+};
+
+TEST_F(Pointer, ReportsMotionsButtonsAndTheWheelWithTheirPlacesInOrder) {
+    open(true);
+    screen_->point(window_, 120, 60);
+    ASSERT_TRUE(comes(Kind::move));
+    EXPECT_EQ(seen_.back().at, glm::dvec2(120, 60));
+    EXPECT_GT(seen_.back().ns, 0);
+    seen_.clear();
+    screen_->button(window_, 1, true);
+    screen_->button(window_, 1, false);
+    screen_->button(window_, 3, true);
+    screen_->button(window_, 3, false);
+    screen_->button(window_, 5, true);  // towards the person
+    screen_->button(window_, 5, false);
+    ASSERT_TRUE(comes(Kind::wheel));
+    std::vector<Kind> kinds;
+    for (const PointerEvent& event : seen_) {
+        kinds.push_back(event.kind);
+        EXPECT_EQ(event.at, glm::dvec2(120, 60));
+    }
+    EXPECT_EQ(kinds, (std::vector{Kind::press, Kind::release, Kind::turnPress, Kind::turnRelease, Kind::wheel}));
+    EXPECT_EQ(seen_.back().notches, 1);
+    EXPECT_TRUE(context_->takePointer().empty()) << "they are taken";
+}
+
+TEST_F(Pointer, OfAnotherSessionIsNotRead) {
+    open(false);
+    screen_->point(window_, 120, 60);
+    screen_->button(window_, 1, true);
+    screen_->type(window_, 'x');
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    std::string keys;
+    while (keys.empty() && std::chrono::steady_clock::now() < until) {
+        keys = context_->takeKeys();
+    }
+    EXPECT_EQ(keys, "x") << "events before this one have come";
+    EXPECT_TRUE(context_->takePointer().empty());
+}
+
+TEST_F(Pointer, NeedsAWindow) {
+    EXPECT_THROW((void)render_node::makeContext(render_node::Backend::osmesa, wall_, wall_.tiles[0], true),
+                 base::InputError);
+}
+
+}  // namespace
