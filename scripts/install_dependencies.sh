@@ -17,10 +17,10 @@ packages=(
     libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
 )
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
-# events of sessions against the schemas, and make and check a Debian package. The report draws its curves with matplotlib.
+# events of sessions against the schemas, make and check a Debian package, and move the pointer with xdotool. The report draws its curves with matplotlib.
 for option in "$@"; do
     case "$option" in
-        --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev file help2man lintian) ;;
+        --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
         --with-report) packages+=(python3-matplotlib) ;;
         *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report]" >&2; exit 2 ;;
     esac

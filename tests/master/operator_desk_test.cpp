@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <functional>
 #include <future>
@@ -33,9 +34,9 @@ public:
 class Desk : public test::FolderTest {
 protected:
     void SetUp() override { open(&requests_); }
-    void open(master::StepRequests* requests) {
+    void open(master::StepRequests* requests, const master::DeskOptions& options = {}) {
         desk_.reset();
-        desk_.emplace(scene_, scene_.material, wall_, folder_, master::DeskOptions{},
+        desk_.emplace(scene_, scene_.material, wall_, folder_, options,
                       master::OperatorDesk::Session{sand_, requests,
                                                     [this](std::int64_t bytes) {
                                                         asked_ = bytes;
@@ -198,6 +199,41 @@ TEST_F(Desk, EndsTheSessionByCommandOrByEscape) {
     EXPECT_FALSE(desk_->stopAsked());
     desk_->obey({{.key = 27}});
     EXPECT_TRUE(desk_->stopAsked());
+}
+
+TEST_F(Desk, TakesKeysAsCommandsIfTheHandIsThePointer) {
+    desk_->obey({{.key = 'R'}, {.key = 'h'}});
+    EXPECT_TRUE(requests_.edits.empty()) << "another hand";
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&requests_, options);
+    desk_->obey({{.key = 'R'}, {.key = 'h'}});
+    ASSERT_EQ(requests_.edits.size(), 1U);
+    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
+    EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::help));
+    desk_->obey({{.key = '3'}, {.key = 'h'}});
+    ASSERT_EQ(requests_.edits.size(), 2U);
+    EXPECT_EQ(requests_.edits[1].tuning.toolKind, sand::ToolKind::rectangle);
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
+    desk_->obey({{.key = 'u'}});
+    EXPECT_EQ(requests_.edits.size(), 2U) << "there is no stroke to undo";
+}
+
+// The wall of these tests is in stereo, so that it is not a desktop.
+TEST_F(Desk, TurnsTheSandOfADesktopOnly) {
+    std::array<lockstep::PointerReport, 2> pointers{};
+    pointers[1].turnX = 0.25F;
+    const auto before = desk_->views().at(0).sceneToRoom;
+    desk_->turnView(pointers);
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
+    const walls::Wall desktop = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::ViewSource views(desktop, scene_, {});
+    const auto still = views.at(0).sceneToRoom;
+    views.turn(0.25, 0);
+    EXPECT_NE(views.at(0).sceneToRoom, still);
+    views.turnBack();
+    EXPECT_EQ(views.at(0).sceneToRoom, still);
 }
 
 TEST_F(Desk, OfAReplayHasNoControlSocket) {

@@ -84,7 +84,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
         EXPECT_EQ(complaint("load " + name), complaint("save " + name));
     }
     EXPECT_EQ(complaint("stereo sideways").find("no stereo mode 'sideways'; there are mono, left"), 0U);
-    EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics");
+    EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics, help");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");
     for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1"}) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -64,6 +65,27 @@ protected:
     int differed_ = 0, edits_ = 0;
     sand::Edit lastEdit_;
 };
+
+TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
+    master::LiveSteps live(std::nullopt, scene_, master::Pace::realtime, 0, {}, [this] { return nowNs_.load(); });
+    std::array<lockstep::PointerReport, 2> reports{};
+    live.pointed(reports, wall_, nowNs_);
+    EXPECT_STREQ(live.hand(), "hand points");
+    for (int frame = 0; frame < 60; ++frame) {
+        nowNs_ += kFrameNs + (frame % 3 - 1) * 400'000;
+        const std::int64_t read = nowNs_ - 5'000'000, received = nowNs_ - 1'000'000;
+        reports[1].count = 1;
+        reports[1].samples[0] = {read, 2048 + 64 * frame, 2048, 0, 0, 1, {}};
+        live.pointed(reports, wall_, received);
+        const std::vector<TimedStep> steps = show(live);
+        ASSERT_EQ(steps.size(), 1U) << "frame " << frame;
+        ASSERT_EQ(steps[0].step.path.size(), 1U);
+        EXPECT_EQ(steps[0].step.path[0].x, 2048 + 64 * frame);
+        EXPECT_EQ(steps[0].serverTimeNs, read) << "for the latency of the hand";
+        EXPECT_EQ(steps[0].receivedNs, received);
+    }
+    EXPECT_FALSE(live.linked());
+}
 
 TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
