@@ -14,8 +14,8 @@ namespace {
 
 using lockstep::PointerReport;
 
-constexpr std::int64_t kMillisecond = 1'000'000;
-constexpr std::int32_t kProbe = sand::kProbePerCell;
+constexpr std::int64_t kReadingNs = 1'000'000;
+constexpr std::int32_t kPerCell = sand::kProbePerCell;
 
 /// Two ranks with pointers, over level sand at height 0. The tool has a radius of 4 cells.
 class PointerHand : public testing::Test {
@@ -24,9 +24,9 @@ protected:
     void add(std::size_t rank, int x, int y, bool pressed, bool meets = true) {
         PointerReport& report = reports_.at(rank);
         lockstep::PointerSample& sample = report.samples.at(report.count++);
-        sample = {clock_ += kMillisecond,
-                  x * kProbe,
-                  y * kProbe,
+        sample = {clock_ += kReadingNs,
+                  x * kPerCell,
+                  y * kPerCell,
                   0,
                   static_cast<std::uint8_t>(pressed ? 1 : 0),
                   static_cast<std::uint8_t>(meets ? 1 : 0),
@@ -55,7 +55,7 @@ protected:
     sand::Replica terrain_{scene_};
     master::PointerHand hand_{60, terrain_};
     std::array<PointerReport, 3> reports_{};
-    std::int64_t clock_ = 20'000 * kMillisecond;
+    std::int64_t clock_ = 20'000 * kReadingNs;
     std::int64_t read_ = 0;
 };
 
@@ -64,14 +64,14 @@ TEST_F(PointerHand, DigsAFurrowAlongThePressedPlaces) {
     sand::Step hovers = step();
     EXPECT_FALSE(hovers.engaged);
     ASSERT_EQ(hovers.path.size(), 1U);
-    EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * 4 * kProbe));
+    EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * 4 * kPerCell));
     for (int x = 20; x <= 40; x += 4) {
         add(1, x, 32, true);
     }
     const sand::Step digs = step();
     EXPECT_TRUE(digs.engaged);
     EXPECT_EQ(digs.path.size(), 6U);
-    EXPECT_EQ(digs.path[0].z, 2 * kProbe) << "half of the tool is below the sand's surface, as it begins";
+    EXPECT_EQ(digs.path[0].z, 2 * kPerCell) << "half of the tool is below the sand's surface, as it begins";
     EXPECT_EQ(read_, clock_) << "the time of the last place";
     EXPECT_LT(height(30, 32), 0);
     EXPECT_EQ(height(10, 10), 0);
@@ -80,14 +80,14 @@ TEST_F(PointerHand, DigsAFurrowAlongThePressedPlaces) {
 TEST_F(PointerHand, TheWheelSetsTheDepthWithinItsLimits) {
     reports_[1].wheel = 2;
     add(1, 20, 32, true);
-    EXPECT_EQ(step().path.at(0).z, std::lround(0.3 * 4 * kProbe));
+    EXPECT_EQ(step().path.at(0).z, std::lround(0.3 * 4 * kPerCell));
     EXPECT_NEAR(hand_.depth(), 0.7, 1e-12);
     reports_[2].wheel = -100;
     add(1, 22, 32, true);
-    EXPECT_EQ(step().path.at(0).z, 4 * kProbe) << "the underside touches the surface";
+    EXPECT_EQ(step().path.at(0).z, 4 * kPerCell) << "the underside touches the surface";
     reports_[2].wheel = 1000;
     add(1, 24, 32, true);
-    EXPECT_EQ(step().path.at(0).z, -4 * kProbe);
+    EXPECT_EQ(step().path.at(0).z, -4 * kPerCell);
     EXPECT_NEAR(hand_.depth(), master::PointerHand::kDeepest, 1e-12);
 }
 
