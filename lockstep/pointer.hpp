@@ -24,11 +24,11 @@ struct PointerSample {
 struct PointerReport {
     static constexpr std::size_t kMostSamples = 6;
 
-    std::uint32_t touch = 0;     // number of touches in the rank's windows so far
-    float wheel = 0;             // notches of the wheel, positive towards the user
-    float turnX = 0, turnY = 0;  // [side of the window] that the right button has dragged the view, right and down
-    std::uint8_t count = 0;      // number of samples, in the order of time
-    std::uint8_t pressed = 0;    // 1: the left button or a finger is down now
+    std::uint32_t touch = 0;             // number of touches in the rank's windows so far
+    float wheel = 0;                     // notches of the wheel, positive towards the user
+    float turnX = 0, turnY = 0;          // [side of the window], drag of the view by the right button, right and down
+    std::uint8_t count = 0;              // number of samples, in the order of time
+    std::uint8_t pressed = 0;            // 1: the left button or a finger is down now
     std::array<std::uint8_t, 6> zero{};  // fills the gap
     std::array<PointerSample, kMostSamples> samples{};
 

@@ -82,7 +82,7 @@ private:
     PixelRect paintSand(std::span<const Camera> cameras, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
     void uncover(EyeRange range);
-    /// Shows or hides the help. Where it was hidden, makes the next drawing restore the sand under it.
+    /// Shows or hides the help. After hiding it, makes the next drawing restore the sand under it.
     void showHelp(bool shown);
     void paintHelp(EyeRange range, const PixelRect& changed);
     void paintOverlay(EyeRange range);

@@ -14,9 +14,9 @@ namespace master {
 
 /// Makes the paths of the master's own steps from the pointers of the ranks' windows.
 ///
-/// One pointer at a time is the hand (PointerArbiter). Where it is pressed, the tool's underside is `depth()` below the
-/// sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves nothing.
-/// Used by one thread.
+/// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is `depth()` below
+/// the sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves
+/// nothing. Used by one thread.
 class PointerHand {
 public:
     static constexpr double kHover = 1.3;          // [tool radius] from the surface to the centre of a tool that hovers

@@ -13,7 +13,7 @@ namespace {
 using lockstep::PointerReport;
 
 /// Removes readings until a report can hold the rest. Keeps the last one, and those at which the pointer was pressed or
-/// released. Of the others it removes those that are closest to their neighbours in time.
+/// released. Removes first a reading whose neighbours are close in time.
 template <class Reading>
 void thin(std::vector<Reading>& readings) {
     while (readings.size() > PointerReport::kMostSamples) {
@@ -29,6 +29,33 @@ void thin(std::vector<Reading>& readings) {
             }
         }
         readings.erase(readings.begin() + static_cast<std::ptrdiff_t>(victim));
+    }
+}
+
+/// Adds readings halfway between two far ones of a stroke, as long as a report can hold them. So the tool follows dunes
+/// also under a fast pointer. The first of `readings` is the last one of the report before, and does not count.
+template <class Reading>
+void fill(std::vector<Reading>& readings) {
+    constexpr double kNear = 4;  // [pixel]
+    while (readings.size() <= PointerReport::kMostSamples) {
+        std::size_t widest = 0;
+        double gap = kNear;
+        for (std::size_t i = 1; i < readings.size(); ++i) {
+            const double distance = glm::distance(readings[i].place.at, readings[i - 1].place.at);
+            const bool stroke = readings[i].pressed && readings[i - 1].pressed &&
+                                readings[i].place.output == readings[i - 1].place.output;
+            if (stroke && distance > gap) {
+                widest = i;
+                gap = distance;
+            }
+        }
+        if (widest == 0) {
+            return;
+        }
+        Reading between = readings[widest];
+        between.ns = (between.ns + readings[widest - 1].ns) / 2;
+        between.place.at = (between.place.at + readings[widest - 1].place.at) / 2.0;
+        readings.insert(readings.begin() + static_cast<std::ptrdiff_t>(widest), between);
     }
 }
 
@@ -75,6 +102,12 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         follow(event, report);
     }
     thin(readings_);
+    if (!readings_.empty()) {
+        readings_.insert(readings_.begin(), before_);
+        before_ = readings_.back();
+        fill(readings_);
+        readings_.erase(readings_.begin());
+    }
     for (const Reading& reading : readings_) {
         if (reading.pressed && touched_ == nullptr && !terrain.surface().readsKept()) {
             touched_ = terrain.surface().clone();

@@ -38,9 +38,9 @@ public:
 private:
     /// A place of the pointer, before its ray is computed.
     struct Reading {
-        std::int64_t ns;
-        WindowPlace place;
-        bool pressed;
+        std::int64_t ns = 0;
+        WindowPlace place{};
+        bool pressed = false;
     };
     void follow(const PointerEvent& event, lockstep::PointerReport& report);
     [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
@@ -53,6 +53,7 @@ private:
     const walls::Wall& wall_;
     int rank_;
     std::vector<Reading> readings_;  // since the report before
+    Reading before_;                 // the last one of that report
     WindowPlace last_;
     bool pressed_ = false, turns_ = false;
     std::uint32_t touches_ = 0;

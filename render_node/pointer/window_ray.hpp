@@ -17,9 +17,9 @@ struct WindowPlace {
 
 /// Returns the point of the room that a place in a window of `tile` shows [m].
 ///
-/// If the wall file places the windows, and the place lies in the window of another tile on the same display, the point
-/// is on that tile's screen. So a stroke continues exactly under the pointer behind a bezel. Otherwise the point lies
-/// in the plane of `tile`'s screen, which is extended beyond its edges.
+/// Usually the point lies in the plane of `tile`'s screen, which is extended beyond its edges. The exception is a place
+/// in the window of another tile on the same display, if the wall file places both windows. The point is then on that
+/// tile's screen. So a stroke continues exactly under the pointer behind a bezel.
 [[nodiscard]] glm::dvec3 roomPoint(const walls::Wall& wall, const walls::Tile& tile, const WindowPlace& place);
 
 /// Line of sight from an eye.

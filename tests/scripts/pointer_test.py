@@ -192,7 +192,7 @@ class PointerSession(unittest.TestCase):
         for place in ((40, 90), (240, 20), (40, 180), (280, 200)):
             row, column = self.cell(*place)
             self.assertEqual(changed[row][column], 0, f"the sand at {place} has moved")
-        # Behind the bezel the furrow goes on, although no window shows that sand.
+        # The furrow continues behind the bezel, although no window shows that sand.
         row, first = self.cell(159, 60)
         for column in range(first, self.cell(161, 60)[1]):
             self.assertLess(changed[row][column], -0.005, f"column {column}")
