@@ -98,8 +98,8 @@ public:
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
-            const lockstep::Arrival mine{frame.frame, arrived - clockAhead,        lastSwap,  drawn - start,
-                                         hash,        viewProof_.hash(frame.view), firstKey()};
+            const lockstep::Arrival mine{frame.frame, arrived - clockAhead,        lastSwap, drawn - start,
+                                         hash,        viewProof_.hash(frame.view), nextKey()};
             if (!agree(barrier, mine, frame, figures)) {
                 (void)lockstep::gatherReports(barrier, report());
                 return;
@@ -187,9 +187,15 @@ private:
         terrain_->audit(static_cast<int>(frame.auditTiles));
     }
 
-    [[nodiscard]] char firstKey() {
-        const std::string keys = context_->takeKeys();
-        return keys.empty() ? '\0' : keys.front();
+    /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
+    [[nodiscard]] char nextKey() {
+        keys_ += context_->takeKeys();
+        if (keys_.empty()) {
+            return '\0';
+        }
+        const char key = keys_.front();
+        keys_.erase(0, 1);
+        return key;
     }
 
     /// The master may take the limit of a frame for each picture of each rank. So a rank may wait longer until all have
@@ -241,6 +247,7 @@ private:
     std::optional<sand::Replica> terrain_;
     std::optional<TilePainter> painter_;
     PointerReader pointer_;
+    std::string keys_;  // pressed keys that no arrival has carried yet
     lockstep::Statistics drawMs_, waitMs_;
 };
 

@@ -25,7 +25,7 @@ namespace {
 class Glfw final : public GlPlatform {
 public:
     explicit Glfw(const PlatformRequest& request)
-        : watch_(request.display, request.who), eyesInTurn_(request.eyesInTurn) {
+        : watch_(request.display, request.who), eyesInTurn_(request.eyesInTurn), pointer_(request.pointer) {
         if (request.windows.empty()) {
             windows_.emplace_back(library_, watch_.name());
         }
@@ -61,7 +61,11 @@ public:
         }
         glfwPollEvents();
         for (const GlfwWindow& window : windows_) {
-            if (glfwWindowShouldClose(window.handle()) != 0) {
+            if (glfwWindowShouldClose(window.handle()) != 0 && pointer_) {
+                // A person at a desktop ends a session so.
+                glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
+                input_->keys.push_back(kQuitKey);
+            } else if (glfwWindowShouldClose(window.handle()) != 0) {
                 throw std::runtime_error("output " + window.name() + ": its window on " + watch_.name() +
                                          " was closed");
             }
@@ -129,6 +133,7 @@ private:
     std::vector<GlfwWindow> windows_;
     std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
     bool eyesInTurn_;
+    bool pointer_;
     std::optional<SwapGroup> group_;
     std::vector<std::optional<EyesByRetrace>> eyes_;
 };

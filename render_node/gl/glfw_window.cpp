@@ -131,6 +131,9 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
     : wanted_(wanted), refreshHz_(request.eyesInTurn ? request.refreshHz : 0) {
     GLFWmonitor* monitor = nullptr;
     hintContext(false);
+    if (request.pointer && !wanted.output.window) {
+        glfwWindowHint(GLFW_DECORATED, GLFW_TRUE);
+    }
     if (!wanted.output.monitor.empty()) {
         monitor = monitorNamed(wanted, display);
         requireMode(monitor, wanted);
@@ -165,16 +168,15 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
 void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
     listener_ = std::make_unique<Listener>(Listener{input, index});
     glfwSetWindowUserPointer(handle(), listener_.get());
-    constexpr char kQuit = 27;
     glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
         if (character >= ' ' && character < 127) {
             static_cast<Listener*>(glfwGetWindowUserPointer(window))
-                ->input->keys.push_back(character == 'q' ? kQuit : static_cast<char>(character));
+                ->input->keys.push_back(character == 'q' ? kQuitKey : static_cast<char>(character));
         }
     });
     glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
         if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuit);
+            static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuitKey);
         }
     });
     if (pointer) {

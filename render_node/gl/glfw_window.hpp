@@ -25,14 +25,16 @@ public:
     [[nodiscard]] std::string complaint() const;
 };
 
+inline constexpr char kQuitKey = 27;  // Escape
+
 /// Input of all windows since it was taken last.
 struct WindowInput {
-    std::string keys;  // pressed characters; 27 for Escape and q
+    std::string keys;  // pressed characters; kQuitKey for Escape and q
     std::vector<PointerEvent> pointer;
 };
 
-/// Window of one output, with its OpenGL context. It has no decorations, and it cannot be resized. It shows a cursor
-/// only if the request asks for the pointer.
+/// Window of one output, with its OpenGL context. It cannot be resized. It shows a cursor only if the request asks for
+/// the pointer. It then has decorations, too, if the window system chooses its place.
 class GlfwWindow {
 public:
     /// Makes a hidden window, for its context only.

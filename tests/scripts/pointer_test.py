@@ -197,6 +197,37 @@ class PointerSession(unittest.TestCase):
         for column in range(first, self.cell(161, 60)[1]):
             self.assertLess(changed[row][column], -0.005, f"column {column}")
 
+    def test_of_two_pointers_the_first_that_touches_is_the_hand(self):
+        other = Server("320x240")
+        self.addCleanup(other.end)
+        # Two tiles side by side, each on a display of its own.
+        head = WALL.split("[[place]]")[0].replace("rows = 2", "rows = 1")
+        self.wall.write_text(head + "".join(f"[[place]]\ntiles = [\"{tile}\"]\ndisplay = \"{server.display}\"\nwindows = [[0, 0]]\n"
+                                            for tile, server in (("r1c1", self.server), ("r1c2", other))))
+        session = self.run_session()
+        self.server.pointer("mousemove", 40, 60, "mousedown", 1)
+        self.wait_for_status(lambda now: now["can_undo"])
+        other.pointer("mousemove", 40, 60, "mousedown", 1)
+        self.frames_pass()
+        other.pointer("mousemove", 120, 60)
+        self.frames_pass()
+        self.server.pointer("mousemove", 60, 60)
+        self.frames_pass()
+        self.server.pointer("mouseup", 1)
+        self.frames_pass()
+        other.pointer("mousemove", 100, 60)
+        self.frames_pass()
+        other.pointer("mouseup", 1)
+        self.frames_pass()
+        self.server.pointer("key", "Escape")
+        self.assertEqual(session.wait(PATIENCE), 0, self.log.read_text())
+        self.assertEqual(self.replay("--hash"), json.loads((self.out / "summary.json").read_text())["state_hash"])
+        # The first display shows the west of the field, the second its east; the middle is at 1.
+        east = [float(point.split()[0]) > 1 for step in self.steps() if step["engaged"] == "1" for point in step["path"].split(";") if point]
+        self.assertIn(False, east)
+        self.assertIn(True, east, "the second pointer digs when the first has released")
+        self.assertEqual(east, sorted(east), "the second pointer has waited for the first")
+
     def test_a_pointer_beside_the_sand_moves_nothing(self):
         text = WALL.replace("width = 3.3", "width = 1.0")  # the outer part of every window shows no sand
         self.wall.write_text(text)

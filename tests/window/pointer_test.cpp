@@ -98,6 +98,17 @@ TEST_F(Pointer, OfAnotherSessionIsNotRead) {
     EXPECT_TRUE(context_->takePointer().empty());
 }
 
+TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
+    open(true);
+    screen_->askToClose(window_);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    std::string keys;
+    while (keys.empty() && std::chrono::steady_clock::now() < until) {
+        keys = context_->takeKeys();
+    }
+    EXPECT_EQ(keys, "\x1b");
+}
+
 TEST_F(Pointer, NeedsAWindow) {
     EXPECT_THROW((void)render_node::makeContext(render_node::Backend::osmesa, wall_, wall_.tiles[0], true),
                  base::InputError);
