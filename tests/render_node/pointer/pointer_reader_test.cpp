@@ -132,9 +132,12 @@ TEST_F(Reader, OfManyMotionsItKeepsThePressTheReleaseAndTheLast) {
 }
 
 TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
+    constexpr std::int64_t kSecond = 1'000'000'000;
     (void)read({{Kind::press, 0, {100, 480}, 1000, 0}});
-    const PointerReport report = read({{Kind::move, 0, {180, 480}, 1800, 0}});
+    const PointerReport report = read({{Kind::move, 0, {180, 480}, 5 * kSecond, 0}});
     ASSERT_EQ(report.count, PointerReport::kMostSamples);
+    EXPECT_LT(report.samples.back().at - report.samples[0].at, kSecond / 100) << "it has rested before";
+    EXPECT_TRUE(std::ranges::is_sorted(report.places(), {}, &PointerSample::at));
     for (std::size_t i = 0; i < report.count; ++i) {
         EXPECT_EQ(report.samples[i].pressed, 1);
         if (i > 0) {
@@ -142,9 +145,9 @@ TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
         }
     }
     expectAt(report.samples.back(), 18, 16);
-    EXPECT_EQ(read({{Kind::move, 0, {183, 480}, 1900, 0}}).count, 1) << "a short one";
-    (void)read({{Kind::release, 0, {183, 480}, 2000, 0}});
-    EXPECT_EQ(read({{Kind::move, 0, {400, 480}, 2100, 0}}).count, 1) << "a hovering one";
+    EXPECT_EQ(read({{Kind::move, 0, {183, 480}, 6 * kSecond, 0}}).count, 1) << "a short one";
+    (void)read({{Kind::release, 0, {183, 480}, 6 * kSecond + 1, 0}});
+    EXPECT_EQ(read({{Kind::move, 0, {400, 480}, 6 * kSecond + 2, 0}}).count, 1) << "a hovering one";
 }
 
 TEST_F(Reader, TheRightButtonTurnsTheViewAndMovesNoTool) {
