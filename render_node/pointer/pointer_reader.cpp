@@ -103,8 +103,8 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
     }
     thin(readings_);
     if (!readings_.empty()) {
-        // A pointer that rested began to move just before its first motion was read. With the time at which it came to
-        // rest, the places between would seem to be far apart in time, and the master would lift the tool.
+        // A pointer that rested began to move just before its first motion was read. The time at which it came to rest
+        // would put the places between far apart in time, and the master would lift the tool.
         constexpr std::int64_t kMotion = 8'000'000;  // [ns], between two motions of a usual mouse
         before_.ns = std::max(before_.ns, readings_.front().ns - kMotion);
         readings_.insert(readings_.begin(), before_);
