@@ -17,7 +17,8 @@ packages=(
     libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
 )
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
-# events of sessions against the schemas, make and check a Debian package, and move the pointer with xdotool. The report draws its curves with matplotlib.
+# events of sessions against the schemas, make and check a Debian package, and move the pointer with xdotool. The report
+# draws its curves with matplotlib.
 for option in "$@"; do
     case "$option" in
         --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
