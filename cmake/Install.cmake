@@ -4,7 +4,7 @@
 # scripts/layout.py has the same folders.
 set(programs sandwall-master sandwall-render-node sandwall-haptic-server sandwall-replay sandwall-relax sandwall-check
     sandwall-compare sandwall-track sandwall-watch)
-set(modules sandwall-import sandwall-security sandwall-gl-osmesa sandwall-gl-egl sandwall-gl-glfw sandwall-window)
+set(modules sandwall-import sandwall-security sandwall-gl-osmesa sandwall-gl-egl sandwall-gl-glfw)
 set(private lib/sandwall)
 set(shared share/sandwall)
 set(docs share/doc/sandwall)
@@ -17,9 +17,9 @@ install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DE
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
     scripts/checked_json.py scripts/console.py scripts/doctor.py scripts/events.py scripts/film.py scripts/job_log.py
-    scripts/layout.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/screens.py scripts/session_control.py
-    scripts/session_folder.py scripts/session_report.py scripts/session_results.py scripts/spare_hosts.py
-    scripts/supervisor.py scripts/this_machine.py
+    scripts/layout.py scripts/mpirun_end.py scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py
+    scripts/screens.py scripts/session_control.py scripts/session_folder.py scripts/session_report.py
+    scripts/session_results.py scripts/spare_hosts.py scripts/supervisor.py scripts/this_machine.py
     DESTINATION ${private}/python)
 install(DIRECTORY scenes/ DESTINATION ${shared}/scenes)
 install(DIRECTORY walls/configs/ DESTINATION ${shared}/walls)

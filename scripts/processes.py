@@ -11,11 +11,13 @@ import time
 import events
 from console import say
 from job_log import LIBC
+from mpirun_end import EndWatch
 from rank_hosts import BadInput
 
 SERVER_START_SECONDS = 20
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
 KILL_SECONDS = 5
+STUCK_STATUS = 1  # of a job whose mpirun had to be killed because it did not end after its last process
 GONE_SECONDS = 2  # the time that mpirun may take after a process has reported that it ends the job
 LOOK_SECONDS = 0.05
 LONGEST_LINE = 1024  # bytes of a typed line; the master reads no longer lines
@@ -113,7 +115,8 @@ class Job:
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, env={**environment, MARK: self.mark},
                                         start_new_session=True, bufsize=0, **output)
         self.deadline = None
-        self.asked = self.terminated = False
+        self.asked = self.terminated = self.stuck = False
+        self.end_watch = EndWatch(self.process.pid)
 
     def ask(self, command):
         """Sends a line to the master: a command as of `sandwall ctl`."""
@@ -144,8 +147,12 @@ class Job:
         if self.log:
             self.log.follow(ended=status is not None)
         if status is not None:
-            return status
+            return STUCK_STATUS if self.stuck else status
         now = time.monotonic()
+        if not self.stuck and self.end_watch.stuck(now):
+            self.stuck = True
+            say("mpirun does not end after its last process; killing it")
+            self.signal(signal.SIGKILL)
         if stop.count > 0 and not self.asked:
             say("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")
