@@ -4,7 +4,7 @@ _sandwall() {
     local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} names=
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 ]]; then
-        names="run ctl film doctor list check relax replay compare track watch haptic-server --help --version"
+        names="run try ctl film doctor list check relax replay compare track watch haptic-server --help --version"
     elif [[ $before == --wall || ($command == @(check|doctor) && $COMP_CWORD -eq 2) ]]; then
         names=$(sandwall list walls 2>/dev/null)
     elif [[ $before == --scene ]]; then
@@ -12,7 +12,7 @@ _sandwall() {
     elif [[ $before == --gl ]]; then
         names="auto osmesa egl glfw"
     elif [[ $before == --device ]]; then
-        names="$(sandwall list strokes 2>/dev/null | sed 's/^/script:/') none"
+        names="$(sandwall list strokes 2>/dev/null | sed 's/^/script:/') pointer none"
     elif [[ $word == -* ]]; then
         names=$(sandwall "$command" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]+' | sort -u)
     fi

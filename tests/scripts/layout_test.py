@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -112,6 +113,27 @@ class InstalledTree(LauncherTest):
         self.assertEqual(ended.stderr, f"sandwall: {self.folder / 'bin' / 'sandwall-master'}: is of build 00000000000000ff, and this launcher "
                          "of 0123456789abcdef; install programs and launcher of one build, or unset SANDWALL_BIN\n")
         self.assertFalse((self.folder / "sessions").exists())
+
+
+class Completion(LauncherTest):
+    def completed(self, *words):
+        """Returns what bash offers for the last of the words that follow `sandwall`."""
+        script = (f"sandwall() {{ '{ROOT}/scripts/sandwall' \"$@\"; }}; source '{ROOT}/scripts/completion.bash'; "
+                  'COMP_WORDS=(sandwall "$@"); COMP_CWORD=$#; _sandwall; printf "%s\\n" "${COMPREPLY[@]}"')
+        return subprocess.run(["bash", "-c", script, "bash", *words], text=True, capture_output=True, timeout=60,
+                              cwd=self.folder, check=True).stdout.split()
+
+    def test_it_offers_every_command(self):
+        told = subprocess.run([f"{ROOT}/scripts/sandwall", "--help"], text=True, capture_output=True, check=True).stdout
+        commands = re.findall(r"^    ([a-z-]+) ", told.partition("commands:")[2], re.MULTILINE)
+        self.assertIn("run", commands)
+        self.assertEqual(sorted(set(commands) - set(self.completed(""))), [])
+
+    def test_it_offers_names_and_options(self):
+        self.assertEqual(self.completed("run", "--wall", "tiled_3"), ["tiled_3x4"])
+        self.assertEqual(self.completed("run", "--scene", "dun"), ["dunes"])
+        self.assertEqual(self.completed("run", "--device", "poi"), ["pointer"])
+        self.assertIn("--resume", self.completed("run", "--res"))
 
 
 if __name__ == "__main__":
