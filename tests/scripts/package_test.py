@@ -67,12 +67,12 @@ class Package(unittest.TestCase):
         found = sorted(path.name for path in (self.prefix / "lib" / "sandwall").iterdir())
         self.assertEqual(found, ["python", *sorted(
             f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", "gl-osmesa.so", "haptic-server", "import.so",
-                                            "master", "relax", "render-node", "replay", "security.so", "track", "watch", "window.so"))])
+                                            "master", "relax", "render-node", "replay", "security.so", "track", "watch"))])
         self.assertFalse([path for path in self.tree.rglob("*") if path.suffix in (".pyc", ".hpp", ".cpp")])
 
     def test_every_command_has_a_man_page(self):
         pages = self.prefix / "share" / "man" / "man1"
-        for name in ("sandwall", "sandwall-run", "sandwall-ctl", "sandwall-film", "sandwall-doctor", "sandwall-replay", "sandwall-master"):
+        for name in ("sandwall", "sandwall-run", "sandwall-try", "sandwall-ctl", "sandwall-film", "sandwall-doctor", "sandwall-replay", "sandwall-master"):
             text = called("gzip", "-dc", pages / f"{name}.1.gz").stdout
             for part in (".SH NAME", "SYNOPSIS", "--help"):
                 self.assertIn(part, text.replace("\\-", "-"), name)

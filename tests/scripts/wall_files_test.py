@@ -56,7 +56,8 @@ PLAIN = {"name": '"a wall"', "mode": '"mono"', "tracking": "", "screen": '"side"
 KEYS = {"name": "%s", "mode": "%s", "tracking": "[tracking]\nsource = %s", "screen": "%s", "overlaps": "overlaps = [%s]", "tiles": "[%s]",
         "host": "host = %s", "display": "display = %s", "monitors": "monitors = [%s]"}
 FORMS = ("%s", "|%s", "%s|", "$(%s)", "`%s`", ";%s", "-oProxyCommand=%s", "file://%s", "unix:%s", "trace:%s", "%s.so", "../../../../..%s")
-STARTS_A_PROGRAM = re.compile(r"\b(?:system|popen|execl|execlp|execle|execv|execvp|execve|execvpe|posix_spawnp?|v?fork|clone)\s*\(")
+# A member function of one of these names, such as Surface::clone(), starts nothing.
+STARTS_A_PROGRAM = re.compile(r"(?<![.>])\b(?:system|popen|execl|execlp|execle|execv|execvp|execve|execvpe|posix_spawnp?|v?fork|clone)\s*\(")
 
 
 class Watch:
