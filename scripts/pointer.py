@@ -49,6 +49,6 @@ def add_parser(commands, run):
     command = commands.add_parser("try", help="dig in sand on this desktop, with the mouse",
                                   description="Shows sand in a window of this desktop, where the mouse digs. Escape ends it; docs/pointer.md.")
     command.set_defaults(run=run)
-    command.add_argument("--scene", default="dunes", metavar="NAME|FILE", help="scene: a sample's name or a file (default: dunes)")
+    command.add_argument("--scene", default="writing", metavar="NAME|FILE", help="scene: a sample's name or a file (default: writing)")
     command.add_argument("--wall", default="desktop", metavar="NAME|FILE", help="wall: a sample's name or a file (default: desktop)")
     command.add_argument("--out", default="out/try", help="folder for journal, pictures and summary (default: out/try)")

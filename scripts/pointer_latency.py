@@ -106,7 +106,7 @@ def main():
     parser = Parser(prog="pointer_latency.py", description=__doc__)
     parser.add_argument("--seconds", type=float, default=20, help="seconds of the session after its warm-up (default: 20)")
     parser.add_argument("--warm-up", type=float, default=5, help="seconds at the start that do not count as frames (default: 5)")
-    parser.add_argument("--scene", default=ROOT / "scenes" / "dunes.toml", help="scene file (default: scenes/dunes.toml)")
+    parser.add_argument("--scene", default=ROOT / "scenes" / "writing.toml", help="scene file (default: scenes/writing.toml)")
     parser.add_argument("--json", action="store_true", help="print the session's summary as JSON")
     args = parser.parse_args()
     for program in ("Xvfb", "xdotool"):
