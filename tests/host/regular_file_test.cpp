@@ -110,7 +110,7 @@ TEST_F(Files, APrivateFileBelongsToThisUserAlone) {
 TEST_F(Files, AFolderThatOtherUsersMayWriteToIsUnsafe) {
     EXPECT_EQ(host::whyUnsafeFolder(folder_), "");
     EXPECT_EQ(host::whyUnsafeFolder(folder_ / "none"), "") << "it is made by this user";
-    for (const mode_t mode : {0775, 0757, 0777}) {
+    for (const mode_t mode : {0775U, 0757U, 0777U}) {
         chmod(folder_.c_str(), mode);
         EXPECT_EQ(host::whyUnsafeFolder(folder_), "other users may write to it") << mode;
         std::filesystem::remove(folder_ / "link");

@@ -29,7 +29,6 @@ const scene::Scene& sceneOfRanks() {
 /// Two render ranks, whose sand a test may corrupt.
 class FakeRanks : public master::Ranks {
 public:
-    explicit FakeRanks(master::MasterSand& sand) : sand_(sand) {}
 
     Verdict meet(const Arrival& mine, std::int64_t /* nextFrame */) override {
         ++meetings;
@@ -104,7 +103,6 @@ private:
         return sand.stateHash();
     }
 
-    master::MasterSand& sand_;
     std::vector<Arrival> arrivals_;
     std::vector<lockstep::FrameBarrier::Nonsense> nonsense_;
 };
@@ -140,7 +138,7 @@ protected:
 
     const std::uint64_t right_ = sand::Replica(sceneOfRanks()).stateHash();
     master::MasterSand sand_{sceneOfRanks(), {}, {}};
-    FakeRanks ranks_{sand_};
+    FakeRanks ranks_;
     HealedSteps steps_;
     lockstep::RankStatistics statistics_{3};
     bool hasJournal_ = false;

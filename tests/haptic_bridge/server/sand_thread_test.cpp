@@ -30,8 +30,7 @@ private:
 class Server {
 public:
     Server(const scene::Scene& scene, Pace pace, std::unique_ptr<Device> device)
-        : scene_(scene),
-          replica_(scene),
+        : replica_(scene),
           hand_(scene, std::move(device), HandSettings::Datum::surface, Guards::Mode::literal),
           thread_(scene, pace, hand_, *channel_,
                   {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
@@ -62,7 +61,6 @@ private:
         ticks_.push_back(hand_.lastTick());
     }
 
-    const scene::Scene& scene_;
     std::mutex mutex_;
     std::vector<Tick> ticks_;
     sand::Replica replica_;
