@@ -11,6 +11,7 @@ An installed tree may be moved as a whole, because every path begins at this fil
 
 import os
 import pathlib
+import re
 import subprocess
 
 import checked_json
@@ -63,11 +64,17 @@ def found(kind, named):
 
 
 def device(spec):
-    """Returns a SPEC of --device with the path of strokes that come with Sandwall, if it names them."""
+    """Returns a SPEC of --device with the path of strokes that come with Sandwall, if it names them.
+
+    Throws BadInput for an unknown name of strokes, and for the device `mouse` of earlier versions.
+    """
     kind, _, name = spec.partition(":")
-    if kind != "script" or name == BUILT_IN_STROKES or os.path.exists(name) or name not in known("strokes"):
-        return spec
-    return f"script:{FOLDERS['strokes'] / name}{ENDINGS['strokes']}"
+    if spec == "mouse":
+        raise BadInput("--device mouse: is gone; give --device pointer, which is the mouse in the wall's windows")
+    # A word without an ending is a name. The haptic server reports other files that it cannot read.
+    if kind == "script" and name != BUILT_IN_STROKES and re.fullmatch(r"[A-Za-z0-9_-]+", name):
+        return f"script:{found('strokes', name)}"
+    return spec
 
 
 def journal_at(named):

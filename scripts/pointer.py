@@ -6,6 +6,7 @@ import pathlib
 import subprocess
 
 import layout
+import screens
 from console import say
 from rank_hosts import BadInput
 
@@ -26,6 +27,8 @@ def require_windows(wall, render_node):
     """Throws BadInput in one line if this desktop cannot show the windows of the wall's first rank."""
     if not os.environ.get("DISPLAY"):
         raise BadInput(f"try: no X display (DISPLAY is not set); {ELSEWHERE}")
+    if not screens.present():
+        raise BadInput(f"try: no X server accepts connections at DISPLAY={os.environ['DISPLAY']}; {ELSEWHERE}")
     with open(wall, "rb") as text:
         probed = subprocess.run([render_node, "--probe", "1", "--gl", "glfw"], stdin=text, capture_output=True, text=True, errors="replace")
     if probed.returncode != 0:

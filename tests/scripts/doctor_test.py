@@ -200,7 +200,8 @@ class Refusals(LauncherTest):
         return ended.stderr.replace(str(self.folder) + "/", "")
 
     def test_bad_input_is_one_line(self):
-        self.assertIn("no-file: cannot be read; check the path", self.refusal(str(self.folder / "no-file")))
+        self.assertEqual(self.refusal(str(self.folder / "no-file")), "sandwall: no-file: cannot be read; check the path\n")
+        self.assertRegex(self.refusal("desktopp"), "^sandwall: desktopp: no file and no known name; walls .*, desktop, ")
         self.assertEqual(self.refusal(self.write("empty", "# nobody\n")),
                          "sandwall: empty: names no host; write one per line, as ssh knows it\n")
         self.assertEqual(self.refusal(self.write("hosts", "a\n-oX\n")),

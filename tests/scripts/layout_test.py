@@ -45,8 +45,14 @@ class Names(unittest.TestCase):
     def test_known_strokes_are_a_device(self):
         self.assertEqual(layout.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
         (self.folder / "stroke").write_text("")
-        for spec in ("script:stroke", "script:gis", "script:none.strokes", "mouse", "none"):
+        for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "pointer", "none"):
             self.assertEqual(layout.device(spec), spec)
+
+    def test_an_unknown_device_names_the_known_ones(self):
+        with self.assertRaisesRegex(BadInput, "^giss: no file and no known name; strokes .*: ellipses, .*, stroke$"):
+            layout.device("script:giss")
+        with self.assertRaisesRegex(BadInput, "--device pointer"):
+            layout.device("mouse")
 
     def test_a_journal_and_its_folder_name_the_same_session(self):
         session = self.folder / "session"
@@ -97,6 +103,12 @@ class InstalledTree(LauncherTest):
     def test_tools_get_all_their_options(self):
         ended = self.call("check", "--what", "a wall", "--help")
         self.assertEqual((ended.returncode, ended.stderr), (2, "made-up sandwall-check: --what a wall --help\n"))
+
+    def test_check_takes_the_name_of_a_wall(self):
+        small = self.prefix / "share" / "sandwall" / "walls" / "small.toml"
+        self.assertEqual(self.call("check", "small", "small").stderr, f"made-up sandwall-check: {small} small\n")
+        self.assertEqual(self.call("check", "smal").stderr,
+                         "sandwall: smal: no file and no known name; walls that come with Sandwall: small\n")
 
     def test_ctl_takes_the_journal_of_a_session(self):
         (self.folder / "out").mkdir()
