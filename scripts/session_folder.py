@@ -90,15 +90,20 @@ def write_text(path, text):
 def held(out, resume=False):
     """Holds a lock on the folder `out`. The kernel releases the lock when the process ends for any reason.
 
-    If the folder cannot be made or written, the master reports it. With `resume` this function throws BadInput, because
-    the launcher would otherwise restart the master again and again. Throws InUse if another launcher holds the lock, and
-    BadInput if other users may write to the folder.
+    Throws BadInput if the folder cannot be made, or if other users may write to it, and InUse if another launcher holds
+    the lock. If it cannot be written, the master reports it. With `resume` this function throws BadInput, because the
+    launcher would otherwise restart the master again and again.
     """
     path = pathlib.Path(out)
     try:
         make(path)
+    except OSError as error:
+        raise BadInput(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
+    try:
         require_safe(path)
         descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except NotADirectoryError as error:
+        raise BadInput(f"{out}: is not a folder, and --out must be one; choose another") from error
     except OSError:
         yield
         return

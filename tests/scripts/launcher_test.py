@@ -190,6 +190,16 @@ class Refusals(LauncherTest):
             self.assertEqual(self.refused(["-"], option, value),
                              f"sandwall run: argument {option}: {value} must be 0 or more; try --help\n")
 
+    def test_a_folder_that_cannot_be_made_is_refused_before_a_program_starts(self):
+        self.script("mpirun", MPIRUN)
+        file = self.write("file", "")
+        for out, why in (("/proc/x", "cannot be made (No such file or directory); choose another --out"),
+                         (f"{file}/x", "cannot be made (Not a directory); choose another --out"),
+                         (file, "is not a folder, and --out must be one; choose another")):
+            for options in ((), ("--json",), ("--device", "script:gis")):
+                ended = self.start(["-"], *options, "--out", out)
+                self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", f"sandwall: {out}: {why}\n"))
+
     def test_a_secret_without_a_link_is_refused(self):
         self.assertIn("--secret-file: needs a haptic link", self.refused(["-"], "--secret-file", "none"))
 
