@@ -17,10 +17,17 @@ void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica
         const double radius = sand.toolShape().radius;
         const double above = radius * (sample.pressed != 0 ? 1 - depth_ : kHover);
         constexpr std::int32_t kFarthest = sand::kMaxProbe - 1;
-        last_ = {sample.x, sample.y, std::min(sample.z + static_cast<std::int32_t>(std::lround(above)), kFarthest)};
+        const std::int32_t z = sample.z + static_cast<std::int32_t>(std::lround(above));
+        last_ = {sample.x, sample.y, std::clamp(z, -sand::kMaxProbe, kFarthest)};
     }
     engaged_ = sample.meets != 0 && sample.pressed != 0;
+    lastNs_ = sample.at;
     path_.add({sample.at, last_, engaged_});
+}
+
+void PointerHand::lift(std::int64_t at) {
+    engaged_ = false;
+    path_.add({at, last_, false});
 }
 
 void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
@@ -32,10 +39,11 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
         return;
     }
     const auto places = reports[*hand].places();
-    if (std::exchange(hand_, hand) != hand && engaged_ && !places.empty()) {
-        // Avoids a furrow from the former hand's place to that of the new one.
-        engaged_ = false;
-        path_.add({places.front().at, last_, false});
+    const std::optional<std::size_t> former = std::exchange(hand_, hand);
+    if (former != hand && engaged_) {
+        // Avoids a furrow from the former hand's place to that of the new one, which may rest for a while.
+        const auto ended = reports[*former].places();
+        lift(!places.empty() ? places.front().at : !ended.empty() ? ended.back().at : lastNs_);
     }
     for (const lockstep::PointerSample& sample : places) {
         add(sample, sand);

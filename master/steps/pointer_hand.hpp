@@ -37,11 +37,13 @@ public:
 
 private:
     void add(const lockstep::PointerSample& sample, const sand::Replica& sand);
+    void lift(std::int64_t at /* [ns] */);
 
     PointerArbiter arbiter_;
     haptic_bridge::PathBuilder path_;
     std::optional<std::size_t> hand_;  // rank of the frame before
     sand::ProbePoint last_;
+    std::int64_t lastNs_ = 0;  // [ns, the master's clock], when `last_` was read
     bool engaged_ = false;
     double depth_ = 0.5;
     bool liftFirst_;

@@ -130,4 +130,28 @@ TEST_F(PointerHand, ASecondPointerWaitsForTheFirst) {
     EXPECT_EQ(height(32, 32), 0);
 }
 
+TEST_F(PointerHand, IsLiftedWhenTheNextPointerRests) {
+    add(1, 20, 20, true);
+    (void)step();
+    add(2, 44, 44, true);
+    (void)step();
+    add(1, 20, 20, false);
+    EXPECT_FALSE(step().engaged) << "the second pointer is pressed, but has not moved since";
+    EXPECT_EQ(read_, clock_) << "the time of the release";
+    add(2, 45, 44, true);
+    EXPECT_TRUE(step().engaged);
+    EXPECT_LT(height(45, 44), 0);
+    EXPECT_EQ(height(32, 32), 0) << "no furrow from the first pointer to the second one";
+}
+
+TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
+    reports_[1].wheel = 1000;
+    add(1, 20, 32, true);
+    reports_[1].samples[0].z = -sand::kMaxProbe;
+    hand_.take(reports_, terrain_);
+    sand::Step deep;
+    (void)hand_.fill(deep);
+    EXPECT_EQ(deep.path.at(0).z, -sand::kMaxProbe);
+}
+
 }  // namespace
