@@ -25,7 +25,11 @@ void requireValid(const PointerReport& report) {
             throw base::FormatError("a pointer with a number that is not finite");
         }
     }
+    constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // [ns], so that sums and differences never overflow
     for (const PointerSample& sample : report.places()) {
+        if (sample.at < 0 || sample.at >= kLatest) {
+            throw base::FormatError(fmt::format("a pointer at the time {} ns", sample.at));
+        }
         for (const std::int32_t number : {sample.x, sample.y, sample.z}) {
             if (number < -sand::kMaxProbe || number >= sand::kMaxProbe) {
                 throw base::FormatError(fmt::format("a pointer at {}", number));

@@ -41,8 +41,8 @@ static_assert(std::is_trivially_copyable_v<PointerReport>);
 static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 24 + 24 * PointerReport::kMostSamples,
               "no hidden gaps, because the bytes are a message");
 
-/// Throws base::FormatError if `report` has too many samples, a place beyond sand::kMaxProbe, or a number that is not
-/// finite.
+/// Throws base::FormatError if `report` has too many samples, a place beyond sand::kMaxProbe, a time that no clock
+/// shows, or a number that is not finite.
 void requireValid(const PointerReport& report);
 
 }  // namespace lockstep

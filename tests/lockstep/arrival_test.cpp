@@ -104,6 +104,12 @@ TEST(Arrival, WithAnImpossiblePointerIsNone) {
     far.count = 1;
     far.samples[0].y = sand::kMaxProbe;
     EXPECT_EQ(fault(far), "a pointer at 16777216");
+    for (const std::int64_t time : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
+        lockstep::PointerReport late;
+        late.count = 1;
+        late.samples[0].at = time;
+        EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
+    }
     lockstep::PointerReport wheel;
     wheel.wheel = std::numeric_limits<float>::infinity();
     EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
