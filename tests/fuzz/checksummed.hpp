@@ -7,8 +7,9 @@
 
 namespace fuzz {
 
-/// Returns a file that holds the input behind its first byte. If the lowest bit of that byte is 1, the checksum follows,
-/// with which checkpoints and saved sand end. A fuzzer would never find a correct checksum. The input is not empty.
+/// Returns a file that holds the input behind its first byte. If the lowest bit of that byte is 1, the checksum
+/// follows, with which checkpoints and saved sand end. A fuzzer would never find a correct checksum. The input is not
+/// empty.
 inline base::Bytes checksummed(Input input) {
     const Input content = input.subspan(1);
     base::ByteWriter bytes;

@@ -29,7 +29,6 @@ const scene::Scene& sceneOfRanks() {
 /// Two render ranks, whose sand a test may corrupt.
 class FakeRanks : public master::Ranks {
 public:
-
     Verdict meet(const Arrival& mine, std::int64_t /* nextFrame */) override {
         ++meetings;
         arrivals_ = {mine, mine, mine};

@@ -19,8 +19,8 @@ namespace test {
 /// A plain socket that sends to a server whatever a test wants.
 class RawPeer {
 public:
-    /// Connects to `port` of this machine. `receiveBuffer` limits what the kernel takes before a test reads it [byte]; 0
-    /// leaves the limit of the machine, which may be tens of megabytes.
+    /// Connects to `port` of this machine. `receiveBuffer` limits what the kernel takes before a test reads it [byte];
+    /// 0 leaves the limit of the machine, which may be tens of megabytes.
     explicit RawPeer(std::uint16_t port, int receiveBuffer = 0) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in address{};
         address.sin_family = AF_INET;
