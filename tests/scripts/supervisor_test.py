@@ -32,9 +32,10 @@ exit 0""")
         self.assertTrue((self.folder / "done").exists())
 
     def test_where_no_log_can_be_written_the_master_has_the_word(self):
-        (self.folder / "out").write_text("a file")
-        self.tries("complain 0 'out: cannot make this folder'; exit 2")
-        self.assertEqual(self.ended(["-"]), (2, "", "out: cannot make this folder\n"))
+        (self.folder / "out").mkdir()
+        (self.folder / "out" / "log").write_text("a file")
+        self.tries("complain 0 'out: cannot be written'; exit 2")
+        self.assertEqual(self.ended(["-"]), (2, "", "out: cannot be written\n"))
 
 
 def environments():
