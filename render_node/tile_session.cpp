@@ -21,6 +21,7 @@
 #include "lockstep/statistics.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "render_node/gl/gl_program.hpp"
+#include "render_node/pointer/next_key.hpp"
 #include "render_node/pointer/pointer_reader.hpp"
 #include "render_node/tile_painter.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
@@ -189,13 +190,9 @@ private:
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
     [[nodiscard]] char nextKey() {
+        constexpr char kQuitKey = 27;  // Escape
         keys_ += context_->takeKeys();
-        if (keys_.empty()) {
-            return '\0';
-        }
-        const char key = keys_.front();
-        keys_.erase(0, 1);
-        return key;
+        return takeNextKey(keys_, kQuitKey);
     }
 
     /// The master may take the limit of a frame for each picture of each rank. So a rank may wait longer until all have
