@@ -18,8 +18,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kQuitKey = 27;  // Escape, in any window
-
 std::string line(const Json& json) {
     // A user may type bytes that are not UTF-8. They are replaced.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -80,7 +78,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
 void OperatorDesk::obeyKey(char key) {
     if (key == 't') {
         views_.show(lockstep::nextPattern(views_.pattern()));
-    } else if (key == kQuitKey) {
+    } else if (key == lockstep::kQuitKey) {
         input_.stop();
     } else if (pointer_ && key == kTurnBackKey) {
         views_.turnBack();

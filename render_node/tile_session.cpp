@@ -190,7 +190,7 @@ private:
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
     [[nodiscard]] char nextKey() {
-        constexpr char kQuitKey = 27;  // Escape
+        static_assert(kQuitKey == lockstep::kQuitKey);
         keys_ += context_->takeKeys();
         return takeNextKey(keys_, kQuitKey);
     }

@@ -13,8 +13,8 @@ namespace master {
 /// Decides which rank's pointer is the hand, because several people may point at one wall.
 ///
 /// The pointer that touched first is the hand until it releases. Then the pointer that has touched longest takes over.
-/// While no pointer touches, the one that moved last is the hand. If several ranks touch
-/// or move in the same frame, the lowest rank counts as the first. Used by one thread.
+/// While no pointer touches, the one that moved last is the hand. If several ranks touch or move in the same frame, the
+/// lowest rank counts as the first. Used by one thread.
 class PointerArbiter {
 public:
     /// Takes the reports of a frame, in order of rank. Returns the rank whose pointer is the hand in this frame, or

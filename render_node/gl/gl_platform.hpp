@@ -18,6 +18,8 @@ struct WindowRequest {
     glm::ivec2 pixels{1, 1};
 };
 
+inline constexpr char kQuitKey = 27;  // Escape
+
 /// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
 /// reports it.
 struct PointerEvent {
@@ -71,6 +73,7 @@ public:
     virtual void check() {}
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn.
     virtual void swap(std::uint64_t /* frame */) {}
+    /// Returns the characters that were pressed in the windows since the last call; kQuitKey for Escape and q.
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
     /// Returns the events of the pointer since the last call, in the order of time.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }

@@ -25,7 +25,9 @@ namespace {
 class Glfw final : public GlPlatform {
 public:
     explicit Glfw(const PlatformRequest& request)
-        : watch_(request.display, request.who), eyesInTurn_(request.eyesInTurn), pointer_(request.pointer) {
+        : watch_(request.display, request.who, request.pointer),
+          eyesInTurn_(request.eyesInTurn),
+          pointer_(request.pointer) {
         if (request.windows.empty()) {
             windows_.emplace_back(library_, watch_.name());
         }

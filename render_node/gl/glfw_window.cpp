@@ -7,11 +7,11 @@
 #include <GLFW/glfw3native.h>
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <span>
 
 #include "base/input_error.hpp"
+#include "host/clock.hpp"
 #include "render_node/gl/screen_cover.hpp"
 
 namespace render_node {
@@ -188,9 +188,7 @@ void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::siz
 /// a later place.
 void GlfwWindow::addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches) {
     const auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    const std::int64_t ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-    listener->input->pointer.push_back({kind, listener->window, listener->at, ns, notches});
+    listener->input->pointer.push_back({kind, listener->window, listener->at, host::monotonicNs(), notches});
 }
 
 void GlfwWindow::followPointer() {

@@ -25,8 +25,6 @@ public:
     [[nodiscard]] std::string complaint() const;
 };
 
-inline constexpr char kQuitKey = 27;  // Escape
-
 /// Input of all windows since it was taken last.
 struct WindowInput {
     std::string keys;  // pressed characters; kQuitKey for Escape and q

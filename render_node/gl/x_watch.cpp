@@ -34,7 +34,8 @@ int noteRefusal(Display* display, XErrorEvent* error) {
     return 0;
 }
 
-std::string chosenDisplay(const std::string& display) {
+/// `other` says what to choose where there is no display.
+std::string chosenDisplay(const std::string& display, const char* other) {
     if (!display.empty()) {
         setenv("DISPLAY", display.c_str(), 1);
         return display;
@@ -42,16 +43,18 @@ std::string chosenDisplay(const std::string& display) {
     const char* fromEnvironment = std::getenv("DISPLAY");
     if (fromEnvironment == nullptr || *fromEnvironment == '\0') {
         throw base::InputError(
-            "--gl glfw: no X display; set DISPLAY, give the tile's place in the wall file one (display = \":0\"), or "
-            "draw off screen with --gl osmesa");
+            std::string("--gl glfw: no X display; set DISPLAY, give the tile's place in the wall file one (display = "
+                        "\":0\"), or ") +
+            other);
     }
     return fromEnvironment;
 }
 
 }  // namespace
 
-XWatch::XWatch(const std::string& display, const std::string& who)
-    : name_(chosenDisplay(display)), display_(XOpenDisplay(name_.c_str())) {
+XWatch::XWatch(const std::string& display, const std::string& who, bool needsWindows)
+    : name_(chosenDisplay(display, needsWindows ? "choose another --device" : "draw off screen with --gl osmesa")),
+      display_(XOpenDisplay(name_.c_str())) {
     if (display_ == nullptr) {
         throw base::InputError("--gl glfw: cannot open X display " + name_ +
                                "; is its server running, and may this user use it (docs/backends.md)?");

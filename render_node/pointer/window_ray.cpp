@@ -26,7 +26,7 @@ glm::dvec3 onScreen(const walls::Wall& wall, const walls::Tile& tile, glm::dvec2
            (1 - share.y) * (screen.upperLeft - screen.lowerLeft);
 }
 
-bool lies(glm::dvec2 pixel, glm::dvec2 size) {
+bool contains(glm::dvec2 size, glm::dvec2 pixel) {
     return pixel.x >= 0 && pixel.y >= 0 && pixel.x < size.x && pixel.y < size.y;
 }
 
@@ -34,13 +34,13 @@ bool lies(glm::dvec2 pixel, glm::dvec2 size) {
 
 glm::dvec3 roomPoint(const walls::Wall& wall, const walls::Tile& tile, const WindowPlace& place) {
     const std::optional<glm::ivec2>& corner = tile.outputs.at(place.output).window;
-    if (corner && !lies(place.at, walls::outputPixels(wall.stereo, tile.pixels))) {
+    if (corner && !contains(walls::outputPixels(wall.stereo, tile.pixels), place.at)) {
         for (const walls::Tile& other : wall.tiles) {
             const bool sameDisplay = other.place.display == tile.place.display && other.place.host == tile.place.host;
             for (const walls::Output& output : other.outputs) {
                 if (sameDisplay && output.window) {
                     const glm::dvec2 there = place.at + glm::dvec2(*corner - *output.window);
-                    if (lies(there, walls::outputPixels(wall.stereo, other.pixels))) {
+                    if (contains(walls::outputPixels(wall.stereo, other.pixels), there)) {
                         return onScreen(wall, other, there);
                     }
                 }

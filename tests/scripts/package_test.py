@@ -13,20 +13,10 @@ import sys
 import tempfile
 import unittest
 
+from sample_scene import SCENE
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build" / "release"
-SCENE = """name = "small"
-[field]
-columns = 64
-rows = 48
-[terrain]
-kind = "flat"
-height = 0.2
-[material]
-talus_deg = 34
-[tool]
-radius = 0.1
-"""
 
 
 def called(*words, **options):

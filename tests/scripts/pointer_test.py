@@ -275,6 +275,15 @@ class PointerSession(unittest.TestCase):
 
 
 class Refused(unittest.TestCase):
+    def test_a_session_without_a_display_is_not_told_to_draw_in_memory(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ran = subprocess.run([str(ROOT / "scripts" / "sandwall"), "run", "--wall", "desktop", "--scene", "writing", "--device", "pointer",
+                                  "--out", folder], capture_output=True, text=True, timeout=PATIENCE,
+                                 env={**os.environ, "SANDWALL_BIN": str(BIN), "DISPLAY": ""})
+        self.assertEqual((ran.returncode, ran.stderr.count("\n")), (2, 1), ran.stderr)
+        self.assertIn("no X display", ran.stderr)
+        self.assertIn("choose another --device", ran.stderr)
+
     def tried(self, *words, **environment):
         ran = subprocess.run([str(ROOT / "scripts" / "sandwall"), "try", *words], capture_output=True, text=True, timeout=PATIENCE,
                              env={**os.environ, "SANDWALL_BIN": str(BIN), **environment})

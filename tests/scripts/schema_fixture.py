@@ -11,6 +11,8 @@ import unittest
 
 import jsonschema
 
+from sample_scene import SCENE
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCHEMAS = ROOT / "docs" / "schemas"
 sys.path.insert(0, str(ROOT / "scripts"))
@@ -31,19 +33,6 @@ lower_left = [-1.024, 0.9, 0.0]
 centre = [0.0, 1.25, -0.3]
 width = 1.6
 tilt_deg = 40
-"""
-SCENE = """name = "small"
-[field]
-columns = 64
-rows = 48
-width = 2.0
-[terrain]
-kind = "flat"
-height = 0.2
-[material]
-talus_deg = 34
-[tool]
-radius = 0.1
 """
 
 

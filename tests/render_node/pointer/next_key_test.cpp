@@ -18,4 +18,10 @@ TEST(NextKey, ThatEndsTheSessionDoesNotWaitForOthers) {
     EXPECT_EQ(waiting, "+++");
 }
 
+TEST(NextKey, OfAHeldKeyIsDroppedBeyondAFew) {
+    std::string waiting = std::string(100, '+') + "q";
+    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), 'q') << "also behind the others";
+    EXPECT_EQ(waiting, std::string(render_node::kMostKeys, '+'));
+}
+
 }  // namespace
