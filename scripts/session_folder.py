@@ -90,9 +90,8 @@ def write_text(path, text):
 def held(out, resume=False):
     """Holds a lock on the folder `out`. The kernel releases the lock when the process ends for any reason.
 
-    Throws BadInput if the folder cannot be made, or if other users may write to it, and InUse if another launcher holds
-    the lock. If it cannot be written, the master reports it. With `resume` this function throws BadInput, because the
-    launcher would otherwise restart the master again and again.
+    Throws BadInput if the folder cannot be made or written, or if other users may write to it, and InUse if another
+    launcher holds the lock.
     """
     path = pathlib.Path(out)
     try:
@@ -109,8 +108,9 @@ def held(out, resume=False):
         return
     try:
         lock(descriptor, out)
-        if resume and not os.access(path, os.W_OK | os.X_OK):
-            raise BadInput(f"{out}: cannot be written, but a resumed session writes its journal there; make it writable")
+        if not os.access(path, os.W_OK | os.X_OK):
+            raise BadInput(f"{out}: cannot be written; " +
+                           ("a resumed session writes its journal there, so make it writable" if resume else "choose another --out"))
         yield
     finally:
         os.close(descriptor)

@@ -15,6 +15,7 @@ from supervisor_fixture import Supervised
 
 import processes
 import session_folder
+from rank_hosts import BadInput
 
 
 class Folder(Supervised):
@@ -48,6 +49,12 @@ class Folder(Supervised):
         os.chown(self.folder / "real", 0, 0)
         os.lchown(self.out, 1, 1)
         self.assertEqual(self.refused(["-"]), "sandwall: out: is a link of another user; choose another --out\n")
+
+    def test_a_folder_that_cannot_be_written_is_refused(self):
+        for resume, advice in ((False, "choose another --out"), (True, "a resumed session writes its journal there, so make it writable")):
+            with mock.patch("os.access", return_value=False), self.assertRaises(BadInput) as refused, session_folder.held(self.out, resume):
+                pass
+            self.assertEqual(str(refused.exception), f"{self.out}: cannot be written; {advice}")
 
     def test_a_film_is_refused_too(self):
         self.out.chmod(0o777)
