@@ -65,9 +65,9 @@ def check_display(host):
                  display=name or None)
 
 
-def check_gl(host, node):
-    """Adds a finding for each backend. A wall needs only one, and osmesa is the one that needs no card and no display."""
-    for backend in ("osmesa", "egl", "glfw"):
+def check_gl(host, node, chosen):
+    """Adds a finding for the chosen backend. "auto" means all: a wall needs one, and osmesa needs no card and no display."""
+    for backend in ("osmesa", "egl", "glfw") if chosen == "auto" else (chosen,):
         try:
             ended = subprocess.run([node, "--probe", "0", "--gl", backend, "--json"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, errors="replace", timeout=doctor.PROBE_SECONDS, check=False)
@@ -79,17 +79,17 @@ def check_gl(host, node):
         else:
             words = complaint.removeprefix("sandwall-render-node: ") or "does not answer"
             host.add(False, "gl", f"{'' if words.startswith('--gl') else f'--gl {backend}: '}{words}; docs/backends.md",
-                     needed=backend == "osmesa", backend=backend)
+                     needed=backend == "osmesa" or backend == chosen, backend=backend)
 
 
-def examine(node, master, out, as_json):
-    """Checks this machine. Returns the exit status: 0 if a session can run here, else 1."""
+def examine(node, master, out, backend, as_json):
+    """Checks this machine for sessions that draw with `backend` ("auto": any). Returns the exit status: 0 if a session can run here, else 1."""
     host = doctor.Host(HERE)
     host.slots = 1
     build = layout.build_of(node)
     doctor.check_master(host, master, build)
     doctor.check_out(host, out)
-    examiner = doctor.Doctor(node, build, None, "auto")
+    examiner = doctor.Doctor(node, build, None, backend)
     answers = examiner.reach(host)
     if answers is not None:
         examiner.check_programs(host, answers)
@@ -97,5 +97,5 @@ def examine(node, master, out, as_json):
         check_cores(host)
         check_memory(host, answers)
         check_display(host)
-        check_gl(host, node)
+        check_gl(host, node, backend)
     return doctor.show([host], as_json)

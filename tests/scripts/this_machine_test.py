@@ -38,9 +38,9 @@ class ThisMachine(LauncherTest):
         return subprocess.run([str(ROOT / "scripts" / "sandwall"), "doctor", "--out", str(self.folder), *options], env=self.environment,
                               text=True, capture_output=True, timeout=100, stdin=subprocess.DEVNULL)
 
-    def findings(self, status):
+    def findings(self, status, *options):
         """Returns {check or backend: finding} of the doctor, which must end with this status."""
-        ended = self.doctor("--json")
+        ended = self.doctor("--json", *options)
         self.assertEqual((ended.returncode, ended.stderr), (status, ""))
         found = json.loads(ended.stdout)
         self.assertEqual(found["red"], sum(not one["good"] and one.get("needed", True) for one in found["findings"]))
@@ -68,6 +68,12 @@ class ThisMachine(LauncherTest):
         self.assertTrue(self.findings(1)["osmesa"]["needed"])
         self.environment.update(BACKENDS="osmesa", MPI_FAULT="no slots")
         self.assertEqual(self.findings(1)["start"]["message"], "no slots")
+
+    def test_a_chosen_backend_is_the_only_one_asked_and_is_needed(self):
+        found = self.findings(0, "--gl", "egl")
+        self.assertEqual([name for name in found if name in ("osmesa", "egl", "glfw")], ["egl"])
+        self.environment["BACKENDS"] = "osmesa"
+        self.assertTrue(self.findings(1, "--gl", "egl")["egl"]["needed"])
 
     def test_a_display_that_does_not_answer_is_named(self):
         self.environment["DISPLAY"] = ":64999"
