@@ -13,6 +13,7 @@ set(docs share/doc/sandwall)
 add_custom_target(sandwall)
 add_dependencies(sandwall ${programs} ${modules})
 
+install(SCRIPT cmake/check_prefix.cmake)
 install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DESTINATION ${private})
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES

@@ -89,6 +89,13 @@ class Package(unittest.TestCase):
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr.count("\n")), (2, "", 1), ended.stderr)
         self.assertIn(f"is of build {json.loads(ours)['build']}, and this launcher of 00000000000000ff", ended.stderr)
 
+    def test_a_prefix_that_cannot_be_written_is_refused_before_anything_is_installed(self):
+        for prefix in ("/proc/sandwall", "/dev/null/sandwall"):
+            ended = called("cmake", "--install", BUILD, "--prefix", prefix)
+            self.assertNotEqual(ended.returncode, 0)
+            self.assertIn(f"{prefix}: cannot be written; choose a folder of yours", " ".join(ended.stderr.split()))
+            self.assertNotIn("-- Installing", ended.stdout)
+
     def test_a_folder_that_cannot_be_written_is_refused_in_one_line(self):
         for folder in ("/proc/sandwall", "/dev/null/sandwall", str(self.package)):
             ended = called(ROOT / "scripts" / "package.sh", "--build", BUILD, "--out", folder)
