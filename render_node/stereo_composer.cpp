@@ -72,31 +72,34 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
 }
 
 void StereoComposer::compose(std::span<const EyeTarget> eyes) {
-    compose(eyes, {0, 0, eyes[0].width(), eyes[0].height()});
+    (void)compose(eyes, {0, 0, eyes[0].width(), eyes[0].height()});
 }
 
-void StereoComposer::compose(std::span<const EyeTarget> eyes, const PixelRect& changed) {
+PixelRect StereoComposer::compose(std::span<const EyeTarget> eyes, const PixelRect& changed) {
     if (!packed_ || changed.empty()) {
-        return;
+        return changed;
     }
     if (isBeside(stereo_)) {
-        copyBeside(eyes, changed);
-    } else {
-        drawMixed(eyes, changed);
+        return copyBeside(eyes, changed);
     }
+    drawMixed(eyes, changed);
+    return changed;
 }
 
-void StereoComposer::copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const {
+PixelRect StereoComposer::copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const {
     const bool beside = stereo_ == Stereo::sideBySide;
     glDisable(GL_SCISSOR_TEST);
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, packed_->framebuffer());
     const auto copy = [&](const EyeTarget& eye, int x, int y) {
         const auto& [x0, y0, x1, y1] = changed;
         glBindFramebuffer(GL_READ_FRAMEBUFFER, eye.framebuffer());
-        glBlitFramebuffer(x0, y0, x1, y1, x + x0, y + y0, x + x1, y + y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        const PixelRect to{x + x0, y + y0, x + x1, y + y1};
+        glBlitFramebuffer(x0, y0, x1, y1, to.x0, to.y0, to.x1, to.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+        return to;
     };
-    copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from the bottom
-    copy(eyes[1], beside ? eyes[0].width() : 0, 0);
+    const PixelRect left = copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from the bottom
+    const PixelRect right = copy(eyes[1], beside ? eyes[0].width() : 0, 0);
+    return around(left, right);
 }
 
 void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const {

@@ -9,7 +9,7 @@
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
-#include "render_node/surface/pixel_rect.hpp"
+#include "render_node/gl/pixel_rect.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -29,8 +29,9 @@ public:
     ///
     /// @param eyes  Pictures in the order of walls::eyesOf(), each of tile.pixels.
     void compose(std::span<const EyeTarget> eyes);
-    /// Composes the pixels in `changed`. The eyes must not have changed elsewhere.
-    void compose(std::span<const EyeTarget> eyes, const PixelRect& changed);
+    /// Composes the pixels in `changed`. The eyes must not have changed elsewhere. Returns the pixels of the outputs
+    /// that this may have changed.
+    PixelRect compose(std::span<const EyeTarget> eyes, const PixelRect& changed);
 
     /// Returns the pictures of the outputs, in the order of tile.outputs, for GlContext::present(). They point to the
     /// eyes' targets and to this composer's target.
@@ -48,7 +49,7 @@ private:
         std::array<GLuint, 128> first{};   // least light that is shown as the level
         glm::mat4 fromLeft{0}, fromRight{0};
     };
-    void copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
+    [[nodiscard]] PixelRect copyBeside(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
     void drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
 
     walls::Stereo stereo_;

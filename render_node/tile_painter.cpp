@@ -90,13 +90,15 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
         overlay_->add(figures, frame);
     }
     showHelp(view.layers.shows(lockstep::Overlay::help) && tile_->rank == 1);
-    const PixelRect changed =
+    PixelRect changed =
         pattern == lockstep::Pattern::none ? paintSand(cameras, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
               shown_.begin() + static_cast<std::ptrdiff_t>(range.end), pattern);
-    composer_.compose(targets_, changed);
+    changed_ = {};
+    compose(changed);
     if (overlay_ && pattern == lockstep::Pattern::none) {
         paintOverlay(range);
+        changed = around(changed, overlay_->pixels());
     }
     if (help_ && pattern == lockstep::Pattern::none) {
         paintHelp(range, changed);
@@ -116,13 +118,19 @@ void TilePainter::showHelp(bool shown) {
     }
 }
 
-/// Draws the help again where anything has been drawn, because still sand must cost nothing.
+/// Composes the outputs where the eyes have changed.
+void TilePainter::compose(const PixelRect& changed) {
+    changed_ = around(changed_, composer_.compose(targets_, changed));
+}
+
+/// Draws the help again where anything has been drawn over it, because still sand must cost nothing.
 void TilePainter::paintHelp(EyeRange range, const PixelRect& changed) {
     for (std::size_t i = range.from; i < range.end; ++i) {
-        if (!helped_[i] || !changed.empty() || overlay_) {
+        const PixelRect lost = helped_[i] ? overlap(changed, help_->pixels()) : help_->pixels();
+        if (!lost.empty()) {
             help_->draw(std::span<const EyeTarget>(targets_).subspan(i, 1));
             helped_[i] = true;
-            composer_.compose(targets_, help_->pixels());
+            compose(lost);
         }
     }
 }
@@ -140,7 +148,7 @@ void TilePainter::paintOverlay(EyeRange range) {
     for (std::size_t i = range.from; i < range.end; ++i) {
         covered_[i] = overlay_->pixels();
     }
-    composer_.compose(targets_, overlay_->pixels());
+    compose(overlay_->pixels());
 }
 
 std::vector<Camera> TilePainter::camerasOf(const lockstep::ViewState& view) const {

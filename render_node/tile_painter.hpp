@@ -62,6 +62,8 @@ public:
                const TileFigures& figures = {});
     /// Returns the picture of each output, in the order of tile.outputs. Valid until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
+    /// Returns the pixels of the outputs that the last paint() may have changed.
+    [[nodiscard]] const PixelRect& changed() const { return changed_; }
 
     /// Returns each eye's picture, in the order of walls::eyesOf(). If the output's picture is packed from both eyes,
     /// it comes last.
@@ -86,6 +88,7 @@ private:
     void showHelp(bool shown);
     void paintHelp(EyeRange range, const PixelRect& changed);
     void paintOverlay(EyeRange range);
+    void compose(const PixelRect& changed);
 
     void makeTargets();
 
@@ -104,6 +107,7 @@ private:
     std::vector<PixelRect> covered_;            // for each target, the pixels under the statistics
     std::optional<HelpOverlay> help_;           // only while Overlay::help is shown, on the tile of rank 1
     std::vector<bool> helped_;                  // for each target, whether it shows the help
+    PixelRect changed_;                         // of the outputs, by the last paint()
     ViewCounts counts_;
 };
 

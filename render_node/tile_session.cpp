@@ -148,7 +148,7 @@ private:
         // showsEyesInTurn() describes the previous frame, which may have had another stereo mode.
         const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
         painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
-        context_->present(painter_->outputs(), frame.frame);
+        context_->present(painter_->outputs(), painter_->changed(), frame.frame);
     }
 
     /// Meets the other ranks at the barrier. If replicas differ, heals the sand, draws again and meets the ranks again.

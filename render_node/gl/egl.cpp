@@ -146,6 +146,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform2(const PlatformRequest& request) { return new Egl(request.device); }
+extern "C" GlPlatform* sandwallGlPlatform3(const PlatformRequest& request) { return new Egl(request.device); }
 
 }  // namespace render_node

@@ -26,7 +26,10 @@ public:
         loadFunctions(*platform_);
     }
     void makeCurrent() override { platform_->makeCurrent(0); }
-    void present(std::span<const OutputPicture> /* outputs */, std::uint64_t /* frame */) override { finishFrame(); }
+    void present(std::span<const OutputPicture> /* outputs */, const PixelRect& /* changed */,
+                 std::uint64_t /* frame */) override {
+        finishFrame();
+    }
     [[nodiscard]] std::string name() const override { return std::string(backendName(backend_)); }
 
 private:

@@ -56,8 +56,10 @@ public:
     /// GL has copied them. Off screen it only waits. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     ///
-    /// @param frame  Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
-    virtual void present(std::span<const OutputPicture> outputs, std::uint64_t frame) = 0;
+    /// @param changed  Pixels that differ from the last call's pictures, in any output. A software renderer copies only
+    ///                 these. The first call copies everything.
+    /// @param frame    Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
+    virtual void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame) = 0;
     /// Returns whether each frame shows only one eye. This is so for active stereo in windows without quad buffers.
     [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
     /// Shows the presented pictures. The caller swaps only after all ranks have agreed. Off screen it does nothing.

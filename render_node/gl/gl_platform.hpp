@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "render_node/gl/pixel_rect.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -71,8 +73,12 @@ public:
     /// Processes the events of the window system. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     virtual void check() {}
-    /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn.
-    virtual void swap(std::uint64_t /* frame */) {}
+    /// Returns whether the back buffer of a window keeps its picture when the window is swapped. Then only pixels that
+    /// change must be drawn into it.
+    [[nodiscard]] virtual bool keepsPicture(std::size_t /* window */) const { return false; }
+    /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn. `changed` has the pixels of each
+    /// window's back buffer that have changed since the last swap.
+    virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}
     /// Returns the characters that were pressed in the windows since the last call; kQuitKey for Escape and q.
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
     /// Returns the events of the pointer since the last call, in the order of time.
@@ -85,7 +91,7 @@ public:
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform2(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform2";
+extern "C" GlPlatform* sandwallGlPlatform3(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform3";
 
 }  // namespace render_node

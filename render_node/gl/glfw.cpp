@@ -15,6 +15,7 @@
 #include "base/input_error.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/gl/glfw_window.hpp"
+#include "render_node/gl/part_copy.hpp"
 #include "render_node/gl/swap_sync.hpp"
 #include "render_node/gl/x_watch.hpp"
 
@@ -74,9 +75,16 @@ public:
         }
     }
 
-    void swap(std::uint64_t frame) override {
+    [[nodiscard]] bool keepsPicture(std::size_t window) const override { return parts_.at(window).has_value(); }
+
+    void swap(std::uint64_t frame, std::span<const PixelRect> changed) override {
         for (std::size_t i = 0; i < windows_.size(); ++i) {
-            if (!eyes_[i] || !eyes_[i]->swap(frame)) {
+            if (parts_[i]) {
+                const PixelRect part = windows_[i].takeExposed() ? windows_[i].allPixels() : changed[i];
+                if (!part.empty()) {
+                    parts_[i]->show(part);
+                }
+            } else if (!eyes_[i] || !eyes_[i]->swap(frame)) {
                 glfwSwapBuffers(windows_[i].handle());
             }
         }
@@ -113,6 +121,7 @@ private:
                                displayScreen()};
         group_.emplace(loader, drawables);
         eyes_.resize(windows_.size());
+        parts_.resize(windows_.size());
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             const bool inTurn = eyesInTurn_ && !windows_[i].quadBuffers();
             if (inTurn) {
@@ -124,7 +133,14 @@ private:
             // Other windows do not wait for a retrace. The software barrier paces them, and a second wait would only
             // delay the ranks.
             makeCurrent(i);
-            glfwSwapInterval(inTurn || group_->joined() ? 1 : 0);
+            const bool retrace = inTurn || group_->joined();
+            glfwSwapInterval(retrace ? 1 : 0);
+            if (!retrace && !windows_[i].quadBuffers()) {
+                parts_[i].emplace(loader, drawables[i]);
+                if (!parts_[i]->available()) {
+                    parts_[i].reset();
+                }
+            }
         }
         makeCurrent(0);
     }
@@ -138,10 +154,11 @@ private:
     bool pointer_;
     std::optional<SwapGroup> group_;
     std::vector<std::optional<EyesByRetrace>> eyes_;
+    std::vector<std::optional<PartCopy>> parts_;
 };
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform2(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform3(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
@@ -166,7 +167,7 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
 }
 
 void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
-    listener_ = std::make_unique<Listener>(Listener{input, index});
+    listener_ = std::make_unique<Listener>(Listener{input, index, {}, true});
     glfwSetWindowUserPointer(handle(), listener_.get());
     glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
         if (character >= ' ' && character < 127) {
@@ -179,10 +180,14 @@ void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::siz
             static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuitKey);
         }
     });
+    glfwSetWindowRefreshCallback(
+        handle(), [](GLFWwindow* window) { static_cast<Listener*>(glfwGetWindowUserPointer(window))->exposed = true; });
     if (pointer) {
         followPointer();
     }
 }
+
+bool GlfwWindow::takeExposed() { return std::exchange(listener_->exposed, false); }
 
 /// Adds an event of the pointer at the place of its last motion. glfwGetCursorPos() would ask the X server, and return
 /// a later place.

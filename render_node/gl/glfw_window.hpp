@@ -46,9 +46,12 @@ public:
     [[nodiscard]] GLFWwindow* handle() const { return window_.get(); }
     [[nodiscard]] const std::string& name() const { return wanted_.output.name; }
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
+    [[nodiscard]] PixelRect allPixels() const { return {0, 0, wanted_.pixels.x, wanted_.pixels.y}; }
     /// Appends the input of this window to `input` from now on. `index` is the number of the window in its events. With
     /// `pointer`, the events of the pointer are appended, too.
     void sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer);
+    /// Returns whether the window has lost pixels since the last call, because it was hidden. True at first.
+    [[nodiscard]] bool takeExposed();
     /// Appends a line for each property that differs from the request: place, size and refresh rate. Asks the X server.
     void addShortcomings(std::vector<std::string>& lines) const;
 
@@ -66,6 +69,7 @@ private:
         std::shared_ptr<WindowInput> input;
         std::size_t window = 0;
         glm::dvec2 at{0};  // [pixel], of the pointer's last motion
+        bool exposed = true;
     };
     static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
     void followPointer();

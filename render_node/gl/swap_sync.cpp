@@ -9,11 +9,6 @@ namespace {
 constexpr unsigned kGroup = 1;    // in both functions 0 means "none"
 constexpr unsigned kBarrier = 1;  // cards with the same sync signal meet in the barrier of this number
 
-template <class Function>
-Function load(const GlxLoader& loader, const char* name) {
-    return reinterpret_cast<Function>(loader.functionNamed(name));
-}
-
 using JoinGroup = int (*)(void* display, GlxDrawable, unsigned group);
 using BindBarrier = int (*)(void* display, unsigned group, unsigned barrier);
 using MostGroups = int (*)(void* display, int screen, unsigned* groups, unsigned* barriers);
@@ -26,13 +21,12 @@ SwapGroup::SwapGroup(GlxLoader loader, const std::vector<GlxDrawable>& windows)
 SwapGroup::~SwapGroup() { leave(); }
 
 std::string SwapGroup::join(const std::vector<GlxDrawable>& windows) {
-    // The dispatch library returns an address for any name, so only the extension list counts.
     if (!loader_.supports("GLX_NV_swap_group")) {
         return "no extension";
     }
-    const auto mostGroups = load<MostGroups>(loader_, "glXQueryMaxSwapGroupsNV");
-    const auto joinGroup = load<JoinGroup>(loader_, "glXJoinSwapGroupNV");
-    const auto bindBarrier = load<BindBarrier>(loader_, "glXBindSwapBarrierNV");
+    const auto mostGroups = loader_.load<MostGroups>("glXQueryMaxSwapGroupsNV");
+    const auto joinGroup = loader_.load<JoinGroup>("glXJoinSwapGroupNV");
+    const auto bindBarrier = loader_.load<BindBarrier>("glXBindSwapBarrierNV");
     if (mostGroups == nullptr || joinGroup == nullptr || bindBarrier == nullptr) {
         return "no extension";
     }
@@ -54,11 +48,11 @@ std::string SwapGroup::join(const std::vector<GlxDrawable>& windows) {
 
 void SwapGroup::leave() {
     if (bound_) {
-        load<BindBarrier>(loader_, "glXBindSwapBarrierNV")(loader_.display, kGroup, 0);
+        loader_.load<BindBarrier>("glXBindSwapBarrierNV")(loader_.display, kGroup, 0);
         bound_ = false;
     }
     for (const GlxDrawable window : joined_) {
-        load<JoinGroup>(loader_, "glXJoinSwapGroupNV")(loader_.display, window, 0);
+        loader_.load<JoinGroup>("glXJoinSwapGroupNV")(loader_.display, window, 0);
     }
     joined_.clear();
 }
@@ -67,8 +61,8 @@ EyesByRetrace::EyesByRetrace(GlxLoader loader, GlxDrawable window) : loader_(std
     if (!loader_.supports("GLX_OML_sync_control")) {
         return;
     }
-    counts_ = load<Counts>(loader_, "glXGetSyncValuesOML");
-    swap_ = load<SwapAt>(loader_, "glXSwapBuffersMscOML");
+    counts_ = loader_.load<Counts>("glXGetSyncValuesOML");
+    swap_ = loader_.load<SwapAt>("glXSwapBuffersMscOML");
     std::int64_t ust = 0;
     std::int64_t msc = 0;
     std::int64_t sbc = 0;

@@ -2,21 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace render_node {
+#include "render_node/gl/glx_loader.hpp"
 
-/// Source of GLX's extensions. Tests simulate it. Drawables and displays are opaque here.
-struct GlxLoader {
-    std::function<bool(const char* extension)> supports;
-    std::function<void (*(const char* function))()> functionNamed;
-    void* display = nullptr;
-    int screen = 0;
-};
-using GlxDrawable = unsigned long;
+namespace render_node {
 
 /// Hardware lock of the swaps of several windows, cards and hosts. Uses GLX_NV_swap_group if the driver has it.
 ///

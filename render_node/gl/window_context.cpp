@@ -45,19 +45,20 @@ GLenum bufferOf(BackBuffer buffer) {
 class WindowContext final : public GlContext {
 public:
     WindowContext(std::unique_ptr<GlPlatform> platform, const std::vector<WindowRequest>& windows)
-        : platform_(std::move(platform)), windows_(windows), readers_(windows.size()) {
+        : platform_(std::move(platform)), windows_(windows), readers_(windows.size()), changed_(windows.size()) {
         platform_->makeCurrent(0);
         loadFunctions(*platform_);
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             platform_->makeCurrent(i);
             glGenFramebuffers(1, &readers_[i]);
+            changed_[i] = allPixels(i);
         }
         platform_->makeCurrent(0);
     }
     void makeCurrent() override { platform_->makeCurrent(0); }
     [[nodiscard]] std::string name() const override { return "glfw"; }
 
-    void present(std::span<const OutputPicture> outputs, std::uint64_t frame) override {
+    void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame) override {
         if (outputs.size() != windows_.size()) {
             throw std::logic_error(std::to_string(outputs.size()) + " pictures for " + std::to_string(windows_.size()) +
                                    " windows in frame " + std::to_string(frame));
@@ -68,13 +69,18 @@ public:
         // From the last window to the first, so that the drawing context is current at the end.
         inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
-            show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
+            const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr;
+            changed_[i] = around(changed_[i], inPart ? changed : allPixels(i));
+            if (!changed_[i].empty()) {
+                show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
+            }
         }
         finishFrame();
     }
     [[nodiscard]] bool showsEyesInTurn() const override { return inTurn_; }
     void swap() override {
-        platform_->swap(frame_);
+        platform_->swap(frame_, changed_);
+        changed_.assign(windows_.size(), {});
         platform_->check();
     }
     [[nodiscard]] std::string takeKeys() override { return platform_->takeKeys(); }
@@ -92,6 +98,9 @@ public:
     }
 
 private:
+    [[nodiscard]] PixelRect allPixels(std::size_t window) const {
+        return {0, 0, windows_[window].pixels.x, windows_[window].pixels.y};
+    }
     void show(std::size_t window, const std::vector<Copy>& copies) {
         std::vector<Colours> sources;
         sources.reserve(copies.size());
@@ -116,7 +125,8 @@ private:
             }
             attach(sources[i]);
             glDrawBuffer(bufferOf(copies[i].to));
-            glBlitFramebuffer(0, 0, size.x, size.y, 0, 0, size.x, size.y, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            const auto& [x0, y0, x1, y1] = changed_[window];
+            glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
         }
         if (scissor == GL_TRUE) {
             glEnable(GL_SCISSOR_TEST);
@@ -129,7 +139,8 @@ private:
 
     std::unique_ptr<GlPlatform> platform_;
     std::vector<WindowRequest> windows_;
-    std::vector<GLuint> readers_;  // one frame buffer object in each window's context, which destroys it
+    std::vector<GLuint> readers_;     // one frame buffer object in each window's context, which destroys it
+    std::vector<PixelRect> changed_;  // of each window, since its last swap
     std::uint64_t frame_ = 0;
     bool inTurn_ = false;  // known after the first frame
 };

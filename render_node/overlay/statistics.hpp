@@ -6,9 +6,9 @@
 #include <string>
 
 #include "render_node/gl/eye_target.hpp"
+#include "render_node/gl/pixel_rect.hpp"
 #include "render_node/overlay/flat_painter.hpp"
 #include "render_node/overlay/statistics_text.hpp"
-#include "render_node/surface/pixel_rect.hpp"
 
 namespace render_node {
 

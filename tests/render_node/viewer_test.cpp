@@ -14,6 +14,7 @@
 #include "pictures/compare.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/window_context.hpp"
+#include "render_node/overlay/help.hpp"
 #include "render_node/tile_painter.hpp"
 #include "tests/render_node/wall_painter.hpp"
 #include "walls/stereo_change.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 using pictures::Image;
 using render_node::OutputPicture;
+using render_node::PixelRect;
 using render_node::TilePainter;
 using walls::Eye;
 using walls::Stereo;
@@ -279,6 +281,58 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
         }
     }
     EXPECT_EQ(seen_, 2 * 2 * 9 + 2 * (3 * 2 + 3 * 4));
+}
+
+/// Returns whether two pictures are equal outside `rect`, which counts rows from the bottom.
+bool equalOutside(const PixelRect& rect, const Image& a, const Image& b) {
+    for (int y = 0; y < a.height; ++y) {
+        const int row = a.height - 1 - y;
+        for (int x = 0; x < a.width; ++x) {
+            const bool inside = x >= rect.x0 && x < rect.x1 && row >= rect.y0 && row < rect.y1;
+            const auto at = 3 * (static_cast<std::ptrdiff_t>(y) * a.width + x);
+            if (!inside && !std::equal(a.rgb.begin() + at, a.rgb.begin() + at + 3, b.rgb.begin() + at)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// A window of a software renderer shows only these pixels of a frame.
+TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
+    for (const std::string& name : walls::stereoNames()) {
+        const Stereo stereo = walls::stereoNamed(name);
+        walls::Wall wall = gridAndDesk(stereo);
+        wall.tiles[0].pixels = {480, 360};
+        ASSERT_FALSE(render_node::helpLayout(wall.tiles[0].pixels, render_node::pointerHelp()).places.empty());
+        TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
+        sand::Replica terrain = dug(0);
+        std::vector<Image> before;
+        int inPart = 0, still = 0;
+        for (std::uint64_t frame = 1; frame <= 24; ++frame) {
+            lockstep::ViewState state = view();
+            state.layers.set(lockstep::Overlay::help, frame >= 6 && frame < 14);
+            state.layers.set(lockstep::Overlay::statistics, frame >= 9 && frame < 12);
+            state.pattern = static_cast<std::uint8_t>(frame == 16 ? lockstep::Pattern::grid : lockstep::Pattern::none);
+            if (frame % 4 != 0) {
+                dig(terrain);
+            }
+            painter.paint(terrain, state, frame);
+            std::vector<Image> now;
+            for (const OutputPicture& output : painter.outputs()) {
+                now.push_back(sample::pictureOf(*output.picture));
+            }
+            const std::int64_t all = std::int64_t{now[0].width} * now[0].height;
+            for (std::size_t i = 0; i < before.size(); ++i) {
+                EXPECT_TRUE(equalOutside(painter.changed(), before[i], now[i])) << name << ", frame " << frame;
+            }
+            inPart += painter.changed().area() > 0 && painter.changed().area() < all ? 1 : 0;
+            still += painter.changed().empty() ? 1 : 0;
+            before = std::move(now);
+        }
+        EXPECT_GT(inPart, 6) << name;
+        EXPECT_GT(still, 1) << name;
+    }
 }
 
 // Without quad buffers a rank draws one eye per frame, and a window shows one eye of it. Both must choose the same eye.

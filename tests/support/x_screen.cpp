@@ -126,6 +126,12 @@ void XScreen::destroy(unsigned long window) const {
     XSync(display_.get(), False);
 }
 
+void XScreen::hideForAMoment(unsigned long window) const {
+    XUnmapWindow(display_.get(), window);
+    XMapWindow(display_.get(), window);
+    XSync(display_.get(), 0);
+}
+
 void XScreen::askToClose(unsigned long window) const {
     XEvent event{};
     event.xclient.type = ClientMessage;

@@ -30,6 +30,8 @@ public:
     /// Returns the visible windows, the lowest one first.
     [[nodiscard]] std::vector<unsigned long> windows() const;
     void destroy(unsigned long window) const;
+    /// Hides the window and shows it again. The server forgets its pixels.
+    void hideForAMoment(unsigned long window) const;
     /// Sends the message that a window manager sends when the user presses the close button.
     void askToClose(unsigned long window) const;
     /// Sends a key press and its release: 't', or 27 for Escape.

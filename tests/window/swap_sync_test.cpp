@@ -9,6 +9,7 @@
 #include <map>
 
 #include "render_node/gl/eye_target.hpp"
+#include "render_node/gl/part_copy.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "render_node/gl/window_context.hpp"
 
@@ -19,6 +20,7 @@ using render_node::EyesByRetrace;
 using render_node::GlxDrawable;
 using render_node::GlxLoader;
 using render_node::hiddenPixels;
+using render_node::PartCopy;
 using render_node::ScreenRect;
 using render_node::SwapGroup;
 
@@ -32,6 +34,8 @@ struct FakeDriver {
     std::int64_t msc = 0;  // retraces so far
     bool counting = true;
     std::array<std::int64_t, 3> wanted{};  // target, divisor, remainder of the last swap
+    unsigned accelerated = 0;              // 1: draws with a graphics card
+    std::array<int, 4> copied{};           // x, y, width, height of the last partial copy
 };
 FakeDriver driver;
 
@@ -66,6 +70,15 @@ std::int64_t swapAt(void* /* display */, GlxDrawable /* window */, std::int64_t 
     return 1;
 }
 
+int queryRenderer(int attribute, unsigned* value) {
+    constexpr int kAccelerated = 0x8186;  // from the specification of GLX_MESA_query_renderer
+    *value = driver.accelerated;
+    return attribute == kAccelerated ? 1 : 0;
+}
+void copySubBuffer(void* /* display */, GlxDrawable /* window */, int x, int y, int width, int height) {
+    driver.copied = {x, y, width, height};
+}
+
 GlxLoader loader() {
     using Function = void (*)();
     return {[](const char* name) { return driver.extensions.find(name) != std::string::npos; },
@@ -75,7 +88,9 @@ GlxLoader loader() {
                     {"glXJoinSwapGroupNV", reinterpret_cast<Function>(joinGroup)},
                     {"glXBindSwapBarrierNV", reinterpret_cast<Function>(bindBarrier)},
                     {"glXGetSyncValuesOML", reinterpret_cast<Function>(syncValues)},
-                    {"glXSwapBuffersMscOML", reinterpret_cast<Function>(swapAt)}};
+                    {"glXSwapBuffersMscOML", reinterpret_cast<Function>(swapAt)},
+                    {"glXQueryCurrentRendererIntegerMESA", reinterpret_cast<Function>(queryRenderer)},
+                    {"glXCopySubBufferMESA", reinterpret_cast<Function>(copySubBuffer)}};
                 return table.at(name);
             },
             nullptr, 0};
@@ -167,6 +182,22 @@ TEST_F(SwapSync, LeavesTheSwapToOthersWhereNothingIsCounted) {
     EXPECT_FALSE(eyes.available());
     EXPECT_FALSE(eyes.swap(0));
     EXPECT_EQ(driver.msc, 0);
+}
+
+TEST_F(SwapSync, CopiesPartsOnlyForASoftwareRendererThatCan) {
+    const std::string both = "GLX_MESA_copy_sub_buffer GLX_MESA_query_renderer";
+    driver.extensions = both;
+    const PartCopy software(loader(), 11);
+    ASSERT_TRUE(software.available());
+    software.show({3, 5, 10, 25});
+    EXPECT_EQ(driver.copied, (std::array{3, 5, 7, 20}));
+    driver.accelerated = 1;
+    EXPECT_FALSE(PartCopy(loader(), 11).available());
+    driver.accelerated = 0;
+    for (const char* only : {"GLX_MESA_copy_sub_buffer", "GLX_MESA_query_renderer", ""}) {
+        driver.extensions = only;
+        EXPECT_FALSE(PartCopy(loader(), 11).available()) << only;
+    }
 }
 
 TEST(OutputPictures, FillBothQuadBuffersInEveryFrame) {

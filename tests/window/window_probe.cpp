@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does without a cluster what a rank does with a backend. It makes the context and the windows of a tile, draws the
-// sample scene for both eyes, and shows frame 0. Then it runs typed commands: "frame N", "keys", "memory", "end".
+// sample scene for both eyes, and shows frame 0. Then it runs typed commands: "frame N", "part X0 Y0 X1 Y1", "keys",
+// "memory", "end". In the frame of "part", the pictures of the eyes are exchanged, and only these pixels have changed.
+// In the frame of "frame", nothing has changed.
 #include <unistd.h>
 
 #include <fstream>
@@ -81,15 +83,28 @@ void printMemory(const Options& options) {
               << kTargets * kBytesPerPixel * options.width * options.height << "\nmemory printed" << std::endl;
 }
 
-void obey(const Options& options, render_node::GlContext& context,
-          const std::vector<render_node::OutputPicture>& outputs) {
+void exchangeEyes(std::vector<render_node::OutputPicture>& outputs, const EyeTarget& left, const EyeTarget& right) {
+    for (render_node::OutputPicture& output : outputs) {
+        output.picture = output.picture == &left ? &right : &left;
+    }
+}
+
+void obey(const Options& options, render_node::GlContext& context, std::vector<render_node::OutputPicture> outputs,
+          const EyeTarget& left, const EyeTarget& right) {
     for (std::string word; std::cin >> word && word != "end";) {
         if (word == "frame") {
             std::uint64_t frame = 0;
             std::cin >> frame;
-            context.present(outputs, frame);
+            context.present(outputs, {}, frame);
             context.swap();
             std::cout << "frame " << frame << " shown" << std::endl;
+        } else if (word == "part") {
+            render_node::PixelRect part;
+            std::cin >> part.x0 >> part.y0 >> part.x1 >> part.y1;
+            exchangeEyes(outputs, left, right);
+            context.present(outputs, part, 0);
+            context.swap();
+            std::cout << "part shown" << std::endl;
         } else if (word == "keys") {
             for (const char key : context.takeKeys()) {
                 std::cout << "key " << int{key} << "\n";
@@ -125,7 +140,7 @@ int show(const Options& options) {
     for (std::size_t i = 0; i < options.places.size(); ++i) {
         outputs.push_back({i % 2 == 0 ? &left : &right, options.active ? &right : nullptr});
     }
-    context->present(outputs, 0);
+    context->present(outputs, {0, 0, options.width, options.height}, 0);
     context->swap();
     printLibraries();
     for (const std::string& line : context->shortcomings()) {
@@ -133,7 +148,7 @@ int show(const Options& options) {
     }
     std::cout << "swap lock " << context->swapLock() << ", ignore " << context->framesToIgnore() << "\nframe 0 shown"
               << std::endl;
-    obey(options, *context, outputs);
+    obey(options, *context, outputs, left, right);
     return 0;
 }
 

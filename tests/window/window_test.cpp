@@ -58,6 +58,43 @@ TEST_F(Window, ShowsThePicturePixelForPixelAtItsPlace) {
     EXPECT_TRUE(std::all_of(above.rgb.begin(), above.rgb.end(), [](int level) { return level == 0; }));
 }
 
+/// Returns a picture of which the given rows and columns, counted from the top left, show another one.
+pictures::Image withPart(pictures::Image picture, const pictures::Image& other, int x0, int y0, int x1, int y1) {
+    for (int y = y0; y < y1; ++y) {
+        const auto at = [&](int x) { return 3 * (static_cast<std::ptrdiff_t>(y) * picture.width + x); };
+        std::copy(other.rgb.begin() + at(x0), other.rgb.begin() + at(x1), picture.rgb.begin() + at(x0));
+    }
+    return picture;
+}
+
+// With a graphics card the whole window would be swapped. This X server draws with the processor.
+TEST_F(Window, CopiesOnlyThePixelsThatChanged) {
+    (void)show({"40,30"});
+    const XScreen screen(server_->display());
+    ASSERT_TRUE(screen.comesToShow(picture("left"), 40, 30));
+    (void)ask("part 100 40 260 200", "part shown");  // rows from the bottom
+    const pictures::Image shown = withPart(picture("left"), picture("right"), 100, 40, 260, 200);
+    EXPECT_FALSE(shown.rgb == picture("left").rgb);
+    EXPECT_TRUE(screen.comesToShow(shown, 40, 30));
+    (void)ask("frame 1", "frame 1 shown");
+    EXPECT_EQ(screen.picture(40, 30, 320, 240), shown);
+}
+
+TEST_F(Window, ShowsAllPixelsAgainAfterItWasHidden) {
+    (void)show({"40,30"});
+    const XScreen screen(server_->display());
+    ASSERT_TRUE(screen.comesToShow(picture("left"), 40, 30));
+    screen.hideForAMoment(onlyWindow(screen));
+    EXPECT_NE(screen.picture(40, 30, 320, 240), picture("left")) << "the server has kept the pixels";
+    bool whole = false;
+    for (int frame = 1; frame <= 50 && !whole; ++frame) {  // the server tells of it at some time
+        const std::string number = std::to_string(frame);
+        (void)ask("frame " + number, "frame " + number + " shown");
+        whole = screen.picture(40, 30, 320, 240) == picture("left");
+    }
+    EXPECT_TRUE(whole);
+}
+
 TEST_F(Window, OpensForEachOutputWithThePictureOfItsEye) {
     (void)show({"0,0", "400,100"});
     const XScreen screen(server_->display());

@@ -19,6 +19,9 @@ struct PixelRect {
 /// Returns the smallest rectangle around both. Ignores an empty rectangle.
 [[nodiscard]] PixelRect around(const PixelRect& a, const PixelRect& b);
 
+/// Returns the pixels that are in both. It is empty if no pixel is.
+[[nodiscard]] PixelRect overlap(const PixelRect& a, const PixelRect& b);
+
 /// Returns at most `most` rectangles that cover all of `rects`. Joins two rectangles if there are more than `most`, or
 /// if at most `pass` pixels lie between them. `pass` is the fixed cost of drawing one more rectangle, as a number of
 /// pixels.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render_node/surface/pixel_rect.hpp"
+#include "render_node/gl/pixel_rect.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,15 @@ using render_node::fewCovering;
 using render_node::PixelRect;
 
 bool holds(const PixelRect& rect, int x, int y) { return x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1; }
+
+TEST(PixelRect, OverlapIsEmptyWhereRectanglesOnlyTouch) {
+    const PixelRect rect{2, 3, 10, 20};
+    EXPECT_EQ(overlap(rect, {5, 0, 30, 7}), (PixelRect{5, 3, 10, 7}));
+    EXPECT_EQ(overlap(rect, rect), rect);
+    EXPECT_EQ(overlap(rect, {10, 3, 12, 20}), PixelRect{});
+    EXPECT_EQ(overlap(rect, {0, 30, 40, 50}), PixelRect{});
+    EXPECT_EQ(overlap(rect, {}), PixelRect{});
+}
 
 TEST(FewCovering, LeavesApartWhatLiesFarApartAndJoinsWhatDoesNot) {
     const PixelRect here{0, 0, 10, 10}, beside{12, 0, 22, 10}, away{200, 100, 210, 110};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render_node/surface/pixel_rect.hpp"
+#include "render_node/gl/pixel_rect.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,6 +65,11 @@ PixelRect around(const PixelRect& a, const PixelRect& b) {
         return a.empty() ? b : a;
     }
     return {std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1), std::max(a.y1, b.y1)};
+}
+
+PixelRect overlap(const PixelRect& a, const PixelRect& b) {
+    const PixelRect both{std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
+    return both.empty() ? PixelRect{} : both;
 }
 
 std::vector<PixelRect> fewCovering(std::vector<PixelRect> rects, std::size_t most, std::int64_t pass) {
