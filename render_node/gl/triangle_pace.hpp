@@ -7,7 +7,12 @@
 
 namespace render_node {
 
-/// Bounds a software driver's memory while many triangles are drawn. Used by one thread, with its context current.
+/// Keeps the threads of a software driver busy while many triangles are drawn, and bounds its memory. Used by one
+/// thread, with its context current.
+///
+/// llvmpipe fills pixels in threads of its own, but begins only at a flush. Calling glFlush() early lets it fill pixels
+/// while this thread prepares the next triangles. It shortened the drawing of a hand that digs in 1280 × 720 pixels
+/// from 13.5 to 9.9 ms, and whole pictures took the same time as before.
 ///
 /// llvmpipe keeps some 270 bytes for each triangle, and much more for each draw call, until it fills pixels. It keeps
 /// them in scenes of 36 MB that it never returns: a field of 512 × 512 cells held 110 MB. Calling glFinish() more often
@@ -21,19 +26,26 @@ public:
     }
     /// Must be called after each draw call, with its number of triangles.
     void drawn(int triangles) {
+        if (!software_) {
+            return;
+        }
         waiting_ += triangles + kTrianglesPerDraw;
-        if (software_ && waiting_ >= kTrianglesPerFinish) {
+        unflushed_ += triangles + kTrianglesPerDraw;
+        if (waiting_ >= kTrianglesPerFinish) {
             glFinish();
-            waiting_ = 0;
+            waiting_ = unflushed_ = 0;
+        } else if (unflushed_ >= kTrianglesPerFlush) {
+            glFlush();
+            unflushed_ = 0;
         }
     }
 
 private:
-    static constexpr int kTrianglesPerFinish = 32768;
+    static constexpr int kTrianglesPerFinish = 32768, kTrianglesPerFlush = 4096;
     // The other data of one draw call take as much memory as 128 triangles.
     static constexpr int kTrianglesPerDraw = 128;
     bool software_ = false;
-    int waiting_ = 0;
+    int waiting_ = 0, unflushed_ = 0;
 };
 
 }  // namespace render_node
