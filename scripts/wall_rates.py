@@ -4,10 +4,6 @@
 
 Runs sessions one after another and prints a table: a still wall, digging with the tool of Dorjgotov et al. 2007 and one of 12
 cells, a head that moves so that every view is drawn anew, the same on 2048 x 2048 cells, and a bare redraw beside it.
-With --tin: digging in a height field and in TINs in turns. Frames a second of sessions at a display's pace, of a wall of
-one of the tiles, whose rank has a core as on a cluster, and of all; then what a frame takes of a rank with a core of its
-own (processor time of the sand and of the tile that has most to do), and of sessions as fast as the machine can.
-
 With --tin: digs in a height field and in TINs in turns. The first rows are frames per second at a display's pace. They are
 of a wall of one tile, whose rank has a core as on a cluster, and of the whole wall. The other rows are times of a frame. One
 is the processor time of a rank for the sand and the busiest tile. The other is of a session as fast as the machine can.
