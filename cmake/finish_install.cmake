@@ -21,9 +21,10 @@ file(MAKE_DIRECTORY "${pages}")
 
 # Writes the page NAME.1 from the help of a program, or of a command of it.
 function(sandwall_man_page name title program)
-    # Without bytecode, because the launcher would leave it in the installed tree. A fixed width, not the terminal's.
+    # Without bytecode, because the launcher would leave it in the installed tree. No line
+    # is wrapped, because help2man takes only the first line of a synopsis.
     set(ENV{PYTHONDONTWRITEBYTECODE} 1)
-    set(ENV{COLUMNS} 100)
+    set(ENV{COLUMNS} 10000)
     execute_process(
         COMMAND ${HELP2MAN} --no-info --no-discard-stderr --section=1 --locale=C.UTF-8 --source=Sandwall
                 "--manual=User Commands" "--version-string=${sandwall_version}" "--name=${title}"
@@ -32,6 +33,12 @@ function(sandwall_man_page name title program)
     if(NOT status EQUAL 0 OR complaints)
         message(FATAL_ERROR "${name}.1: help2man failed: ${complaints}")
     endif()
+    # help2man names the page of a command after the program.
+    file(READ "${pages}/${name}.1" page)
+    string(TOUPPER "${name}" capitals)
+    string(REGEX REPLACE "(\n\\.TH )[A-Z-]+" "\\1${capitals}" page "${page}")
+    string(REGEX REPLACE "(\n\\.SH NAME\n)[^ ]+" "\\1${name}" page "${page}")
+    file(WRITE "${pages}/${name}.1" "${page}")
 endfunction()
 
 set(launcher "${private}/python/sandwall")

@@ -258,6 +258,7 @@ def check_out(host, out):
     try:
         while not place.exists():
             place = place.parent
+        session_folder.require_folder(place, place)
         if place == pathlib.Path(out).absolute():
             session_folder.require_safe(place)
         free = shutil.disk_usage(place).free >> 20

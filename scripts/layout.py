@@ -24,9 +24,11 @@ SHARED = ROOT / "share" / "sandwall"
 FOLDERS = {"walls": SHARED / "walls", "scenes": SHARED / "scenes", "strokes": SHARED / "strokes"} if INSTALLED else {
     "walls": ROOT / "walls" / "configs", "scenes": ROOT / "scenes", "strokes": ROOT / "haptic_bridge" / "devices"}
 ENDINGS = {"walls": ".toml", "scenes": ".toml", "strokes": ".strokes"}
+PROGRAM = "sandwall" if INSTALLED else "scripts/sandwall"  # how a user starts the launcher
 MEND = "install Sandwall again" if INSTALLED else "run cmake --build build/release"
 ANSWER_SECONDS = 20
 JOURNAL = "session.journal"
+DEVICES = ("script:", "trace:", "driver:", "sim:", "spacenav", "pointer", "none")  # what a SPEC of --device begins with
 BUILT_IN_STROKES = "gis"  # in the haptic server itself
 
 
@@ -38,6 +40,8 @@ def bin_folder():
 def program(name):
     """Returns the path of one of our programs. Throws BadInput if it does not exist."""
     path = bin_folder() / name
+    if not path.is_file() and "SANDWALL_BIN" in os.environ:
+        raise BadInput(f"{path}: does not exist; unset SANDWALL_BIN, or set it to the folder of the programs")
     if not path.is_file():
         raise BadInput(f"{path}: not installed; {MEND}" if INSTALLED else
                        f"{path}: not built yet; run scripts/demo.sh or cmake --build build/release")
@@ -66,11 +70,15 @@ def found(kind, named):
 def device(spec):
     """Returns a SPEC of --device with the path of strokes that come with Sandwall, if it names them.
 
-    Throws BadInput for an unknown name of strokes, and for the device `mouse` of earlier versions.
+    Throws BadInput for an unknown kind of device, for an unknown name of strokes, and for the device `mouse` of earlier
+    versions.
     """
-    kind, _, name = spec.partition(":")
+    kind, colon, name = spec.partition(":")
     if spec == "mouse":
         raise BadInput("--device mouse: is gone; give --device pointer, which is the mouse in the wall's windows")
+    if (kind + colon) not in DEVICES:
+        raise BadInput(f"--device {spec}: unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, "
+                       "spacenav, pointer or none")
     # A word without an ending is a name. The haptic server reports other files that it cannot read.
     if kind == "script" and name != BUILT_IN_STROKES and re.fullmatch(r"[A-Za-z0-9_-]+", name):
         return f"script:{found('strokes', name)}"

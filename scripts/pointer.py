@@ -44,7 +44,7 @@ def session_of(args):
 
 def tell_journal(out, wall):
     journal = pathlib.Path(out) / "session.journal"
-    say(f"all that you did is in {journal}; `sandwall film {journal} --wall {wall} --out film` makes a film of it")
+    say(f"all that you did is in {journal}; `{layout.PROGRAM} film {journal} --wall {wall} --out film` makes a film of it")
 
 
 def add_parser(commands, run):

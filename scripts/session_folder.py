@@ -58,6 +58,12 @@ def why_unsafe(path):
     return "other users may write to it" if folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH) else None
 
 
+def require_folder(path, named):
+    """Throws BadInput if the path leads to something else than a folder."""
+    if not os.path.isdir(path):
+        raise BadInput(f"{named}: is not a folder, and --out must be one; choose another")
+
+
 def require_safe(path):
     """Throws BadInput if why_unsafe() has a reason."""
     if why := why_unsafe(path):
@@ -99,10 +105,9 @@ def held(out, resume=False):
     except OSError as error:
         raise BadInput(f"{out}: cannot be made ({error.strerror}); choose another --out") from error
     try:
+        require_folder(path, out)
         require_safe(path)
         descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    except NotADirectoryError as error:
-        raise BadInput(f"{out}: is not a folder, and --out must be one; choose another") from error
     except OSError:
         yield
         return

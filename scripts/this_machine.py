@@ -8,7 +8,7 @@ import subprocess
 import doctor
 import layout
 import screens
-from rank_hosts import HERE
+from rank_hosts import HERE, BadInput
 
 START_SECONDS = 60
 # Memory of a session on the desktop wall: three processes, and what each cell of the field adds to all of them. The scene
@@ -32,6 +32,14 @@ def check_start(host):
     except subprocess.TimeoutExpired:
         complaint = f"mpirun starts nothing within {START_SECONDS} s"
     host.add(not complaint, "start", complaint or "mpirun starts two processes")
+
+
+def check_launcher(host):
+    """Adds a finding if the programs are of another build than the installed launcher. A session would refuse them."""
+    try:
+        layout.require_one_build(["sandwall-master", "sandwall-render-node", "sandwall-haptic-server"])
+    except BadInput as complaint:
+        host.add(False, "launcher", str(complaint))
 
 
 def check_cores(host):
@@ -88,6 +96,7 @@ def examine(node, master, out, backend, as_json):
     host.slots = 1
     build = layout.build_of(node)
     doctor.check_master(host, master, build)
+    check_launcher(host)
     doctor.check_out(host, out)
     examiner = doctor.Doctor(node, build, None, backend)
     answers = examiner.reach(host)

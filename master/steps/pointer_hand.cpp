@@ -6,23 +6,39 @@
 #include <utility>
 
 namespace master {
+namespace {
+
+constexpr std::int32_t kFarthest = sand::kMaxProbe - 1;  // [probe unit]
+
+}  // namespace
 
 PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
-    : path_(stepsPerSecond), last_(sand.probe()), liftFirst_(sand.engaged()) {
+    : path_(stepsPerSecond), last_(sand.probe()), radius_(sand.toolShape().radius), liftFirst_(sand.engaged()) {
     path_.restart(last_, false);
 }
 
 void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica& sand) {
+    radius_ = sand.toolShape().radius;
+    surface_.reset();
     if (sample.meets != 0) {
-        const double radius = sand.toolShape().radius;
+        surface_ = sample.z;
+        const double radius = radius_;
         const double above = radius * (sample.pressed != 0 ? 1 - depth_ : kHover);
-        constexpr std::int32_t kFarthest = sand::kMaxProbe - 1;
         const std::int32_t z = sample.z + static_cast<std::int32_t>(std::lround(above));
         last_ = {sample.x, sample.y, std::clamp(z, -sand::kMaxProbe, kFarthest)};
     }
     engaged_ = sample.meets != 0 && sample.pressed != 0;
     lastNs_ = sample.at;
     path_.add({sample.at, last_, engaged_});
+}
+
+/// Puts a tool that hovers at rest to the height for its new size.
+void PointerHand::hoverAt(const sand::Replica& sand) {
+    radius_ = sand.toolShape().radius;
+    const double z = *surface_ + std::round(kHover * radius_);
+    last_.z = static_cast<std::int32_t>(std::clamp<double>(z, -sand::kMaxProbe, kFarthest));
+    path_.add({lastNs_, last_, false});
+    resized_ = true;
 }
 
 void PointerHand::lift(std::int64_t at) {
@@ -48,8 +64,17 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     for (const lockstep::PointerSample& sample : places) {
         add(sample, sand);
     }
+    if (surface_ && !engaged_ && sand.toolShape().radius != radius_) {
+        hoverAt(sand);
+    }
 }
 
-std::int64_t PointerHand::fill(sand::Step& step) { return std::exchange(liftFirst_, false) ? 0 : path_.take(step); }
+std::int64_t PointerHand::fill(sand::Step& step) {
+    if (std::exchange(liftFirst_, false)) {
+        return 0;
+    }
+    const std::int64_t readNs = path_.take(step);
+    return std::exchange(resized_, false) ? 0 : readNs;
+}
 
 }  // namespace master

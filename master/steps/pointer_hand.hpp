@@ -38,12 +38,16 @@ public:
 private:
     void add(const lockstep::PointerSample& sample, const sand::Replica& sand);
     void lift(std::int64_t at /* [ns] */);
+    void hoverAt(const sand::Replica& sand);
 
     PointerArbiter arbiter_;
     haptic_bridge::PathBuilder path_;
     std::optional<std::size_t> hand_;  // rank of the frame before
     sand::ProbePoint last_;
-    std::int64_t lastNs_ = 0;  // [ns, the master's clock], when `last_` was read
+    std::int64_t lastNs_ = 0;              // [ns, the master's clock], when `last_` was read
+    std::optional<std::int32_t> surface_;  // height of the sand under `last_` [probe unit]; none beside the sand
+    std::int32_t radius_;                  // of the tool that the last place was computed for [probe unit]
+    bool resized_ = false;                 // the path has a place that was not read, because the tool changed its size
     bool engaged_ = false;
     double depth_ = 0.5;
     bool liftFirst_;

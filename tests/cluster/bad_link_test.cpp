@@ -18,9 +18,12 @@ TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
         static_cast<std::uint16_t>(std::stoi(read("port"))));
     const auto session = start({"--wall", wall(1, 2), "--scene", sceneFile, "--haptic",
                                 "127.0.0.1:" + std::to_string(link.port()), "--out", out(), "--no-pictures"});
-    EXPECT_FALSE(session->waitForEvent("without_hand", {{"reason", "lost"}, {"epoch", 2}}).is_null())
-        << session->output();
-    EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
+    // After the reset the wall makes the steps of epoch 2 by itself. On a busy machine the link may be back before the
+    // master has noticed that it was lost. Epoch 2 is then that of the new link.
+    const auto linkedAgain = [](const nlohmann::json& event) {
+        return event.value("state", "") == "linked" && event.value("epoch", 0) >= 2;
+    };
+    EXPECT_FALSE(session->waitForEvent("link", linkedAgain).is_null()) << session->output();
     const int linked = ask("status").value("step", 0);
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) >= linked + 60; });
     session->type("stop");

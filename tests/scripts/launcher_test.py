@@ -200,9 +200,15 @@ class Refusals(LauncherTest):
                 ended = self.start(["-"], *options, "--out", out)
                 self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", f"sandwall: {out}: {why}\n"))
 
+    def test_an_unknown_device_is_refused_before_the_session_has_a_folder(self):
+        for device in ("nosuch", "sim", "pointer:1", ""):
+            ended = self.start(["-"], "--device", device)
+            self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+            self.assertEqual(ended.stderr, f"sandwall: --device {device}: unknown device; give script:gis, script:FILE, trace:FILE.csv, "
+                             "driver:FILE.so, sim:PRESET, spacenav, pointer or none\n")
+
     def test_a_secret_without_a_link_is_refused(self):
         self.assertIn("--secret-file: needs a haptic link", self.refused(["-"], "--secret-file", "none"))
-
 
     def test_what_only_a_device_can_do_needs_one(self):
         for option, value in (("--guards", "literal"), ("--force", "off"), ("--force-scale", "0"), ("--record", "t.csv"),

@@ -126,6 +126,12 @@ class InstalledTree(LauncherTest):
                          "of 0123456789abcdef; install programs and launcher of one build, or unset SANDWALL_BIN\n")
         self.assertFalse((self.folder / "sessions").exists())
 
+    def test_a_folder_of_programs_that_is_none_names_the_variable(self):
+        self.environment["SANDWALL_BIN"] = "/nowhere"
+        ended = self.call("run", "--wall", "small", "--scene", "small")
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", "sandwall: /nowhere/sandwall-check: does not exist; unset "
+                         "SANDWALL_BIN, or set it to the folder of the programs\n"))
+
 
 class Completion(LauncherTest):
     def completed(self, *words):
@@ -141,10 +147,19 @@ class Completion(LauncherTest):
         self.assertIn("run", commands)
         self.assertEqual(sorted(set(commands) - set(self.completed(""))), [])
 
+    def test_it_offers_files_only_where_a_file_can_stand(self):
+        (self.folder / "egl.toml").write_text("")
+        self.assertEqual(self.completed("run", "--gl", "eg"), ["egl"])
+        self.assertEqual(self.completed("eg"), [])
+        self.assertEqual(self.completed("run", "--scene", "eg"), ["egl.toml"])
+
     def test_it_offers_names_and_options(self):
         self.assertEqual(self.completed("run", "--wall", "tiled_3"), ["tiled_3x4"])
         self.assertEqual(self.completed("run", "--scene", "dun"), ["dunes"])
         self.assertEqual(self.completed("run", "--device", "poi"), ["pointer"])
+        self.assertEqual(self.completed("run", "--device", "script", ":", "gi"), ["gis"])  # as bash splits script:gi
+        self.assertIn("gis", self.completed("run", "--device", "script", ":"))
+        self.assertEqual(self.completed("run", "--device", "trace", ":", "gi"), [])
         self.assertIn("--resume", self.completed("run", "--res"))
 
 

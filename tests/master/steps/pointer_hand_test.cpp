@@ -77,6 +77,22 @@ TEST_F(PointerHand, DigsAFurrowAlongThePressedPlaces) {
     EXPECT_EQ(height(10, 10), 0);
 }
 
+TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
+    add(1, 20, 32, false);
+    step();
+    for (const int cells : {8, 2}) {
+        sand::Tuning tuning = terrain_.rules().tuning();
+        tuning.toolRadius = cells * kPerCell;
+        terrain_.apply({0, terrain_.stepNumber() + 1, false, {}, sand::Edit::tuned(tuning)});
+        const sand::Step hovers = step();
+        EXPECT_FALSE(hovers.engaged);
+        ASSERT_EQ(hovers.path.size(), 1U);
+        EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * cells * kPerCell));
+        EXPECT_EQ(read_, 0) << "nobody has moved the pointer";
+        EXPECT_TRUE(step().path.empty());
+    }
+}
+
 TEST_F(PointerHand, TheWheelSetsTheDepthWithinItsLimits) {
     reports_[1].wheel = 2;
     add(1, 20, 32, true);
