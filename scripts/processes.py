@@ -18,6 +18,8 @@ SERVER_START_SECONDS = 20
 ORDERLY_END_SECONDS = 120  # pictures of a large wall take their time
 KILL_SECONDS = 5
 STUCK_STATUS = 1  # of a job whose mpirun had to be killed because it did not end after its last process
+CRASHES = (signal.SIGSEGV, signal.SIGABRT, signal.SIGBUS)
+CRASHED_STATUS = 1  # of a session whose mpirun has crashed; Open MPI 4.1 sometimes does when it ends after a failed rank
 GONE_SECONDS = 2  # the time that mpirun may take after a process has reported that it ends the job
 LOOK_SECONDS = 0.05
 LONGEST_LINE = 1024  # bytes of a typed line; the master reads no longer lines
@@ -184,6 +186,13 @@ class Job:
                     except (ProcessLookupError, PermissionError):
                         pass  # it has ended
             time.sleep(LOOK_SECONDS)
+
+
+def exit_status(status):
+    """Returns the launcher's exit status for that of a job. A signal is negative, as subprocess reports it."""
+    if -status in CRASHES:
+        return CRASHED_STATUS
+    return status if status >= 0 else 128 - status
 
 
 def marked(mark):

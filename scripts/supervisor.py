@@ -18,7 +18,7 @@ import job_log
 import session_control
 import session_folder
 from console import say
-from processes import HapticServer, Input, Job
+from processes import HapticServer, Input, Job, exit_status
 from rank_hosts import BadInput
 
 BAD_INPUT = 2
@@ -220,7 +220,7 @@ class Supervisor:
                 log = job_log.JobLog(self.logs, number)
             status = self.one_try(words, log)
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
-                return FAILED if self.gave_up else status if status >= 0 else 128 - status
+                return FAILED if self.gave_up else exit_status(status)
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
                 log.close()
                 return FAILED  # the session has ended with wrong sand, which the master has printed; a restart would not help

@@ -67,6 +67,12 @@ class Stopping(Supervised):
         self.assertEqual((process.returncode, len(self.commands())), (1, 5), error)
         self.assertIn("sandwall: stopped between two tries", error)
 
+    def test_a_crash_of_mpirun_is_a_failure_and_another_signal_is_told(self):
+        for name, status in (("SEGV", 1), ("ABRT", 1), ("TERM", 143)):
+            self.tries(f"kill -{name} $$")
+            (self.folder / "tries").unlink(missing_ok=True)
+            self.assertEqual(self.ended(["-"], "--restarts", "0")[0], status, name)
+
     def test_a_killed_launcher_leaves_nothing(self):
         self.tries("progress 1 1; read -r line; exit 1")
         process = self.begin(["-"])
