@@ -46,8 +46,11 @@ TEST(SandRay, PassesBesideTheSandAndAboveIt) {
 }
 
 TEST(SandRay, IgnoresTheSidesOfTheSandFromOutside) {
-    EXPECT_FALSE(meetSand({{50, -20, 5}, {0, 1, 0}}, level(10)).has_value());
-    EXPECT_FALSE(meetSand({{50, 30, -20}, {0, 0, 1}}, level(10)).has_value()) << "from below";
+    // The ray enters the box of all heights, from 0 to 10, below the surface.
+    const SandBody sand{100, 60, 0, 10, 0.5, [](double, double) { return 10.0; }};
+    EXPECT_FALSE(meetSand({{50, -20, 5}, {0, 1, 0}}, sand).has_value());
+    EXPECT_FALSE(meetSand({{50, 30, -20}, {0, 0, 1}}, sand).has_value()) << "from below";
+    expectMeets({{50, -20, 16}, {0, 4, -1}}, sand, 50, 4);
 }
 
 }  // namespace
