@@ -21,8 +21,8 @@ file(MAKE_DIRECTORY "${pages}")
 
 # Writes the page NAME.1 from the help of a program, or of a command of it.
 function(sandwall_man_page name title program)
-    # Without bytecode, because the launcher would leave it in the installed tree. No line
-    # is wrapped, because help2man takes only the first line of a synopsis.
+    # Without bytecode, because the launcher would leave it in the installed tree. No line is wrapped, because help2man
+    # takes only the first line of a synopsis.
     set(ENV{PYTHONDONTWRITEBYTECODE} 1)
     set(ENV{COLUMNS} 10000)
     execute_process(

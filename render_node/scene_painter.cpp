@@ -131,7 +131,7 @@ ToolLight ScenePainter::lightOf(const EyeMemory::Tool& tool) {
 
 void ScenePainter::draw(const Camera& camera, const EyeTarget& target) {
     startCounting();
-    drawWithin({0, 0, target.width(), target.height()}, camera, target);
+    drawWithin(allPixels({target.width(), target.height()}), camera, target);
 }
 
 void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target) {

@@ -44,7 +44,7 @@ std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const EyeMemory::Tool
 }
 
 std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
-    const PixelRect whole{0, 0, size.x, size.y};
+    const PixelRect whole = allPixels(size);
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const LevelRule rule = ruleFor(camera, size);
     const bool toolMoved = memory.tool != tool_;

@@ -72,7 +72,7 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
 }
 
 void StereoComposer::compose(std::span<const EyeTarget> eyes) {
-    (void)compose(eyes, {0, 0, eyes[0].width(), eyes[0].height()});
+    (void)compose(eyes, allPixels({eyes[0].width(), eyes[0].height()}));
 }
 
 PixelRect StereoComposer::compose(std::span<const EyeTarget> eyes, const PixelRect& changed) {

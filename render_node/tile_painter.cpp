@@ -183,7 +183,7 @@ PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t fra
             memories_[i].drawn = false;  // the sand must be drawn whole after the pattern
             covered_[i] = {};
             helped_[i] = false;
-            changed = {0, 0, targets_[i].width(), targets_[i].height()};
+            changed = allPixels({targets_[i].width(), targets_[i].height()});
         }
     }
     return changed;

@@ -308,7 +308,7 @@ def machines(hosts, of_wall):
 
 
 def is_red(good, details):
-    """Returns whether a finding is red. What no session needs is not red."""
+    """Returns whether a finding is red. A part that no session needs is never red."""
     return not good and details.get("needed", True)
 
 

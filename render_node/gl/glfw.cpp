@@ -80,7 +80,7 @@ public:
     void swap(std::uint64_t frame, std::span<const PixelRect> changed) override {
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             if (parts_[i]) {
-                const PixelRect part = windows_[i].takeExposed() ? windows_[i].allPixels() : changed[i];
+                const PixelRect part = windows_[i].takeExposed() ? allPixels(windows_[i].pixels()) : changed[i];
                 if (!part.empty()) {
                     parts_[i]->show(part);
                 }

@@ -46,7 +46,7 @@ public:
     [[nodiscard]] GLFWwindow* handle() const { return window_.get(); }
     [[nodiscard]] const std::string& name() const { return wanted_.output.name; }
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
-    [[nodiscard]] PixelRect allPixels() const { return {0, 0, wanted_.pixels.x, wanted_.pixels.y}; }
+    [[nodiscard]] glm::ivec2 pixels() const { return wanted_.pixels; }
     /// Appends the input of this window to `input` from now on. `index` is the number of the window in its events. With
     /// `pointer`, the events of the pointer are appended, too.
     void sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer);
@@ -68,8 +68,8 @@ private:
     struct Listener {
         std::shared_ptr<WindowInput> input;
         std::size_t window = 0;
-        glm::dvec2 at{0};  // [pixel], of the pointer's last motion
-        bool exposed = true;
+        glm::dvec2 at{0};     // [pixel], of the pointer's last motion
+        bool exposed = true;  // the window has lost pixels, or has shown none yet
     };
     static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
     void followPointer();

@@ -104,7 +104,7 @@ PixelRect pixelsOf(std::span<const glm::dvec3> hull, const glm::dmat4& sceneToCl
     glm::dvec2 low(kFar), high(-kFar);
     for (const glm::dvec4& clip : clippedToNear(hull, sceneToClip)) {
         if (clip.w <= 0) {
-            return {0, 0, size.x, size.y};  // a wall has no such perspective; any pixel may be covered
+            return allPixels(size);  // a wall has no such perspective; any pixel may be covered
         }
         low = glm::min(low, glm::dvec2(clip) / clip.w);
         high = glm::max(high, glm::dvec2(clip) / clip.w);

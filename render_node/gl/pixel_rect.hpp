@@ -16,6 +16,9 @@ struct PixelRect {
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
+/// Returns all pixels of a picture of this size.
+[[nodiscard]] constexpr PixelRect allPixels(glm::ivec2 size) { return {0, 0, size.x, size.y}; }
+
 /// Returns the smallest rectangle around both. Ignores an empty rectangle.
 [[nodiscard]] PixelRect around(const PixelRect& a, const PixelRect& b);
 

@@ -51,7 +51,7 @@ public:
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             platform_->makeCurrent(i);
             glGenFramebuffers(1, &readers_[i]);
-            changed_[i] = allPixels(i);
+            changed_[i] = allPixels(windows_[i].pixels);
         }
         platform_->makeCurrent(0);
     }
@@ -70,7 +70,7 @@ public:
         inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
             const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr;
-            changed_[i] = around(changed_[i], inPart ? changed : allPixels(i));
+            changed_[i] = around(changed_[i], inPart ? changed : allPixels(windows_[i].pixels));
             if (!changed_[i].empty()) {
                 show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
             }
@@ -98,9 +98,6 @@ public:
     }
 
 private:
-    [[nodiscard]] PixelRect allPixels(std::size_t window) const {
-        return {0, 0, windows_[window].pixels.x, windows_[window].pixels.y};
-    }
     void show(std::size_t window, const std::vector<Copy>& copies) {
         std::vector<Colours> sources;
         sources.reserve(copies.size());

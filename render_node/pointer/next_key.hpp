@@ -10,8 +10,8 @@ namespace render_node {
 inline constexpr std::size_t kMostKeys = 8;
 
 /// Removes the key that the next arrival carries from `waiting`, and returns it, or 0 if none waits. It is the oldest
-/// key, but `quit` comes before all others: a key that was held down must not delay the end of a slow session. Of the
-/// rest, at most kMostKeys stay, because a held key must not act long after its release.
+/// key, but `quit` comes before all others: a key that was held down must not delay the end of a slow session. At
+/// most kMostKeys other keys stay, because a held key must not act long after its release.
 [[nodiscard]] inline char takeNextKey(std::string& waiting, char quit) {
     if (waiting.empty()) {
         return '\0';

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/impaired_link/impaired_link.hpp"
 
@@ -23,7 +25,13 @@ TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
     const auto linkedAgain = [](const nlohmann::json& event) {
         return event.value("state", "") == "linked" && event.value("epoch", 0) >= 2;
     };
-    EXPECT_FALSE(session->waitForEvent("link", linkedAgain).is_null()) << session->output();
+    const nlohmann::json again = session->waitForEvent("link", linkedAgain);
+    ASSERT_FALSE(again.is_null()) << session->output();
+    const auto alone = session->events("without_hand");
+    const bool noticed = std::any_of(alone.begin(), alone.end(), [](const nlohmann::json& event) {
+        return event.value("reason", "") == "lost" && event.value("epoch", 0) == 2;
+    });
+    EXPECT_EQ(again.value("epoch", 0), noticed ? 3 : 2) << session->output();
     const int linked = ask("status").value("step", 0);
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) >= linked + 60; });
     session->type("stop");

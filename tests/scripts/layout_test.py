@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests how the launcher finds walls, scenes, sessions and programs, in the sources and in an installed tree."""
 
+import json
 import os
 import pathlib
 import re
@@ -125,6 +126,21 @@ class InstalledTree(LauncherTest):
         self.assertEqual(ended.stderr, f"sandwall: {self.folder / 'bin' / 'sandwall-master'}: is of build 00000000000000ff, and this launcher "
                          "of 0123456789abcdef; install programs and launcher of one build, or unset SANDWALL_BIN\n")
         self.assertFalse((self.folder / "sessions").exists())
+
+    def test_the_doctor_names_programs_of_another_build(self):
+        for build, red in (("0123456789abcdef", False), ("00000000000000ff", True)):
+            (self.private / "python" / "build.json").write_text(json.dumps({"build": build}))
+            for name in ("master", "render-node", "haptic-server"):
+                program = self.private / f"sandwall-{name}"
+                program.write_text('#!/bin/sh\necho \'{"build": "0123456789abcdef"}\'\n')
+                program.chmod(0o755)
+            ended = self.call("doctor", "--json", "--out", str(self.folder))
+            found = [one for one in json.loads(ended.stdout)["findings"] if one["check"] == "launcher"]
+            self.assertEqual(len(found), int(red), ended.stdout)
+            if red:
+                self.assertEqual(ended.returncode, 1)
+                self.assertFalse(found[0]["good"])
+                self.assertIn(f"and this launcher of {build}", found[0]["message"])
 
     def test_a_folder_of_programs_that_is_none_names_the_variable(self):
         self.environment["SANDWALL_BIN"] = "/nowhere"

@@ -67,6 +67,8 @@ class Package(unittest.TestCase):
             for part in (".SH NAME", "SYNOPSIS", "--help"):
                 self.assertIn(part, text.replace("\\-", "-"), name)
             self.assertNotIn(str(ROOT), text, name)
+            self.assertIn(f"\n.TH {name.upper()} ", text)
+            self.assertIn(f"\n.SH NAME\n{name} - ", text.replace("\\-", "-"))
 
     def test_it_runs_a_session_with_names_and_its_replay(self):
         (self.folder / "small.toml").write_text(SCENE)

@@ -88,7 +88,7 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
         EXPECT_FALSE(hovers.engaged);
         ASSERT_EQ(hovers.path.size(), 1U);
         EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * cells * kPerCell));
-        EXPECT_EQ(read_, 0) << "nobody has moved the pointer";
+        EXPECT_EQ(read_, 0) << "the pointer has not moved";
         EXPECT_TRUE(step().path.empty());
     }
 }
