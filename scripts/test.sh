@@ -32,18 +32,27 @@ if command -v ccache >/dev/null; then
     rm -r "$trial"
 fi
 
-# build PRESET [TARGET...]: configures PRESET and builds the targets, or all targets if none is given.
+# Configuring takes one core. So all builds are configured at once.
+goldens=(golden-g++-O0 golden-clang-O3)
+configured=()
+for preset in release asan-sand "${goldens[@]}"; do
+    cmake --preset "$preset" "${launcher[@]}" >/dev/null &
+    configured+=($!)
+done
+for process in "${configured[@]}"; do
+    wait "$process"
+done
+
+# build PRESET [TARGET...]: builds the targets of PRESET, or all targets if none is given.
 build() {
     local preset=$1
     shift
     echo "== building $preset"
-    cmake --preset "$preset" "${launcher[@]}" >/dev/null
     cmake --build "build/$preset" --parallel "$jobs" ${1:+--target "$@"}
 }
 
 build release
 build asan-sand
-goldens=(golden-g++-O0 golden-clang-O3)
 for preset in "${goldens[@]}"; do
     build "$preset" sand_golden_tests
 done
@@ -54,5 +63,5 @@ for folder in release asan-sand "${goldens[@]/%//tests/sand/golden}"; do
     echo "subdirs($folder)"
 done >build/CTestTestfile.cmake
 echo "== testing"
-# ctest gets four slots per core. Most tests take two slots, and tests that mostly wait take one (tests/CMakeLists.txt).
-ctest --test-dir build --output-on-failure --no-tests=error --parallel $((4 * jobs))
+# ctest gets five slots per core. Most tests take two slots, and tests that mostly wait take one (tests/CMakeLists.txt).
+ctest --test-dir build --output-on-failure --no-tests=error --parallel $((5 * jobs))

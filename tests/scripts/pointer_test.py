@@ -19,6 +19,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 import events  # noqa: E402
+import session_control  # noqa: E402
 
 BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
 PATIENCE = 120  # seconds for work that takes a few seconds on an idle machine
@@ -115,8 +116,7 @@ class PointerSession(unittest.TestCase):
             session.wait(PATIENCE)
 
     def status(self):
-        asked = subprocess.run([str(ROOT / "scripts" / "sandwall"), "ctl", str(self.out), "status"], capture_output=True, text=True, timeout=PATIENCE)
-        return json.loads(asked.stdout)
+        return json.loads(session_control.ask(self.out, "status"))
 
     def wait_for_status(self, wanted):
         """Waits until the session's status fulfils `wanted`."""
