@@ -30,13 +30,13 @@ CaptureFolder::~CaptureFolder() {
 void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall,
                     lockstep::FrameBarrier& barrier, BackgroundJobs& jobs) {
     const auto folder = std::make_shared<CaptureFolder>(out_);
-    const BackgroundJobs::Result said{nlohmann::json({{"ok", true},
-                                                      {"folder", folder->path().filename().string()},
-                                                      {"frame", frame},
-                                                      {"step", sand.replica().stepNumber()},
-                                                      {"state_hash", fmt::format("{:016x}", sand.hash())}})
-                                          .dump(),
-                                      {}};
+    BackgroundJobs::Result said{nlohmann::json({{"ok", true},
+                                                {"folder", folder->path().filename().string()},
+                                                {"frame", frame},
+                                                {"step", sand.replica().stepNumber()},
+                                                {"state_hash", fmt::format("{:016x}", sand.hash())}})
+                                    .dump(),
+                                {}};
     std::function<void()> write;
     if (mayBeHeld(wall)) {
         auto held = std::make_shared<const HeldPictures>(holdWallPictures(barrier, wall));
@@ -55,7 +55,7 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
         };
     }
     jobs.start(
-        [said, write = std::move(write), folder] {
+        [said = std::move(said), write = std::move(write), folder] {
             write();
             folder->keep();
             return said;

@@ -44,10 +44,10 @@ std::optional<glm::dvec2> meetSand(const Ray& ray, const SandBody& sand) {
         return std::nullopt;
     }
     const double length = (span.end - span.from) * glm::length(glm::dvec2(ray.along));
-    const double count = std::max(1.0, std::ceil(length / sand.step));
+    const int count = static_cast<int>(std::max(1.0, std::ceil(length / sand.step)));
     double above = span.from;
-    for (double i = 1; i <= count; ++i) {
-        double hit = span.from + (span.end - span.from) * (i / count);
+    for (int i = 1; i <= count; ++i) {
+        double hit = span.from + (span.end - span.from) * i / count;
         if (below(hit)) {
             for (int halving = 0; halving < 8; ++halving) {
                 const double middle = (above + hit) / 2;

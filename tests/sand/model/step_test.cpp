@@ -6,6 +6,7 @@
 #include <random>
 #include <span>
 
+#include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ base::Bytes bytesOf(const sand::Step& step) {
 
 TEST(Step, SurvivesItsEncoding) {
     std::mt19937 random(41);
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < (samples::kSlowBuild ? 100 : 1000); ++i) {
         sand::Step step = samples::randomStep(random(), samples::flatScene(900, 900).rules, random);
         step.epoch = static_cast<std::uint32_t>(random());
         const base::Bytes bytes = bytesOf(step);
