@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <queue>
 #include <utility>
@@ -45,14 +46,11 @@ std::string turnLine(double degrees, const std::string& name) {
 /// Returns the tile of the grid that the viewer faces most. The grid has a tile.
 const Tile& middleOf(const Wall& wall) {
     const glm::dvec3 forward = glm::cross(glm::dvec3(0, 1, 0), wall.viewer.right);
-    const Tile* best = nullptr;
-    for (const Tile& tile : wall.tiles) {
-        if (tile.row > 0 &&
-            (best == nullptr || glm::dot(tile.screen.normal(), forward) < glm::dot(best->screen.normal(), forward))) {
-            best = &tile;
-        }
-    }
-    return *best;
+    // A screen beside the grid has row 0, and is never the middle.
+    const auto away = [&](const Tile& tile) {
+        return tile.row == 0 ? std::numeric_limits<double>::infinity() : glm::dot(tile.screen.normal(), forward);
+    };
+    return *std::ranges::min_element(wall.tiles, {}, away);
 }
 
 /// Returns the boxes of the grid as the viewer sees them. Omits the columns of a wide grid beyond kWidestMap.

@@ -147,7 +147,7 @@ void writeCheckpoints(Folder folder) {
 /// Writes files of saved sand, whole and without their checksum.
 void writeSaved(Folder folder, const fs::path& scratch) {
     const std::array<scene::Scene, 2> scenes{samples::flatScene(24, 16), fuzz::tinScene()};
-    for (std::uint8_t kind = 0; kind < scenes.size(); ++kind) {
+    for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
         sand::Replica terrain(scenes[kind]);
         terrain.apply(step(1));
         master::writeSavedSand(scratch, {master::SandPlace::of(scenes[kind]), terrain.stepNumber(), terrain.stateHash(),
@@ -207,7 +207,7 @@ void writeState(Folder folder) {
 void writeSteps(Folder folder) {
     std::array<scene::Scene, 5> scenes{samples::flatScene(24, 16), samples::flatScene(24, 16),
                                        samples::flatScene(24, 16), fuzz::tinScene(), fuzz::tinScene()};
-    for (std::uint8_t kind = 0; kind < scenes.size(); ++kind) {
+    for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
         sand::Replica terrain(scenes[kind]);
         const sand::Replica before = terrain;
         terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
@@ -225,7 +225,7 @@ void writeSteps(Folder folder) {
             encode(next, bytes);
             input.putBytes(piece(bytes.take()));
         }
-        folder.add(input.take(), {kind});
+        folder.add(input.take(), {static_cast<std::uint8_t>(kind)});
     }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "haptic_bridge/client/grant.hpp"
 
 namespace {
@@ -16,10 +18,8 @@ TimedStep timed(std::uint64_t number) {
 }
 
 std::vector<std::uint64_t> numbersOf(const std::vector<TimedStep>& steps) {
-    std::vector<std::uint64_t> numbers;
-    for (const TimedStep& step : steps) {
-        numbers.push_back(step.step.number);
-    }
+    std::vector<std::uint64_t> numbers(steps.size());
+    std::ranges::transform(steps, numbers.begin(), [](const TimedStep& step) { return step.step.number; });
     return numbers;
 }
 
