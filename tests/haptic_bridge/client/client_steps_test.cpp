@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Steps, edits and timing tests that the master's end of the link gets once it is linked.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <span>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/haptic_bridge/client/linked_client.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using namespace test;
+
+TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
+    FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            guest.send(stepOf(1, 11));
+            guest.send(stepOf(1, 12));
+            guest.send(std::span<const std::uint8_t>(encode(stepOf(1, 13))).first(9));
+        }
+    }));
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 10);
+    ASSERT_TRUE(eventually([&] { return client.link().message.find("middle of a message") != std::string::npos; }))
+        << client.link().message;
+    const auto steps = client.drain(10);
+    ASSERT_EQ(steps.size(), 2U);
+    EXPECT_EQ(steps[1].step.number, 12U);
+}
+
+TEST(Client, LeavesOutLateDoubledAndForeignSteps) {
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            for (const auto& [epoch, number] : std::vector<std::pair<std::uint32_t, std::uint64_t>>{
+                     {4, 8}, {4, 8}, {3, 9}, {4, 7}, {4, 9}, {5, 10}, {4, 10}}) {
+                guest.send(stepOf(epoch, number));
+            }
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 4, 7);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
+    const auto steps = client.drain(100);
+    ASSERT_EQ(steps.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(steps[i].step.number, 8 + i);
+        EXPECT_EQ(steps[i].step.epoch, 4U);
+        EXPECT_GT(steps[i].receivedNs, 0);
+    }
+    EXPECT_EQ(client.counters().stepsStale, 2U);
+    EXPECT_EQ(client.counters().stepsForeign, 2U);
+    EXPECT_EQ(client.link().link, Link::linked);
+}
+
+TEST(Client, GivesUpTheLinkOverAMissingStep) {
+    std::atomic<bool> seen = false;
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (server.guests() > 1) {
+            eventually([&] { return seen.load(); });  // a greeting would replace the message
+        }
+        if (linkUp(guest)) {
+            guest.send(stepOf(1, 1));
+            guest.send(stepOf(1, 3));
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.link().message.find("step 3 came after step 1") != std::string::npos; }))
+        << client.link().message;
+    seen = true;
+    EXPECT_EQ(client.drain(10).size(), 1U);
+    EXPECT_TRUE(reaches(client, Link::offered)) << "the client must connect again";
+}
+
+StepMessage editOf(std::uint64_t number, const sand::Edit& edit) {
+    StepMessage message = stepOf(1, number);
+    message.step.edit = edit;
+    return message;
+}
+
+// Without this, a server could fill memory and journal with sand that no operator has loaded.
+TEST(Client, EndsTheLinkOverAnEditThatItHasNotAskedFor) {
+    const std::array<sand::Edit, 2> edits{sand::Edit::loaded(base::Bytes(60'000, 7)), sand::Edit(sand::Edit::settle)};
+    for (const sand::Edit& edit : edits) {
+        FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
+            if (linkUp(guest)) {
+                guest.send(stepOf(1, 1));
+                guest.send(editOf(2, edit));
+                guest.await<Bye>();
+            }
+        }));
+        Client client(server.address(), kOffer);
+        grantWhenOffered(client, 1, 0);
+        const auto refused = [&] {
+            return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
+        };
+        EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+        const auto steps = client.drain(10);
+        ASSERT_EQ(steps.size(), 1U);
+        EXPECT_FALSE(steps[0].step.edit.any());
+    }
+}
+
+TEST(Client, TakesALongLoadOnceForEachThatItAskedFor) {
+    const sand::Edit load = sand::Edit::loaded(base::Bytes(1'000'000, 7));
+    FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
+        guest.reader.expectLoads(true);
+        if (linkUp(guest) && guest.await<EditRequest>()) {
+            guest.send(editOf(1, load));
+            guest.send(editOf(2, load));
+            guest.await<Bye>();
+        }
+    }));
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(reaches(client, Link::linked)) << client.link().message;
+    client.request(load);
+    const auto refused = [&] { return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1]; };
+    EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+    const auto steps = client.drain(10);
+    ASSERT_EQ(steps.size(), 1U);
+    EXPECT_EQ(steps[0].step.edit, load);
+}
+
+TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
+    std::atomic<bool> received = false;
+    std::atomic<int> framesBefore = -1;
+    FakeServer server([&](FakeServer::Guest& guest) {
+        if (!linkUp(guest)) {
+            return;
+        }
+        guest.send(stepOf(1, 1));
+        guest.send(stepOf(1, 2));
+        guest.send(TimingTest{5, 40});
+        guest.send(stepOf(1, 3));
+        received = guest.await<TimingEcho>() == TimingEcho{5, Leg::received};
+        for (int frames = 0; const auto message = guest.next();) {
+            frames += std::holds_alternative<Shown>(*message) ? 1 : 0;
+            if (*message == Message(TimingEcho{5, Leg::shown})) {
+                framesBefore = frames;
+                break;
+            }
+        }
+        guest.await<Bye>();
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
+    EXPECT_TRUE(eventually([&] { return received.load(); })) << "the first echo comes before any frame";
+    client.shown(0, 1);  // this frame began before the test came
+    EXPECT_EQ(client.drain(1).size(), 1U);
+    client.shown(1, 1);  // this frame took only a part of the steps before the test
+    EXPECT_EQ(client.drain(1).size(), 1U);
+    client.shown(2, 1);  // this frame took all steps before the test
+    client.shown(3, 1);
+    EXPECT_TRUE(eventually([&] { return framesBefore >= 0; }));
+    EXPECT_EQ(framesBefore, 3);
+}
+
+TEST(Client, HoldsAFloodBackAndLosesNothing) {
+    constexpr std::uint64_t kSteps = 5000;
+    FakeServer server([](FakeServer::Guest& guest) {
+        if (linkUp(guest)) {
+            for (std::uint64_t number = 1; number <= kSteps; ++number) {
+                guest.send(stepOf(1, number));
+            }
+            guest.await<Bye>();
+        }
+    });
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == Client::kMaxQueued; }));
+    std::this_thread::sleep_for(50ms);
+    EXPECT_EQ(client.counters().stepsIn, Client::kMaxQueued) << "no caller drains the steps";
+    std::uint64_t next = 1;
+    ASSERT_TRUE(eventually([&] {
+        for (const auto& timed : client.drain(100)) {
+            EXPECT_EQ(timed.step.number, next++);
+        }
+        return next == kSteps + 1;
+    }));
+}
+}  // namespace
