@@ -47,6 +47,7 @@ public:
     Divergence findDivergence(sand::Replica& mine, const lockstep::Arbiter& arbiter) override {
         const std::vector<std::uint64_t> hashes{hashOf(mine), hashOf(replicas[0]), hashOf(replicas[1])};
         std::vector<lockstep::Account> accounts;
+        accounts.reserve(hashes.size());
         for (const std::uint64_t hash : hashes) {
             accounts.push_back({hash, {}});
         }

@@ -312,7 +312,7 @@ TEST_F(Replay, RefusesWhatItWouldNotDoBesideAnother) {
              {std::string("--hash"), std::string("--volumes"), std::string("--until 10"), "--mesh " + path("z.ply"),
               "--heights " + path("z.asc"), "--difference " + path("z.asc"), "--forces " + path("z.csv"),
               "--export " + path("z.csv"), alone == recover ? std::string("--verify") : recover}) {
-            expectRefused(alone + " " + other, "excludes");
+            expectRefused(fmt::format("{} {}", alone, other), "excludes");
         }
     }
     for (const char* option : {"--mesh", "--heights", "--difference", "--forces", "--export", "--recover"}) {

@@ -33,7 +33,7 @@ protected:
     void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
     /// Shows one frame, and returns its steps.
     std::vector<TimedStep> show(master::LiveSteps& live, std::size_t most = 4) {
-        const std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
+        std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
         for (const TimedStep& timed : steps) {
             wall_.apply(timed.step);
             edits_ += timed.step.edit.any() ? 1 : 0;
