@@ -77,8 +77,17 @@ class Server:
         subprocess.run(["import", "-window", "root", str(file)], env={**os.environ, "DISPLAY": self.display}, check=True, timeout=PATIENCE)
 
     def end(self):
-        self.process.terminate()
-        self.process.wait()
+        # Xvfb ignores a signal that comes just after it has printed its display. So the signal is repeated.
+        for _ in range(PATIENCE):
+            self.process.terminate()
+            try:
+                self.process.wait(1)
+                break
+            except subprocess.TimeoutExpired:
+                pass
+        else:
+            self.process.kill()
+            self.process.wait()
         self.process.stdout.close()
 
 

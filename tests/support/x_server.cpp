@@ -47,9 +47,10 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
 
 void XServer::end() {
     // SIGKILL would leave the lock file behind, and no other server could use the display number.
-    if (process_ && !process_->wait(0)) {
+    // Xvfb ignores a signal that comes just after it has printed its display. So the signal is repeated.
+    constexpr int kTries = 30;
+    for (int tries = 0; process_ && tries < kTries && !process_->wait(tries == 0 ? 0 : 1); ++tries) {
         process_->signal(SIGTERM);
-        (void)process_->wait(30);
     }
 }
 
