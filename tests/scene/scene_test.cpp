@@ -92,7 +92,7 @@ TEST_F(SceneFile, StepsPerSecondAreAWholeNumberWithinTheRangeThatTheMessageNames
     const auto said = [&](const std::string& value) { return complaint("steps_per_second = " + value + "\n" + kFlat); };
     const std::string range = "s.toml:1: steps_per_second must be a whole number within [1, 1000]";
     for (const std::string value : {"0.5", "0", "-3", "1001", "59.94"}) {
-        EXPECT_EQ(said(value), range + ", got " + value);
+        EXPECT_EQ(said(value), fmt::format("{}, got {}", range, value));
     }
     EXPECT_EQ(said("\"sixty\""), range);
     for (const std::string value : {"1", "1000"}) {

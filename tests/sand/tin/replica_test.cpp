@@ -32,7 +32,7 @@ TEST_F(TinTerrain, ACopyIsTheSameAlthoughItsCallerRoundsUp) {
     const Replica terrain(scene());
     const auto heightsOf = [](const Replica& replica) { return samples::tinOf(replica).heights; };
     const test::OtherFloats other;
-    const Replica copy(terrain);
+    const Replica copy(terrain);  // NOLINT(performance-unnecessary-copy-initialization): the copy is tested
     EXPECT_EQ(base::unusualFloats(), "");
     EXPECT_EQ(heightsOf(copy), heightsOf(terrain));
 }

@@ -64,9 +64,9 @@ TEST_F(Import, APictureIsReadAlikeInterlacedOrNot) {
     constexpr int kColumns = 11, kRows = 9;  // some pixels in each of the seven passes
     for (const int bits : {1, 2, 4, 8, 16}) {
         const int white = (1 << bits) - 1;
-        std::vector<int> greys;
-        for (int i = 0; i < kColumns * kRows; ++i) {
-            greys.push_back(i == 0 ? white : (i * 258 + i) % (white + 1));
+        std::vector<int> greys(kColumns * kRows, white);
+        for (int i = 1; i < kColumns * kRows; ++i) {
+            greys[static_cast<std::size_t>(i)] = (i * 258 + i) % (white + 1);
         }
         for (const bool interlaced : {false, true}) {
             writeGreys(path("t.png"), kColumns, kRows, bits, interlaced, greys);

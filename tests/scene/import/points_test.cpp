@@ -91,10 +91,7 @@ TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
 }
 
 TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
-    for (const std::string value : {"10.2\xC2\xB0", "10.2\xB0",
-                                    "10\xC2\xB0"
-                                    "12'06\"",
-                                    "10.2E", "10.2 W"}) {
+    for (const std::string value : {"10.2\xC2\xB0", "10.2\xB0", "10\u00B012'06\"", "10.2E", "10.2 W"}) {
         for (const std::string& line : {value + ",47.1,1200\n", "0,0,1\n47.1," + value + ",1200\n"}) {
             const std::string said = refused(line);
             EXPECT_NE(said.find("its coordinates ('" + value + "') are degrees, but sand needs lengths"),

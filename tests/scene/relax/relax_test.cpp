@@ -254,7 +254,8 @@ std::string hills(double dx, double dy, std::uint32_t seed) {
     for (int hill = 0; hill < 10; ++hill) {
         const double x = within(0, kSide), y = within(0, kSide), radius = within(2, 10), height = within(2, 40);
         for (int i = 0; i < kSide * kSide; ++i) {
-            const double distance = std::hypot((i % kSide - x) * dx, (i / kSide - y) * dy) / std::max(dx, dy);
+            const int column = i % kSide, row = i / kSide;
+            const double distance = std::hypot((column - x) * dx, (row - y) * dy) / std::max(dx, dy);
             const double share = hill % 2 == 0 ? 1 : 1 - distance / radius;
             heights[static_cast<std::size_t>(i)] += distance < radius ? height * share : 0;
         }
