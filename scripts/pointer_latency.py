@@ -19,45 +19,30 @@ sys.dont_write_bytecode = True
 import events
 import session_results
 from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, pm, processor
+from x_server import XServer
 
 SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml
 MOTIONS = 125  # a second, as a usual mouse sends them
 REFRESH = 60  # Hz
 
 
-class Display:
-    """An X server in memory on a free display, and the pointer on it."""
-
-    def __init__(self):
-        self.server = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"],
-                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, preexec_fn=die_with_parent)
-        self.environment = {**os.environ, "DISPLAY": ":" + self.server.stdout.readline().strip()}
-
-    def circles(self, seconds):
-        """Starts a process that presses the left button and moves the pointer in circles for so long."""
-        words = ["mousemove 640 330", "mousedown 1"]
-        for i in range(round(seconds * MOTIONS)):
-            angle = 2 * math.pi * i / MOTIONS  # one circle a second
-            radius = 150 + 60 * math.sin(angle / 7)
-            words += [f"mousemove {640 + radius * math.cos(angle):.0f} {330 + 0.6 * radius * math.sin(angle):.0f}", f"sleep {1 / MOTIONS}"]
-        words.append("mouseup 1")
-        mover = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, env=self.environment, text=True, preexec_fn=die_with_parent)
-        mover.stdin.write("\n".join(words) + "\n")
-        mover.stdin.close()
-        return mover
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.server.terminate()
-        self.server.wait()
-        self.server.stdout.close()
+def circles(display, seconds):
+    """Starts a process that presses the left button and moves the pointer in circles for so long."""
+    words = ["mousemove 640 330", "mousedown 1"]
+    for i in range(round(seconds * MOTIONS)):
+        angle = 2 * math.pi * i / MOTIONS  # one circle a second
+        radius = 150 + 60 * math.sin(angle / 7)
+        words += [f"mousemove {640 + radius * math.cos(angle):.0f} {330 + 0.6 * radius * math.sin(angle):.0f}", f"sleep {1 / MOTIONS}"]
+    words.append("mouseup 1")
+    mover = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, env=display.environment, text=True, preexec_fn=die_with_parent)
+    mover.stdin.write("\n".join(words) + "\n")
+    mover.stdin.close()
+    return mover
 
 
 def measure(args):
     """Returns the summary of a session in which the pointer digs all the time."""
-    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, Display() as display:
+    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer(f"{SIZE[0]}x{SIZE[1]}") as display:
         folder = pathlib.Path(name)
         log, out = folder / "log.txt", folder / "out"
         command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", ROOT / "walls" / "configs" / "desktop.toml",
@@ -69,7 +54,7 @@ def measure(args):
         try:
             if events.wait_for(log, "progress", START_SECONDS, lambda: run.poll() is None) is None:
                 raise Failed(f"no frame was shown: {log.read_text(errors='replace').strip()[-300:]}")
-            mover = display.circles(args.warm_up + args.seconds)
+            mover = circles(display, args.warm_up + args.seconds)
             time.sleep(args.warm_up + args.seconds)
             run.stdin.write("stop\n")
             run.stdin.flush()

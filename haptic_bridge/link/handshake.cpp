@@ -1,9 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/link/handshake.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 namespace haptic_bridge {
+
+std::optional<Refusal> refusalFor(const Identity& server, const Identity& master) {
+    if (server.protocol != master.protocol) {
+        return Refusal{RefusalCode::protocol,
+                       fmt::format("the server speaks protocol version {}, the master {}; run the same build on both",
+                                   server.protocol, master.protocol)};
+    }
+    if (server.algorithm != master.algorithm) {
+        return Refusal{RefusalCode::algorithm,
+                       fmt::format("the server's sand is algorithm version {}, the master's {}; run the same build on "
+                                   "both",
+                                   server.algorithm, master.algorithm)};
+    }
+    if (server.sceneName != master.sceneName) {
+        return Refusal{RefusalCode::scene, fmt::format("the server has scene '{}', the master '{}'; start both with "
+                                                       "the same scene",
+                                                       server.sceneName, master.sceneName)};
+    }
+    if (server.rulesDigest != master.rulesDigest) {
+        return Refusal{RefusalCode::scene,
+                       fmt::format("the server's scene '{}' has another material or tool (digest {:016x}) than the "
+                                   "master's '{}' ({:016x}); give both the same scene file",
+                                   server.sceneName, server.rulesDigest, master.sceneName, master.rulesDigest)};
+    }
+    return std::nullopt;
+}
 
 MacBytes Transcript::mac(const Security& functions, const std::string& secret, Side side) const {
     base::ByteWriter writer;

@@ -10,6 +10,10 @@
 
 namespace haptic_bridge {
 
+/// Returns the server's refusal of a master with another identity, with what the user should do; nullopt if both
+/// identities are equal.
+[[nodiscard]] std::optional<Refusal> refusalFor(const Identity& server, const Identity& master);
+
 /// Secrets and TLS of one end of the link. The default has neither. Copies share the same TLS context.
 struct LinkSecurity {
     const Security* functions = nullptr;  // null: this end has no secret

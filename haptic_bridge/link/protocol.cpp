@@ -372,30 +372,4 @@ Message decode(std::span<const std::uint8_t> typeAndPayload) {
     return message;
 }
 
-std::optional<Refusal> refusalFor(const Identity& server, const Identity& master) {
-    if (server.protocol != master.protocol) {
-        return Refusal{RefusalCode::protocol,
-                       fmt::format("the server speaks protocol version {}, the master {}; run the same build on both",
-                                   server.protocol, master.protocol)};
-    }
-    if (server.algorithm != master.algorithm) {
-        return Refusal{RefusalCode::algorithm,
-                       fmt::format("the server's sand is algorithm version {}, the master's {}; run the same build on "
-                                   "both",
-                                   server.algorithm, master.algorithm)};
-    }
-    if (server.sceneName != master.sceneName) {
-        return Refusal{RefusalCode::scene, fmt::format("the server has scene '{}', the master '{}'; start both with "
-                                                       "the same scene",
-                                                       server.sceneName, master.sceneName)};
-    }
-    if (server.rulesDigest != master.rulesDigest) {
-        return Refusal{RefusalCode::scene,
-                       fmt::format("the server's scene '{}' has another material or tool (digest {:016x}) than the "
-                                   "master's '{}' ({:016x}); give both the same scene file",
-                                   server.sceneName, server.rulesDigest, master.sceneName, master.rulesDigest)};
-    }
-    return std::nullopt;
-}
-
 }  // namespace haptic_bridge

@@ -258,8 +258,4 @@ using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, S
 /// characters in texts by '?', because these texts are printed.
 [[nodiscard]] Message decode(std::span<const std::uint8_t> typeAndPayload);
 
-/// Returns the server's refusal of a master with another identity, with what the user should do; nullopt if both
-/// identities are equal.
-[[nodiscard]] std::optional<Refusal> refusalFor(const Identity& server, const Identity& master);
-
 }  // namespace haptic_bridge

@@ -8,7 +8,11 @@
 namespace master {
 namespace {
 
-constexpr std::int32_t kFarthest = sand::kMaxProbe - 1;  // [probe unit]
+/// Returns the height of a tool that is `above` the surface, within what a step can hold [probe unit].
+std::int32_t raised(std::int32_t surface, double above) {
+    return static_cast<std::int32_t>(
+        std::clamp<double>(surface + std::round(above), -sand::kMaxProbe, sand::kMaxProbe - 1));
+}
 
 }  // namespace
 
@@ -22,10 +26,7 @@ void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica
     surface_.reset();
     if (sample.meets != 0) {
         surface_ = sample.z;
-        const double radius = radius_;
-        const double above = radius * (sample.pressed != 0 ? 1 - depth_ : kHover);
-        const std::int32_t z = sample.z + static_cast<std::int32_t>(std::lround(above));
-        last_ = {sample.x, sample.y, std::clamp(z, -sand::kMaxProbe, kFarthest)};
+        last_ = {sample.x, sample.y, raised(sample.z, radius_ * (sample.pressed != 0 ? 1 - depth_ : kHover))};
     }
     engaged_ = sample.meets != 0 && sample.pressed != 0;
     lastNs_ = sample.at;
@@ -35,8 +36,7 @@ void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
-    const double z = *surface_ + std::round(kHover * radius_);
-    last_.z = static_cast<std::int32_t>(std::clamp<double>(z, -sand::kMaxProbe, kFarthest));
+    last_.z = raised(*surface_, kHover * radius_);
     path_.add({lastNs_, last_, false});
     resized_ = true;
 }

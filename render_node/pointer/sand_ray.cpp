@@ -47,7 +47,7 @@ std::optional<glm::dvec2> meetSand(const Ray& ray, const SandBody& sand) {
     const int count = static_cast<int>(std::max(1.0, std::ceil(length / sand.step)));
     double above = span.from;
     for (int i = 1; i <= count; ++i) {
-        double hit = span.from + (span.end - span.from) * i / count;
+        double hit = span.from + (span.end - span.from) * (static_cast<double>(i) / count);
         if (below(hit)) {
             for (int halving = 0; halving < 8; ++halving) {
                 const double middle = (above + hit) / 2;

@@ -20,6 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
 import events  # noqa: E402
 import session_control  # noqa: E402
+import x_server  # noqa: E402
 
 BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
 PATIENCE = 120  # seconds for work that takes a few seconds on an idle machine
@@ -61,34 +62,15 @@ radius = 0.05
 """
 
 
-class Server:
-    """An X server in memory on a free display."""
-
-    def __init__(self, size):
-        self.process = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-screen", "0", f"{size}x24"],
-                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.display = ":" + self.process.stdout.readline().strip()
+class Display(x_server.XServer):
+    """A display with a pointer and keys."""
 
     def pointer(self, *words):
         """Moves the pointer, presses buttons or types keys, as xdotool's command line says it."""
-        subprocess.run(["xdotool", *map(str, words)], env={**os.environ, "DISPLAY": self.display}, check=True, timeout=PATIENCE)
+        subprocess.run(["xdotool", *map(str, words)], env=self.environment, check=True, timeout=PATIENCE)
 
     def picture(self, file):
-        subprocess.run(["import", "-window", "root", str(file)], env={**os.environ, "DISPLAY": self.display}, check=True, timeout=PATIENCE)
-
-    def end(self):
-        # Xvfb ignores a signal that comes just after it has printed its display. So the signal is repeated.
-        for _ in range(PATIENCE):
-            self.process.terminate()
-            try:
-                self.process.wait(1)
-                break
-            except subprocess.TimeoutExpired:
-                pass
-        else:
-            self.process.kill()
-            self.process.wait()
-        self.process.stdout.close()
+        subprocess.run(["import", "-window", "root", str(file)], env=self.environment, check=True, timeout=PATIENCE)
 
 
 class PointerSession(unittest.TestCase):
@@ -101,7 +83,7 @@ class PointerSession(unittest.TestCase):
         self.wall, self.scene, self.out = self.folder / "wall.toml", self.folder / "scene.toml", self.folder / "out"
         self.wall.write_text(WALL)
         self.scene.write_text(SCENE)
-        self.server = Server("320x240")
+        self.server = Display("320x240")
         self.addCleanup(self.server.end)
 
     def start(self, *words):
@@ -207,7 +189,7 @@ class PointerSession(unittest.TestCase):
             self.assertLess(changed[row][column], -0.005, f"column {column}")
 
     def test_of_two_pointers_the_first_that_touches_is_the_hand(self):
-        other = Server("320x240")
+        other = Display("320x240")
         self.addCleanup(other.end)
         # Two tiles side by side, each on a display of its own.
         head = WALL.split("[[place]]")[0].replace("rows = 2", "rows = 1")
@@ -272,7 +254,7 @@ class PointerSession(unittest.TestCase):
 
     def test_try_shows_sand_and_help_and_names_its_journal(self):
         self.server.end()
-        self.server = Server("1280x720")
+        self.server = Display("1280x720")
         self.addCleanup(self.server.end)
         session = self.start("try", "--out", self.out)
         self.drag([(400, 400), (500, 410), (600, 400)])

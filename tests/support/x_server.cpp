@@ -47,7 +47,7 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
 
 void XServer::end() {
     // SIGKILL would leave the lock file behind, and no other server could use the display number.
-    // Xvfb ignores a signal that comes just after it has printed its display. So the signal is repeated.
+    // An Xvfb that had just started on a busy machine once ignored the signal, and ended at the second one.
     constexpr int kTries = 30;
     for (int tries = 0; process_ && tries < kTries && !process_->wait(tries == 0 ? 0 : 1); ++tries) {
         process_->signal(SIGTERM);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/message_reader.hpp"
 #include "tests/support/seed.hpp"
 

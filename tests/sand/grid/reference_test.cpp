@@ -201,7 +201,7 @@ private:
 };
 
 TEST(Reference, EqualsTheSolverInRandomWorlds) {
-    constexpr unsigned kWorlds = samples::kSlowBuild ? 30 : 200;
+    constexpr unsigned kWorlds = samples::kSlowBuild ? 30 : 600;
     const unsigned first = test::randomSeed();
     for (unsigned world = 0; world < kWorlds && !HasFatalFailure(); ++world) {
         SCOPED_TRACE(test::again(first + world));
