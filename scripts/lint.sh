@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Checks the English of the text with scripts/plain_english.py, the format with clang-format 14 and the code with clang-tidy
-# 14. All sources take an hour on two cores. With FILE.cpp, the English and the code of only those files are checked. Needs
-# clang-format-14 and clang-tidy-14.
+# 14. All sources take half an hour on two cores. With FILE.cpp, the English and the code of only those files are checked.
+# Needs clang-format-14 and clang-tidy-14.
 #
 # usage: scripts/lint.sh [FILE.cpp...]   (paths from the root of the repository)
 set -euo pipefail
