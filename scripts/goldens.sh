@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Tests the golden hashes with both compilers at every level of optimisation. scripts/test.sh tests only clang -O3, its
-# release build (g++ -O3), and its sanitizer build (g++ -O1). Takes about five minutes on two cores. docs/testing.md
+# release build (g++ -O3), and its sanitizer build (g++ -O1). Takes about four minutes on two cores. docs/testing.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install_dependencies.sh --with-tests

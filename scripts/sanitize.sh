@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs the tests under sanitizers that take too long for scripts/test.sh: an hour on two cores. docs/testing.md
+# Runs the tests under sanitizers that take too long for scripts/test.sh: a quarter of an hour on two cores. docs/testing.md
 #
 # usage: scripts/sanitize.sh [asan] [tsan]    (default: both)
 #
