@@ -289,6 +289,10 @@ void describeResume(host::CommandLine& line, Options& options) {
         .range(0.0, 86400.0);
     line.option("--journal-part", options.partMegabytes, "MiB after which the journal continues in another file")
         .range(1, 1 << 20);
+    line.option("--force-share", options.session.forceShare,
+                "0 to 1: share of its force that the hand feels, as an operator sets it; wins over the journal")
+        .range(0.0, 1.0)
+        .excludes(line.named("--replay"));
     line.option("--failure", failure.what, "text about the failure; written to the journal and to recoveries.jsonl")
         .needs(resume);
     line.option("--failed-rank", failure.rank, "rank that failed; leave it out if no rank failed").needs(resume);

@@ -44,6 +44,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       views_(wall, scene, options.tracker),
       input_(options.readInput),
       captures_(out_),
+      force_(options.force),
       pointer_(options.pointer) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
@@ -149,7 +150,7 @@ bool OperatorDesk::carryOut(const Command& command, std::optional<Client> client
             views_.separateEyes(command.number);
             return true;
         case Verb::force:
-            session_.requests->shareForce(command.number);
+            shareForce(command.number);
             return true;
         case Verb::stereo:
             changeStereo(command.stereo);
@@ -192,6 +193,14 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
 void OperatorDesk::askMaterial(const scene::Material& material, std::optional<Client> client) {
     askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
     material_ = material;
+}
+
+/// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
+void OperatorDesk::shareForce(double share) {
+    session_.requests->shareForce(share);
+    force_ = share;
+    host::emitEvent("force", {{"share", share}});
+    session_.keepForce(share);
 }
 
 void OperatorDesk::changeStereo(walls::Stereo stereo) {
@@ -275,6 +284,7 @@ std::string OperatorDesk::status() const {
     status["stereo"] = std::string(walls::stereoName(shown_.stereo));
     status["eye_separation"] = views_.eyeSeparation();
     status["material"] = materialNow(material_);
+    status["force_share"] = force_ ? Json(*force_) : Json();
     status["edits_waiting"] = edits_.size();
     return line(status);
 }

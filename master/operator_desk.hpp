@@ -30,6 +30,7 @@ struct DeskOptions {
     lockstep::Pattern pattern = lockstep::Pattern::none;  // shown from the start
     lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // source of the head's pose
+    std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
     bool pointer = false;  // the hand is the pointer, so that keys in the windows are commands (pointer_keys.hpp)
 };
 
@@ -43,6 +44,7 @@ public:
         const MasterSand& sand;
         StepRequests* requests;                  // null for a replay, whose only command is stop
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
+        std::function<void(double)> keepForce;   // writes a share of the force to the journal
         std::function<nlohmann::json()> status;  // answer of `status`, without the fields of the desk
     };
 
@@ -86,6 +88,7 @@ private:
     void askEdit(sand::Edit edit, std::optional<Client> client,
                  const std::optional<scene::Material>& material = std::nullopt);
     void askMaterial(const scene::Material& material, std::optional<Client> client);
+    void shareForce(double share);
     void changeStereo(walls::Stereo stereo);
     void save(const std::string& name, std::optional<Client> client);
     void load(const std::string& name, std::optional<Client> client);
@@ -108,6 +111,7 @@ private:
     EditQueue edits_;
     BackgroundJobs jobs_;
     Captures captures_;
+    std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     const bool pointer_;
     bool paused_ = false;
 };

@@ -59,7 +59,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       desk_(scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
             options_.desk,
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
-             [this] { return status(); }}),
+             [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
       agreement_(
           ranks_, labels_, options_.out, measure_.ranks(),
@@ -69,6 +69,9 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
              options_.out) {
     if (options_.record.resumed && options_.record.resumed->outvoted) {
         check_.tellResumed(*options_.record.resumed->outvoted);
+    }
+    if (options_.forceShare) {
+        record_.keepForce(*options_.forceShare);
     }
     if (options_.pointer) {
         barrier_.carryPointers();

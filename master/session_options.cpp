@@ -25,6 +25,10 @@ SessionOptions completed(SessionOptions options) {
         options.record.keepsJournal = false;
         options.steps = std::min(options.steps, options.recording->lastStep());
     }
+    options.desk.force = options.forceShare;
+    if (!options.desk.force && options.record.resumed) {
+        options.desk.force = options.record.resumed->forceShare;
+    }
     return options;
 }
 
@@ -33,8 +37,12 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
         return std::make_unique<RecordedSteps>(options.recording, options.steps);
     }
     const ResumedSession* resumed = options.record.resumed.get();
-    return std::make_unique<LiveSteps>(options.server, scene, options.pace, resumed != nullptr ? resumed->epoch : 0,
-                                       options.security);
+    auto steps = std::make_unique<LiveSteps>(options.server, scene, options.pace,
+                                             resumed != nullptr ? resumed->epoch : 0, options.security);
+    if (options.desk.force) {
+        steps->shareForce(*options.desk.force);
+    }
+    return steps;
 }
 
 MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {

@@ -26,6 +26,7 @@ inline constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::ma
 struct SessionOptions {
     std::optional<haptic_bridge::Address> server;
     haptic_bridge::LinkSecurity security;  // of the link to the server
+    std::optional<double> forceShare;      // as if an operator had set it at the start, 0 to 1; wins over the journal
     bool pointer = false;                  // the hand is the pointer of the ranks' windows
     Pace pace = Pace::realtime;
     std::optional<double> refreshHz;   // frames per second; nullopt: as in the wall file

@@ -96,6 +96,10 @@ void SessionRecord::checked(const JournalChecked& checked) {
     onDisk([&](JournalKeeper& journal) { journal.checked(checked); });
 }
 
+void SessionRecord::keepForce(double share) {
+    onDisk([&](JournalKeeper& journal) { journal.force({share}); });
+}
+
 void SessionRecord::endForDisk(const DiskFailure& failure) const {
     const std::string line = fmt::format(
         "{}, which is not shown; the session ends (with --journal best-effort it would continue)", failure.what());

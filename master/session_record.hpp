@@ -53,6 +53,8 @@ public:
     /// the two no checkpoint is made, and the journal gets no end. Throw as keep() does.
     void doubt(const JournalDoubt& doubt);
     void checked(const JournalChecked& checked);
+    /// Writes the share of the force that an operator has set, at once if the disk has room. Throws as keep() does.
+    void keepForce(double share);
     /// Called when the wall shows frame `frame`. Reports a recovery at the first one, and begins a checkpoint when one
     /// is due.
     void shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch);

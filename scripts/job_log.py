@@ -127,6 +127,7 @@ class JobLog:
         self.told = 0.0  # time of that event by the monotonic clock [s]
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
         self.linked = None  # Unix time [s] of the last event about a hand that was linked or streams
+        self.force = None  # share of the force that an operator has set in this try, 0 to 1
         self.refused = False  # whether the last attempt to link ended with a refusal by server or master
 
     def follow(self, ended=False):
@@ -165,6 +166,10 @@ class JobLog:
             self.ending = {"ranks": [rank for rank in ranks if checked_json.whole(rank, 0, events.MOST_RANKS) is not None]
                            if isinstance(ranks, list) else [],
                            "names": checked_json.one_line(names, events.LONGEST_TEXT) if isinstance(names, str) else ""}
+        elif name == "force":
+            share = event.get("share")
+            if isinstance(share, (int, float)) and 0 <= share <= 1:
+                self.force = share
         elif name == "failure":
             self.failure = events.failure_in(event.get("failure"))
 

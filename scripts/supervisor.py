@@ -132,6 +132,13 @@ def failure_of_job(status, log, hosts, written):
     return failure
 
 
+def force_share(options):
+    """Returns the share of the force that --force and --force-scale set, or None if neither is given."""
+    if options.force is None and options.force_scale is None:
+        return None
+    return 0 if options.force == "off" else options.force_scale if options.force_scale is not None else 1
+
+
 class Allowance:
     """The limit of restarts: at most `restarts` in `window` seconds, and at most `restarts` in a row without a frame."""
 
@@ -170,6 +177,7 @@ class Supervisor:
         self.allowance = Allowance(options.restarts, options.restart_window)
         self.limits = f"--restarts {options.restarts} in --restart-window {options.restart_window:g}"
         self.resume = options.resume
+        self.force = force_share(options) if options.resume else None  # share of the force that an operator has set
         self.input = Input(stop)
         self.failures = []
         self.server = self.job = None
@@ -211,6 +219,7 @@ class Supervisor:
         if self.supervised:
             taken(self.out / "failure.json")  # removes the file of another session
         words = ["--resume"] if self.resume else []
+        words += self.force_words()
         number = (job_log.earlier_tries(self.logs) or [0])[-1] if self.logs else 0
         while True:
             log = None
@@ -219,6 +228,8 @@ class Supervisor:
                 job_log.forget_tries(self.logs, job_log.KEPT_TRIES - 1)
                 log = job_log.JobLog(self.logs, number)
             status = self.one_try(words, log)
+            if log and log.force is not None:
+                self.force = log.force
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 return FAILED if self.gave_up else exit_status(status)
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
@@ -232,8 +243,13 @@ class Supervisor:
             # A journal that was there before belongs to another session, which must not be continued.
             ours = self.resume or self.journal_identity() not in (None, before)
             words = ["--resume", *failure.words()] if ours else []
+            words += self.force_words()
             if not self.ready_again(failure):
                 return FAILED
+
+    def force_words(self):
+        """Returns the options that keep the operator's share of the force, even if the session has no journal."""
+        return [] if self.force is None else ["--force-share", f"{self.force:g}"]
 
     def journal_identity(self):
         try:

@@ -50,7 +50,7 @@ void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
 
 void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 
-void Client::shareForce(double share) { session_->shareForce(share); }
+void Client::shareForce(const ForceShare& share) { session_->shareForce(share); }
 
 std::vector<base::Bytes> Client::drainTicks() { return session_->shelf.drainTicks(); }
 

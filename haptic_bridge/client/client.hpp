@@ -130,9 +130,9 @@ public:
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
     /// Asks the server to put an operator's edit into its next step. Ignored unless the link is `linked`.
     void request(const sand::Edit& edit);
-    /// Sets the share of the server's force that the hand feels from now on, 0 to 1. Ignored unless the link is
-    /// `linked`.
-    void shareForce(double share);
+    /// Sets the share of the server's force that the hand feels from now on, also in later links. At first it is the
+    /// whole force, within the ceiling of the server's own options.
+    void shareForce(const ForceShare& share);
     /// Returns the pieces of the server's tick track since the last call. The journal keeps them. Pieces that came
     /// before the link ended can still be drained. kMaxTicks bytes can wait; later pieces are dropped.
     [[nodiscard]] std::vector<base::Bytes> drainTicks();

@@ -70,6 +70,7 @@ void Client::Session::connected(Connection::Socket socket) {
     heardNs_ = now_();
     silentUntil_ = {};
     pings_ = 0;
+    started_ = false;
     shelf.dropTests();
     watch();
     connection_->start({[this](Message&& message) { receive(std::move(message)); },

@@ -33,7 +33,7 @@ public:
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);
-    void shareForce(double share);
+    void shareForce(const ForceShare& share);
     void drill(LinkDrill drill, std::chrono::milliseconds length);
     std::vector<TimedPosition> drainPositions();
     void stop();
@@ -102,6 +102,8 @@ private:
     std::int64_t linkedNs_ = 0;  // [ns], on the host's clock: begin of the last link
     std::chrono::steady_clock::time_point silentUntil_;
     int pings_ = 0;
+    ForceShare force_;      // of the next Start
+    bool started_ = false;  // whether this connection has carried a Start
     bool everWelcomed_ = false, stopping_ = false;
     std::thread thread_;
 };

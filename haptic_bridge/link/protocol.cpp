@@ -111,10 +111,15 @@ void put(const Refusal& refusal, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(refusal.code));
     writer.putText(refusal.text);
 }
+void put(const ForceShare& force, base::ByteWriter& writer) {
+    writer.put(force.share);
+    writer.put(static_cast<std::uint8_t>(force.byOperator ? 1 : 0));
+}
 void put(const Start& start, base::ByteWriter& writer) {
     writer.put(start.epoch);
     writer.put(start.stepNumber);
     writer.put(start.stateHash);
+    put(start.force, writer);
 }
 void put(const Ready&, base::ByteWriter&) {}
 void put(const NeedState& need, base::ByteWriter& writer) {
@@ -172,7 +177,6 @@ void put(const EditRequest& request, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(request.edit.kind));
     sand::encodeDetails(request.edit, writer);
 }
-void put(const ForceShare& force, base::ByteWriter& writer) { writer.put(force.share); }
 void put(const TickPiece& piece, base::ByteWriter& writer) { writer.putBytes(piece.bytes); }
 void put(const PositionGreeting& greeting, base::ByteWriter& writer) {
     writer.put(kMagic);
@@ -242,10 +246,22 @@ void get(Refusal& refusal, base::ByteReader& reader) {
     refusal.code = static_cast<RefusalCode>(code);
     refusal.text = getReason(reader);
 }
+void get(ForceShare& force, base::ByteReader& reader) {
+    force.share = reader.get<double>();
+    if (!(force.share >= 0 && force.share <= 1)) {
+        throw base::FormatError("a share of the force outside 0 to 1");
+    }
+    const auto byOperator = reader.get<std::uint8_t>();
+    if (byOperator > 1) {
+        throw base::FormatError("a share of the force whose mark of an operator is neither 0 nor 1");
+    }
+    force.byOperator = byOperator == 1;
+}
 void get(Start& start, base::ByteReader& reader) {
     start.epoch = reader.get<std::uint32_t>();
     start.stepNumber = reader.get<std::uint64_t>();
     start.stateHash = reader.get<std::uint64_t>();
+    get(start.force, reader);
 }
 void get(Ready&, base::ByteReader&) {}
 void get(NeedState& need, base::ByteReader& reader) {
@@ -298,12 +314,6 @@ void get(EditRequest& request, base::ByteReader& reader) {
         throw base::FormatError("a request for edit " + std::to_string(edit));
     }
     request.edit = sand::decodeDetails(static_cast<sand::Edit::Kind>(edit), reader);
-}
-void get(ForceShare& force, base::ByteReader& reader) {
-    force.share = reader.get<double>();
-    if (!(force.share >= 0 && force.share <= 1)) {
-        throw base::FormatError("a share of the force outside 0 to 1");
-    }
 }
 void get(TickPiece& piece, base::ByteReader& reader) {
     const auto bytes = reader.getBytes(reader.rest().size());

@@ -21,7 +21,7 @@
 namespace haptic_bridge {
 
 inline constexpr std::uint32_t kMagic = 0x42485753;  // the bytes "SWHB" on the wire
-inline constexpr std::uint32_t kProtocolVersion = 6;
+inline constexpr std::uint32_t kProtocolVersion = 7;
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload of an ordinary message
 inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and payload of a message before the Welcome
@@ -81,11 +81,20 @@ struct Hello {
     Nonce nonce{};        // zeros without a secret
     friend bool operator==(const Hello&, const Hello&) = default;
 };
+/// Sets the share of its forces that the hand feels from now on. Part of every Start, and sent after every change.
+struct ForceShare {
+    double share = 1;  // 0 to 1
+    // Whether an operator of this session has set the share. If not, the server's own --force and --force-scale are a
+    // ceiling.
+    bool byOperator = false;
+    friend bool operator==(const ForceShare&, const ForceShare&) = default;
+};
 /// Lets the server number the steps. The server's first step is stepNumber + 1 of `epoch`.
 struct Start {
     std::uint32_t epoch = 0;
     std::uint64_t stepNumber = 0;
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() at stepNumber
+    ForceShare force{};           // of this link's first tick; between two links the server pushes 0
     friend bool operator==(const Start&, const Start&) = default;
 };
 /// The whole sand at Start's step. Answers a NeedState.
@@ -119,11 +128,6 @@ struct Ping {
 struct EditRequest {
     sand::Edit edit;
     friend bool operator==(const EditRequest&, const EditRequest&) = default;
-};
-/// Sets the share of its forces that the hand feels from now on, as an operator asked.
-struct ForceShare {
-    double share = 1;  // 0 to 1
-    friend bool operator==(const ForceShare&, const ForceShare&) = default;
 };
 
 /// Proves to the server that the master knows the secret. Answers a Challenge.

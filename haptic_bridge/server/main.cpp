@@ -14,6 +14,7 @@
 #include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/server/force_ceiling.hpp"
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
 #include "haptic_bridge/server/timings.hpp"
@@ -132,7 +133,9 @@ Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_co
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
     service.log = print;
-    service.shareForce = [&device](double share) { device.shareForce(share); };
+    service.shareForce = [&device, ceiling = options.force ? options.forceScale : 0](const auto& told) {
+        device.shareForce(feltShare(ceiling, told));
+    };
     service.tests = options.tests;
     return service;
 }
@@ -176,7 +179,7 @@ void serve(const Options& options) {
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     Device& device = *opened;  // the hand takes ownership below
-    device.shareForce(options.force ? options.forceScale : 0);
+    device.shareForce(0);      // until a master has told its share
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
@@ -228,8 +231,9 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--record", options.record,
                 "a CSV file: one row per tick, and the same ticks go into the session's journal");
     line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
-                      "on or off: whether an arm feels forces at the start");
-    line.option("--force-scale", options.forceScale, "0 to 1: the share of the force that an arm feels")
+                      "on or off: whether an arm feels forces, until an operator of the session sets a share");
+    line.option("--force-scale", options.forceScale,
+                "0 to 1: the share of the force that an arm feels, until an operator of the session sets one")
         .range(0.0, 1.0);
     line.choice<Guards::Mode>("--guards", options.guards,
                               {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},

@@ -151,6 +151,7 @@ void Peer::take(const Start& start) {
     phase_ = Phase::granting;
     grant_.epoch = start.epoch;
     grant_.firstStep = start.stepNumber + 1;
+    service_.shareForce(start.force);
     service_.sandThread->start(session_, start);
 }
 
@@ -193,10 +194,10 @@ void Peer::take(EditRequest& request) {
 }
 
 void Peer::take(const ForceShare& force) {
-    if (phase_ != Phase::linked) {
+    if (phase_ != Phase::granting && phase_ != Phase::linked) {
         outOfTurn();
-    } else if (service_.shareForce) {
-        service_.shareForce(force.share);
+    } else {
+        service_.shareForce(force);
     }
 }
 
@@ -356,6 +357,7 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
     testTimer_.cancel();
     watchTimer_.cancel();
     if (roster_.remove(kept)) {
+        service_.shareForce(std::nullopt);
         service_.sandThread->release();
     }
 }

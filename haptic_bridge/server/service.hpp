@@ -3,6 +3,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,8 @@ struct Service {
     /// Returns the pieces of the tick track that are ready for the master's journal. With `all`, waits for the last
     /// ones. Empty if nothing is recorded.
     std::function<std::vector<base::Bytes>(bool all)> ticks = {};
-    std::function<void(double share)> shareForce = {};  // sets the share of the force, as an operator asked
+    /// Takes the master's share of the force. nullopt: no master is linked, and 0 is pushed.
+    std::function<void(const std::optional<ForceShare>&)> shareForce = [](const auto&) {};
     TimingTests tests = {};
     LinkSecurity security = {};
     SandThread* sandThread = nullptr;  // set by Listener::serve()

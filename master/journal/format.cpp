@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kJournalMagic = 0x4c4a5753;  // "SWJL"
 constexpr FileKind kJournalKind{.name = "journal", .magic = kJournalMagic, .format = kJournalVersion, .firstFormat = 6};
-enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued, kDoubt, kChecked };
+enum Type : std::uint8_t { kFrame = 1, kEnd, kTicks, kResumed, kMaterial, kContinued, kDoubt, kChecked, kForce };
 constexpr std::uint8_t kBeginsWrite = 0x80;  // added to the type of the first record of a write
 
 std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed) {
@@ -99,6 +99,14 @@ JournalChecked getChecked(base::ByteReader& reader) {
     return checked;
 }
 
+JournalForce getForce(base::ByteReader& reader) {
+    const JournalForce force{reader.get<double>()};
+    if (!(force.share >= 0 && force.share <= 1)) {
+        throw base::FormatError("a share of the force outside 0 to 1");
+    }
+    return force;
+}
+
 /// Writes type and payload of a record, with its mark if it is the first of a write.
 struct Encode {
     std::optional<std::uint64_t> synced;
@@ -153,6 +161,10 @@ struct Encode {
         writer.putVarint(checked.frame);
         put(checked.sand, writer);
         writer.put(static_cast<std::uint8_t>(checked.outvoted ? 1 : 0));
+    }
+    void operator()(const JournalForce& force) {
+        begin(kForce);
+        writer.put(force.share);
     }
 };
 
@@ -252,6 +264,8 @@ JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
             return getDoubt(payload);
         case kChecked:
             return getChecked(payload);
+        case kForce:
+            return getForce(payload);
         default:
             throw base::FormatError(fmt::format("a record of unknown type {}", type));
     }
@@ -293,8 +307,8 @@ bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
     constexpr std::uint64_t kLongestPart = std::uint64_t{1} << 40;  // [byte], of --journal-part
     for (std::size_t at = 1; at + kLeast <= rest.size(); ++at) {
         const std::uint8_t type = rest[at + kLength];
-        const auto mark = type > kBeginsWrite && type <= (kBeginsWrite | kChecked) ? markOf(rest.subspan(at + kLength))
-                                                                                   : std::nullopt;
+        const auto mark =
+            type > kBeginsWrite && type <= (kBeginsWrite | kForce) ? markOf(rest.subspan(at + kLength)) : std::nullopt;
         // A mark is the place of its own record. That is enough, because its checksum cannot be verified if the bytes
         // before it are lost.
         if (mark == offset + at) {

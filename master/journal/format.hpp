@@ -18,7 +18,7 @@
 /// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
 namespace master {
 
-inline constexpr std::uint32_t kJournalVersion = 7;
+inline constexpr std::uint32_t kJournalVersion = 8;
 
 /// The steps of one frame, as the journal holds them.
 struct JournalFrame {
@@ -65,8 +65,13 @@ struct JournalContinued {
     std::uint32_t part = 0;
 };
 
+/// Share of its force that the hand feels from here on, as an operator set it. Sand and hashes do not depend on it.
+struct JournalForce {
+    double share = 1;  // 0 to 1
+};
+
 using JournalRecord = std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material,
-                                   JournalContinued, JournalDoubt, JournalChecked>;
+                                   JournalContinued, JournalDoubt, JournalChecked, JournalForce>;
 
 /// Header of a journal's file.
 struct JournalHeader {

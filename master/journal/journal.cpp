@@ -24,6 +24,7 @@ struct Gather {
     void operator()(const JournalContinued&) const {}
     void operator()(const JournalDoubt&) const {}
     void operator()(const JournalChecked&) const {}
+    void operator()(const JournalForce&) const {}
 };
 
 /// Returns the result of `decode` for the scene in the header. Errors name the journal.

@@ -216,6 +216,17 @@ void JournalKeeper::checked(const JournalChecked& checked) {
     lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
+void JournalKeeper::force(const JournalForce& force) {
+    note(force);
+    try {
+        if (writer_) {
+            writer_->writeIfRoom();
+        }
+    } catch (const base::InputError& error) {
+        giveUp(error.what());
+    }
+}
+
 void JournalKeeper::endCheckpoint(bool wait) {
     if (!checkpoint_.valid() || (!wait && checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)) {
         return;

@@ -94,6 +94,7 @@ public:
     void operator()(const JournalTicks&) const {}
     void operator()(const scene::Material&) const {}
     void operator()(const JournalContinued&) const {}
+    void operator()(const JournalForce&) const {}
 
 private:
     void endDoubt(const JournalEnd& sand) {
@@ -140,6 +141,7 @@ struct Walk {
     void operator()(const JournalEnd&) const {}
     void operator()(const JournalTicks&) const {}
     void operator()(const JournalContinued&) const {}
+    void operator()(const JournalForce& force) { session.forceShare = force.share; }
 };
 
 void requireScene(const JournalReader& reader, const std::string& file) {

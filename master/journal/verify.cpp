@@ -75,6 +75,7 @@ public:
         outvoted_ += doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() ? 1 : 0;
     }
     void operator()(const JournalChecked& checked) { compare(checked.sand); }
+    void operator()(const JournalForce&) {}
 
 private:
     void compare(const JournalEnd& said) {

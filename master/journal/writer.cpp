@@ -137,12 +137,16 @@ bool JournalWriter::keep(const JournalRecord& record) {
     }
     put(record);
     if (waiting_.size() > kMostWaiting) {
-        const int error = file_.reserve(static_cast<std::int64_t>(waiting_.size()));
-        if (error != ENOSPC && error != EDQUOT) {
-            writeWaiting();
-        }
+        writeIfRoom();
     }
     return true;
+}
+
+void JournalWriter::writeIfRoom() {
+    const int error = file_.reserve(static_cast<std::int64_t>(waiting_.size()));
+    if (error != ENOSPC && error != EDQUOT) {
+        writeWaiting();
+    }
 }
 
 void JournalWriter::append(const JournalFrame& frame) {

@@ -48,6 +48,8 @@ public:
     /// has room. Returns false if too many bytes of ticks wait for room, so that this piece of ticks was left out.
     bool keep(const JournalRecord& record);
     void sync() { writeWaiting(); }
+    /// Writes the records that wait, unless the disk is full.
+    void writeIfRoom();
     /// Writes that the session was resumed here.
     void resume(const JournalResumed& resumed);
     /// Writes the orderly end of the session.

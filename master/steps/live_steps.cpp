@@ -67,7 +67,10 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
     }
 }
 
-void LiveSteps::connect() { client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_, now_); }
+void LiveSteps::connect() {
+    client_ = std::make_unique<haptic_bridge::Client>(*server_, offer_, security_, now_);
+    client_->shareForce(share_);
+}
 
 double LiveSteps::secondsSince(std::int64_t then) const { return static_cast<double>(now_() - then) * 1e-9; }
 
@@ -163,18 +166,19 @@ std::size_t LiveSteps::ownStepsDue() {
     return static_cast<std::size_t>(due);
 }
 
+void LiveSteps::shareForce(double share) {
+    share_ = {share, true};
+    if (client_) {
+        client_->shareForce(share_);
+    }
+}
+
 void LiveSteps::passEdits(const std::vector<TimedStep>& steps) {
     for (const TimedStep& timed : steps) {
         if (timed.step.edit.any() && !edits_.empty() && timed.step.edit == edits_.front()) {
             edits_.pop_front();
             toldEpoch_ = 0;
         }
-    }
-    if (source_ != Source::server) {
-        toldShare_ = 1;  // a new server begins with the whole force
-    } else if (toldShare_ != share_) {
-        client_->shareForce(share_);
-        toldShare_ = share_;
     }
     // Asks for one edit at a time, because the server keeps only one for its next step. If a link was lost with an
     // edit, asks for it again in the next epoch.

@@ -47,7 +47,7 @@ public:
     [[nodiscard]] double patience() const override { return pace_ == Pace::fast ? 0.1 : 0; }
     [[nodiscard]] StepRequests* requests() override { return this; }
     void request(sand::Edit edit) override { edits_.push_back(std::move(edit)); }
-    void shareForce(double share) override { share_ = share; }
+    void shareForce(double share) override;
 
     void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) override;
     /// If the hashes differ, connects again, so that the server starts from the wall's state. Also returns true if no
@@ -114,8 +114,7 @@ private:
     std::vector<base::Bytes> ticks_;       // of a server whose link the master has ended
     TickBudget tickBudget_;                // of all servers together
     std::vector<lockstep::Fault> drills_;  // faults that wait for a link
-    double share_ = 1;                     // share of the force that operators have asked for
-    double toldShare_ = 1;                 // share that the server knows
+    haptic_bridge::ForceShare share_;      // of the force; the whole one until an operator sets it
     std::uint32_t toldEpoch_ = 0;          // epoch in which the server was asked for the first of edits_; 0: not asked
     double ownStepsOwed_ = 0;
     std::int64_t lastOwnNs_ = 0;

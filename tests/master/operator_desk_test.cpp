@@ -42,6 +42,7 @@ protected:
                                                         asked_ = bytes;
                                                         return room_ && bytes <= most_;
                                                     },
+                                                    [this](double share) { kept_.push_back(share); },
                                                     [] {
                                                         return json{{"frame", 42}};
                                                     }});
@@ -84,6 +85,7 @@ protected:
     test::NoSteps source_;
     Requests requests_;
     bool room_ = true;
+    std::vector<double> kept_;                   // shares of the force that the journal got
     std::int64_t most_ = std::int64_t{1} << 62;  // room on the disk [byte]
     std::int64_t asked_ = -1;
     std::optional<master::OperatorDesk> desk_;
@@ -179,8 +181,19 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
     EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
     EXPECT_EQ(desk_->shownWall().stereo, walls::Stereo::anaglyphColour);
+    EXPECT_TRUE(ask("status")["force_share"].is_null()) << "no operator has set it";
     EXPECT_EQ(ask("force scale 0.25")["ok"], true);
     EXPECT_EQ(requests_.shares, std::vector<double>{0.25});
+    EXPECT_EQ(kept_, std::vector<double>{0.25}) << "in the journal, too";
+    EXPECT_EQ(ask("status")["force_share"], 0.25);
+}
+
+TEST_F(Desk, KnowsTheShareOfTheForceFromBeforeARestart) {
+    master::DeskOptions options;
+    options.force = 0;
+    open(&requests_, options);
+    EXPECT_EQ(ask("status")["force_share"], 0);
+    EXPECT_TRUE(kept_.empty()) << "the journal has it already";
 }
 
 TEST_F(Desk, WantsACaptureOfTheNextFrame) {

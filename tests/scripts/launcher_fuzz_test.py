@@ -60,7 +60,7 @@ SUMMARY = {
     "slowest": {"name": "rank 1", "share": 0.9}, "recoveries": [], "journal": {"state": "written", "policy": "required"},
     "haptic": {"refused_by_server": {"limit": 0}, "refused": {"servers": {"limit": 0}, "guests": {"limit": 0}}, "steps_withheld": 1}}
 STATUS = {"ok": True, "step": 12, "material": {"talus": 34.0}}
-VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 6}
+VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 7}
 PROBE = {"backend": "egl", "renderer": "llvmpipe", "shortcomings": ["the screen has 60 Hz"], "version": "4.5"}
 HOSTS = b"node01 slots=2\nnode02 slots=1 # the left one\nnode03 slots=4 spare\n"
 

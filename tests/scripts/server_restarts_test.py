@@ -71,6 +71,26 @@ until [ $(wc -l < "$folder/out/recoveries.jsonl") = 2 ]; do sleep 0.05; done; ex
         for command in self.commands():
             self.assertIn("--haptic 127.0.0.1:4711 ", command)
 
+    def test_a_job_that_is_started_again_keeps_the_operators_share_of_the_force(self):
+        self.tries("event 0 '{\"event\":\"force\",\"share\":0.25}'; event 0 '{\"event\":\"force\",\"share\":0}'; progress 1 1; dies 1 host 9",
+                   "progress 2 2; dies 1 host 9", "exit 0")
+        self.assertEqual(self.ended(["-"], "--device", "script:gis")[0], 0)
+        first, second, third = self.commands()
+        self.assertNotIn("--force-share", first)
+        self.assertIn(" --force-share 0 ", second)
+        self.assertIn(" --force-share 0 ", third)
+
+    def test_an_option_of_resume_replaces_the_share_of_the_session_until_an_operator_sets_another(self):
+        for words, share in ((["--force", "off"], "0"), (["--force-scale", "0.5"], "0.5"), (["--force", "on"], "1"),
+                             (["--force", "off", "--force-scale", "0.5"], "0")):
+            (self.folder / "tries").unlink(missing_ok=True)
+            self.tries("progress 1 1; dies 1 host 9", "event 0 '{\"event\":\"force\",\"share\":0.125}'; progress 2 2; dies 1 host 9", "exit 0")
+            self.assertEqual(self.ended(["-"], "--device", "script:gis", "--resume", *words)[0], 0)
+            first, second, third = self.commands()[-3:]
+            self.assertIn(f" --force-share {share} ", first)
+            self.assertIn(f" --force-share {share} ", second)
+            self.assertIn(" --force-share 0.125 ", third)
+
     def test_one_that_dies_too_often_ends_the_session_in_order(self):
         # mpirun reads without a time limit of its own, because it would lose a line that arrives in two parts.
         self.tries("""progress 5 4; while sleep 0.1; do kill -KILL $(cat "$folder/server.pid"); done &

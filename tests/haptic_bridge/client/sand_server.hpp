@@ -5,8 +5,10 @@
 #include <atomic>
 #include <functional>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
@@ -35,7 +37,11 @@ public:
     [[nodiscard]] int catchUps() const { return catchUps_; }      // times that it got the steps that it lacked
     [[nodiscard]] std::uint64_t shown() const { return shown_; }  // latest step that the wall shows
     [[nodiscard]] int requests() const { return requests_; }      // edits that were requested
-    [[nodiscard]] int shares() const { return shares_; }          // shares of the force that it received
+    /// Returns the shares of the force that it received, in Starts and by themselves.
+    [[nodiscard]] std::vector<haptic_bridge::ForceShare> shares() const {
+        const std::lock_guard lock(mutex_);
+        return shares_;
+    }
     /// Returns whether an edit was ever requested while another one was not in a step yet.
     [[nodiscard]] bool crowded() const { return crowded_; }
     /// Makes the server claim this step from its second link on, with the hash that it sent for this step.
@@ -53,6 +59,7 @@ private:
         if (!start || !reach(guest, *start)) {
             return;
         }
+        keepShare(start->force);
         const int link = ++links_;
         std::uint64_t shown = start->stepNumber;
         edit_.reset();
@@ -80,9 +87,14 @@ private:
             ++requests_;
             crowded_ = crowded_ || edit_;
             edit_ = request->edit;
-        } else if (std::holds_alternative<haptic_bridge::ForceShare>(message)) {
-            ++shares_;
+        } else if (const auto* share = std::get_if<haptic_bridge::ForceShare>(&message)) {
+            keepShare(*share);
         }
+    }
+
+    void keepShare(const haptic_bridge::ForceShare& share) {
+        const std::lock_guard lock(mutex_);
+        shares_.push_back(share);
     }
 
     [[nodiscard]] bool isAt(const haptic_bridge::Start& start) {
@@ -136,9 +148,11 @@ private:
     std::optional<sand::Edit> edit_;               // edit for the next step
     bool lied_ = false;                            // sent a wrong hash; its sand counts as wrong until it gets a state
 
-    std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0}, shares_{0};
+    std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0};
     std::atomic<std::uint64_t> shown_{0};
     std::atomic<bool> crowded_{false};
+    mutable std::mutex mutex_;
+    std::vector<haptic_bridge::ForceShare> shares_;  // guarded by mutex_
     std::optional<std::uint64_t> claimed_;
     FakeServer server_;  // the last member: its thread uses all others
 };

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -34,7 +37,7 @@ std::vector<Message> oneOfEach() {
     return {Hello{identity, Role::watch, true, true, {1, 2}},
             Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
-            Start{2, 40, 99},
+            Start{2, 40, 99, {0.5, true}},
             Ready{},
             NeedState{8, 9},
             State{{1, 2, 3}},
@@ -47,7 +50,7 @@ std::vector<Message> oneOfEach() {
             report,
             Bye{"good night"},
             EditRequest{sand::Edit::undo},
-            ForceShare{0.25},
+            ForceShare{0.25, true},
             TickPiece{{4, 5}},
             PositionGreeting{kProtocolVersion, "glove", {5}},
             Position{-7, 0.5, -0.25, 1.5, true},
@@ -137,6 +140,26 @@ TEST(Protocol, RefusesAnEchoOfNoLeg) {
     for (const int leg : {0, 3, 255}) {
         framed.back() = static_cast<std::uint8_t>(leg);
         EXPECT_THROW((void)decode(withoutLength(framed)), base::FormatError) << leg;
+    }
+}
+
+TEST(Protocol, RefusesAShareOfTheForceThatNoOperatorCanSet) {
+    const auto refuses = [](double share, std::uint8_t byOperator) {
+        base::Bytes bytes = encode(ForceShare{0.5, true});
+        std::memcpy(bytes.data() + 5, &share, sizeof share);
+        bytes.back() = byOperator;
+        try {
+            (void)decode(std::span(bytes).subspan(4));
+            return false;
+        } catch (const base::FormatError&) {
+            return true;
+        }
+    };
+    EXPECT_FALSE(refuses(0, 0));
+    EXPECT_FALSE(refuses(1, 1));
+    EXPECT_TRUE(refuses(1, 2));
+    for (const double share : {-0.001, 1.001, std::nan(""), std::numeric_limits<double>::infinity()}) {
+        EXPECT_TRUE(refuses(share, 1)) << share;
     }
 }
 

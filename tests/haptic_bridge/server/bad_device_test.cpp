@@ -71,7 +71,7 @@ TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeel) {
         Wall wall(scene_);
         ASSERT_TRUE(wall.follow(client, 10)) << client.link().message << "\n" << server.errors();
         if (asked) {
-            client.shareForce(0.5);
+            client.shareForce({0.5, true});
         }
         ASSERT_TRUE(wall.follow(client, 90)) << client.link().message << "\n" << server.errors();
         client.stop();

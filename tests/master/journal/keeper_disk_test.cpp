@@ -75,6 +75,7 @@ TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
         EXPECT_EQ(keeper_->state(), "no_room");
         EXPECT_FALSE(showFrame()) << "the sand is stopped";
         expectWhole(terrain_.stepNumber());
+        keeper_->force({0.25});  // is written when there is room, and switching forces off does not wait for it
         const std::uint64_t stood = terrain_.stepNumber();
         std::filesystem::remove(folder_ / "filler");
         while (!showFrame()) {  // the keeper tries the disk about once per second
@@ -85,6 +86,7 @@ TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
         EXPECT_EQ(terrain_.stepNumber(), stood + 1);
         expectWhole(terrain_.stepNumber());
         keeper_.reset();
+        EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0.25);
     });
 }
 

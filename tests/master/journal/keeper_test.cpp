@@ -86,6 +86,13 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
     expectWhole(30);
 }
 
+TEST_F(Keeper, TheShareOfTheForceIsOnDiskBeforeAnyFurtherStep) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    keeper_->force({0});
+    EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0) << "as a kill at this moment would leave it";
+}
+
 TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
     begin({.checkpointSeconds = 1e-9});
     while (master::checkpointsOf(journal()).empty()) {

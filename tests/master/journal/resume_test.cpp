@@ -200,6 +200,21 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
     EXPECT_EQ(master::readSession(journal(), "")->material, wetter);
 }
 
+TEST_F(Resume, KnowsTheShareOfTheForceThatAnOperatorHasSetLast) {
+    EXPECT_FALSE(master::readSession(journal(), "")->forceShare.has_value());
+    const std::uint64_t before = master::readSession(journal(), "")->hash;
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.keep(master::JournalForce{0.5});
+        writer.keep(master::JournalForce{0});
+        writer.sync();
+    }
+    const auto session = master::readSession(journal(), "");
+    EXPECT_EQ(session->forceShare, 0);
+    EXPECT_EQ(session->hash, before) << "sand and hash do not know it";
+    EXPECT_EQ(session->step, 40U);
+}
+
 TEST_F(Resume, ChecksTheHashesOnTheWay) {
     std::filesystem::remove_all(folder_ / "checkpoints");
     {

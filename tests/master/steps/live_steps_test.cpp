@@ -312,20 +312,29 @@ TEST_F(LiveStepsTest, TicksThatNoHandCanMakeAreLeftOut) {
     EXPECT_GT(bytes, kPiece);
 }
 
-TEST_F(LiveStepsTest, EveryServerIsToldTheShareOfItsForceOnce) {
+TEST_F(LiveStepsTest, EveryServerBeginsWithTheShareThatAnOperatorHasSet) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
         return link == 1 && step >= 40 ? hash ^ 1 : hash;
     });
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    EXPECT_EQ(server.shares(), 0) << "a server begins with the whole force";
+    using haptic_bridge::ForceShare;
+    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}})) << "no operator has set a share";
     live.shareForce(0.5);
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 30; }));
-    EXPECT_EQ(server.shares(), 1);
-    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && server.shares() == 2; }));
+    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}, {0.5, true}}));
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2; }));
     const std::uint64_t then = wall_.stepNumber();
     ASSERT_TRUE(showUntil(live, [&] { return server.shown() > then + 20; }));
-    EXPECT_EQ(server.shares(), 2);
+    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}, {0.5, true}, {0.5, true}})) << "once per link";
+}
+
+TEST_F(LiveStepsTest, AShareThatIsSetBeforeAServerLinksIsThatOfItsFirstStep) {
+    SandServer server(scene_);
+    master::LiveSteps live = stepsFrom(server.address());
+    live.shareForce(0);
+    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
+    EXPECT_EQ(server.shares(), (std::vector<haptic_bridge::ForceShare>{{0, true}}));
 }
 
 }  // namespace
