@@ -57,21 +57,13 @@ void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
     }
 }
 
-void MappedDevice::rampForce(double seconds, double wanted) {
-    const double most = seconds / (wanted > gain_ ? kRampSeconds : kFadeSeconds);
-    gain_ += std::clamp(wanted - gain_, -most, most);
-}
-
 Pose MappedDevice::read(double time) {
     const ArmReading reading = arm_->read(time);
     if (!reading.present) {
         troubles_.count(Trouble::absent);
     }
-    const double passed = std::clamp(time - time_, 0.0, kFadeSeconds);
-    time_ = std::max(time_, time);
     if (!reading.present || !check_.accept(time, reading.place)) {
         reading_.present = false;
-        gain_ = 0;
         pose_.engaged = false;
         return pose_;
     }
@@ -80,7 +72,6 @@ Pose MappedDevice::read(double time) {
     moveOrigin(reading, place);
     last_ = place;
     known_ = true;
-    rampForce(passed, reading.second ? 0 : std::clamp(share_.load(std::memory_order_relaxed), 0.0, 1.0));
 
     const Vec3 from = place - origin_;
     pose_.x = from.x * horizontal_;
@@ -104,12 +95,8 @@ Pose MappedDevice::read(double time) {
 
 void MappedDevice::sendForce(Vec3 force) {
     feels_ = force.x != 0 || force.y != 0 || force.z != 0;
-    if (!reading_.present) {
-        arm_->push({});
-        return;
-    }
     const double vertical = settings_.verticalScale, longest = std::max(1.0, vertical);
-    const Vec3 felt = (gain_ / longest) * Vec3{force.x, force.y, vertical * force.z};
+    const Vec3 felt = (1 / longest) * Vec3{force.x, force.y, vertical * force.z};
     Vec3 pushed;
     part(pushed, settings_.axes[0].column) = settings_.axes[0].sign * felt.x;
     part(pushed, settings_.axes[1].column) = settings_.axes[1].sign * felt.y;

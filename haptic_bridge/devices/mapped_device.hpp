@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <atomic>
 #include <memory>
 
 #include "haptic_bridge/hand/device.hpp"
@@ -18,14 +17,13 @@ namespace haptic_bridge {
 /// closed path of the tool then does no work on the hand's path either. There is one exception: if the vertical has a
 /// scale of its own, the force along the direction with the smaller scale is reduced.
 ///
-/// After an implausible reading the tool hovers at its last place. The arm gets no force until a reading is plausible.
+/// After an implausible reading the tool hovers at its last place, and reading() is absent until a reading is
+/// plausible.
 ///
 /// While the second button is held, the tool keeps its place, and the hand moves freely. With a drift, the middle of
 /// the workspace moves slowly to where the hand works, while the hand feels no force.
 class MappedDevice : public Device {
 public:
-    static constexpr double kRampSeconds = 0.5;    // [s], ramp from no force to the full force
-    static constexpr double kFadeSeconds = 0.05;   // [s], ramp from the full force to no force
     static constexpr double kFarthestShare = 0.5;  // [share of the reach], largest movement between two readings
 
     /// Maps `arm` to `scene`. Throws base::InputError for settings that an arm cannot have.
@@ -42,12 +40,10 @@ public:
     [[nodiscard]] bool finished(double) const override { return false; }
     [[nodiscard]] ArmReading reading() const override { return reading_; }
     [[nodiscard]] const TroubleCounts* troubles() const override { return &troubles_; }
-    void shareForce(double share) override { share_ = share; }
 
 private:
     [[nodiscard]] sand::force::Vec3 turned(sand::force::Vec3 place) const;
     void moveOrigin(const ArmReading& reading, sand::force::Vec3 place);
-    void rampForce(double seconds, double wanted);
 
     std::unique_ptr<Arm> arm_;
     HandSettings settings_;
@@ -56,12 +52,10 @@ private:
     sand::force::Vec3 origin_;      // [m], east, north, up: place of the arm over the field's centre
     TroubleCounts troubles_;
     ReadingCheck check_;
-    std::atomic<double> share_{1};  // share of each force that the arm gets, 0 to 1
     Pose pose_;
     ArmReading reading_;      // the last plausible reading; `present` is that of the latest
     sand::force::Vec3 last_;  // [m], place of reading_: east, north, up
     bool known_ = false, feels_ = false;
-    double time_ = 0, gain_ = 0;
 };
 
 }  // namespace haptic_bridge

@@ -36,7 +36,8 @@ public:
 
     /// Returns the hand's pose at `time` [s]. `time` counts only while a master is linked, and never decreases.
     [[nodiscard]] virtual Pose read(double time) = 0;
-    /// Sends a force to the device. A device without a body shows the force or ignores it.
+    /// Sends a force to the device, which holds it until the next call. A device without a body shows the force or
+    /// ignores it. Only HapticTick calls this, with forces that the ForceGate has passed.
     virtual void sendForce(sand::force::Vec3 force /* [N], east, north, up */) = 0;
     /// Returns the physics of the arm that forces push, such as its mass and reach. Returns null if the device has no
     /// body, as a six-axis mouse or a recording.
@@ -49,8 +50,6 @@ public:
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
     /// Returns how often each kind of trouble has happened, or null if the device counts no troubles. Any thread.
     [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
-    /// Sets the share of each sent force that reaches the hand, 0 to 1. An arm changes to it in a ramp. Any thread.
-    virtual void shareForce(double /* share */) {}
     /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended. Other devices always
     /// return false.
     [[nodiscard]] virtual bool finished(double time) const = 0;

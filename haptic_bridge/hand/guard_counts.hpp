@@ -9,7 +9,7 @@
 
 namespace haptic_bridge {
 
-/// Guards that may change a force before it is sent. Their order is that of the bits in Tick::guards, lowest first.
+/// Guards that may change a force before it is pushed. Their order is that of the bits in Tick::guards, lowest first.
 enum class Guard : std::uint8_t {
     notANumber,  // a place, velocity or force is not finite: no force is sent
     stiffness,   // the law is stiffer than the device can bear
@@ -18,16 +18,19 @@ enum class Guard : std::uint8_t {
     slew,        // the force grows faster than the stiffness and the fastest hand explain
     passivity,   // the loop has given the hand more energy than it took: the force is damped
     clamp,       // the force exceeds the device's greatest force
-    ramp,        // less than two seconds have passed since a start or a gap
-    stale,       // the latest sand is too old: no force is sent
+    ramp,        // less than two seconds have passed since a start or a fault
+    stale,       // the thread that makes steps hangs: no force is sent
     missed,      // the loop has missed ticks: no force is sent
     lost,        // the device does not answer: no force is sent
-    jumped       // the device seems to move faster than any arm can: no force is sent
+    jumped,      // the device seems to move faster than any arm can: no force is sent
+    frozen,      // the sand gets no steps: the force fades
+    contact,     // a contact or an edit asks for much force at once: the excess grows in a ramp
+    gate         // the force to be pushed would grow or turn faster than any guard before the gate allows
 };
-inline constexpr std::size_t kGuards = 12;
-inline constexpr std::array<std::string_view, kGuards> kGuardNames{"not_a_number", "stiffness", "damping", "friction",
-                                                                   "slew",         "passivity", "clamp",   "ramp",
-                                                                   "stale",        "missed",    "lost",    "jumped"};
+inline constexpr std::size_t kGuards = 15;
+inline constexpr std::array<std::string_view, kGuards> kGuardNames{
+    "not_a_number", "stiffness", "damping", "friction", "slew",   "passivity", "clamp", "ramp",
+    "stale",        "missed",    "lost",    "jumped",   "frozen", "contact",   "gate"};
 
 [[nodiscard]] constexpr std::uint32_t bit(Guard guard) { return 1U << static_cast<unsigned>(guard); }
 

@@ -7,12 +7,13 @@
 
 namespace haptic_bridge {
 
-/// Fills `surface` with the sand that a hand at `around` feels after the last step of `terrain`. Does not set its time.
-/// Both the thread that makes steps and a replay call this function.
+/// Fills `surface` with the sand that a hand at `around` feels after the last step of `terrain`. Sets neither its times
+/// nor its number of edits. Both the thread that makes steps and a replay call this function.
 inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& around, FeltSand& surface) {
     surface.patch.take(terrain, around);
     surface.around = {around.x, around.y, 0};
     surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
+    surface.talus = static_cast<double>(terrain.rules().threshold) / sand::kUnitsPerCell;
     surface.step = terrain.stepNumber();
 }
 

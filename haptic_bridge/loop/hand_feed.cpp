@@ -5,9 +5,14 @@
 #include "host/clock.hpp"
 
 namespace haptic_bridge {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
+
+}  // namespace
 
 void ChannelFeed::begin(const sand::Replica& terrain) {
-    publish(terrain);
+    publish(terrain, false);
     ++channel_.sitting;
     channel_.moving = true;
 }
@@ -20,12 +25,26 @@ void ChannelFeed::collect(PathBuilder* path) {
     });
 }
 
+void ChannelFeed::publish(const sand::Replica& terrain, bool edited) {
+    edits_ += edited ? 1 : 0;
+    stepNs_ = now_();
+    copy(terrain);
+}
+
+void ChannelFeed::refresh(const sand::Replica& terrain) {
+    if (now_() - copiedNs_ >= kRefreshNs) {
+        copy(terrain);
+    }
+}
+
 /// The patch is around the hand and not around the tool. Before a link's first step the tool is at a place where no
 /// hand has been. Later the hand may be ahead of its tool.
-void ChannelFeed::publish(const sand::Replica& terrain) {
+void ChannelFeed::copy(const sand::Replica& terrain) {
     FeltSand& next = channel_.surface.next();
     takeSurface(terrain, hand_.where(), next);
-    next.timeNs = host::monotonicNs();
+    next.edits = edits_;
+    next.timeNs = copiedNs_ = now_();
+    next.stepNs = stepNs_;
     channel_.surface.publish();
 }
 
@@ -33,12 +52,11 @@ void VirtualFeed::begin(const sand::Replica& terrain) {
     // In real time the force loop reads a hand that rests. In the fast pace no thread does, so it is read here.
     const std::uint64_t millisecond = steps_ * 1000 / stepsPerSecond_;
     hand_.rest(static_cast<double>(millisecond) * HapticTick::kTick);
-    publish(terrain);
+    publish(terrain, false);
     channel_.beginSitting(hand_);
 }
 
 void VirtualFeed::tickForStep(PathBuilder& path) {
-    constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
     const std::uint64_t first = steps_ * 1000 / stepsPerSecond_ + 1, last = (steps_ + 1) * 1000 / stepsPerSecond_;
     ++steps_;
     for (std::uint64_t millisecond = first; millisecond <= last; ++millisecond) {
@@ -50,6 +68,10 @@ void VirtualFeed::tickForStep(PathBuilder& path) {
     }
 }
 
-void VirtualFeed::publish(const sand::Replica& terrain) { takeSurface(terrain, hand_.where(), surface_); }
+void VirtualFeed::publish(const sand::Replica& terrain, bool edited) {
+    takeSurface(terrain, hand_.where(), surface_);
+    surface_.edits += edited ? 1 : 0;
+    surface_.stepNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
+}
 
 }  // namespace haptic_bridge

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <utility>
+
 #include "haptic_bridge/loop/hand_channel.hpp"
+#include "host/clock.hpp"
 #include "sand/replica.hpp"
 
 namespace haptic_bridge {
@@ -25,8 +31,14 @@ public:
     virtual void collect(PathBuilder* path) = 0;
     /// Adds the samples of the next step, if the hand is ticked only on request. Otherwise does nothing.
     virtual void tickForStep(PathBuilder& path) = 0;
-    /// Makes the hand feel this sand from now on.
-    virtual void publish(const sand::Replica& terrain) = 0;
+    /// Makes the hand feel this sand from now on. `edited` says that its last step held an operator's edit.
+    virtual void publish(const sand::Replica& terrain, bool edited) = 0;
+    /// Copies the same sand again if the last copy is kRefreshNs old, so that the hand can tell sand without steps from
+    /// a thread that hangs.
+    virtual void refresh(const sand::Replica& /* terrain */) {}
+    /// Returns when refresh() is due [ns, the host's clock].
+    [[nodiscard]] virtual std::int64_t refreshDue() const { return std::numeric_limits<std::int64_t>::max(); }
+    static constexpr std::int64_t kRefreshNs = 10'000'000;  // [ns]
     /// Returns whether the times of the samples are on the host's monotonic clock [ns].
     [[nodiscard]] virtual bool onHostClock() const = 0;
     /// Returns the number of samples that were lost because the queue was full.
@@ -36,18 +48,28 @@ public:
 /// Feed in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
 class ChannelFeed : public HandFeed {
 public:
-    ChannelFeed(const HapticTick& hand, HandChannel& channel) : hand_(hand), channel_(channel) {}
+    using Clock = std::function<std::int64_t()>;  // [ns], the clock of HapticTick::tick()
+
+    ChannelFeed(const HapticTick& hand, HandChannel& channel, Clock clock = host::monotonicNs)
+        : hand_(hand), channel_(channel), now_(std::move(clock)) {}
     void begin(const sand::Replica& terrain) override;
     void end() override { channel_.moving = false; }
     void collect(PathBuilder* path) override;
     void tickForStep(PathBuilder&) override {}
-    void publish(const sand::Replica& terrain) override;
+    void publish(const sand::Replica& terrain, bool edited) override;
+    void refresh(const sand::Replica& terrain) override;
+    [[nodiscard]] std::int64_t refreshDue() const override { return copiedNs_ + kRefreshNs; }
     [[nodiscard]] bool onHostClock() const override { return true; }
     [[nodiscard]] std::uint64_t overflow() const override { return channel_.overflow; }
 
 private:
+    void copy(const sand::Replica& terrain);
+
     const HapticTick& hand_;
     HandChannel& channel_;
+    Clock now_;
+    std::uint64_t edits_ = 0;                 // steps with an edit that were published
+    std::int64_t copiedNs_ = 0, stepNs_ = 0;  // [ns], of the last copy, and of the first copy of the last step
 };
 
 /// Feed under a virtual clock: the thread that makes steps also runs the ticks of the hand, as fast as it can.
@@ -61,7 +83,7 @@ public:
     void end() override {}
     void collect(PathBuilder*) override {}
     void tickForStep(PathBuilder& path) override;
-    void publish(const sand::Replica& terrain) override;
+    void publish(const sand::Replica& terrain, bool edited) override;
     [[nodiscard]] bool onHostClock() const override { return false; }
 
 private:

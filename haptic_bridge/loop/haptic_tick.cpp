@@ -17,15 +17,16 @@ double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / 
 
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
     const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    const StepTiming steps{scene.force.between, static_cast<double>(scene.rules.stepsPerSecond)};
     if (const ArmPhysics* arm = device.physics()) {
-        return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale());
+        return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale(), steps);
     }
     const double side = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
     const double scale = side / kTouchField;
     ArmPhysics touch = touchPreset();
     touch.name = "a recording, felt as with a Touch";
     touch.resolution = 0;
-    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale);
+    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale, steps);
     limits.fastestThing = std::numeric_limits<double>::infinity();  // a stroke list goes down within one tick
     return limits;
 }
@@ -57,11 +58,21 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
     tellWhere(tick_.sample);
 }
 
+HapticTick::~HapticTick() { letGo(); }
+
+void HapticTick::letGo() noexcept {
+    try {
+        push({});
+    } catch (...) {  // a device that takes no force any more
+    }
+}
+
 void HapticTick::restart() {
     model_ = sand::force::ForceModel(constants_);
     guards_.forget();
     armVelocity_.restart();
     velocity_.restart();
+    edits_.reset();
     tick_.sample = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
@@ -69,7 +80,16 @@ void HapticTick::rest(double deviceTime) {
     if (const auto probe = mapping_.probe(device_->read(deviceTime))) {
         tellWhere(*probe);
     }
-    device_->sendForce({});
+    push({});
+}
+
+/// Every force that the device gets goes through here. It is 0, or the gate has passed it.
+void HapticTick::push(sand::force::Vec3 force) { device_->sendForce(force); }
+
+bool HapticTick::feelsEdit(const FeltSand& surface) {
+    const bool edited = edits_ && *edits_ != surface.edits;
+    edits_ = surface.edits;
+    return edited;
 }
 
 void HapticTick::tellWhere(const sand::ProbePoint& at) {
@@ -85,7 +105,17 @@ sand::ProbePoint HapticTick::where() const {
 
 HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface) {
     const Pose pose = device_->read(deviceTime);
-    input_ = {deviceTime, pose, device_->reading(), nowNs, nowNs - surface.timeNs, surface.step, surface.around};
+    input_ = {.time = deviceTime,
+              .pose = pose,
+              .reading = device_->reading(),
+              .nowNs = nowNs,
+              .surfaceAgeNs = nowNs - surface.timeNs,
+              .stepAgeNs = nowNs - surface.stepNs,
+              .surfaceStep = surface.step,
+              .around = surface.around,
+              .talus = surface.talus,
+              .share = share_.load(std::memory_order_relaxed),
+              .edited = feelsEdit(surface)};
     const bool present = input_.reading.present;
     const auto probe = mapping_.probe(pose);
     tick_.sample = probe.value_or(tick_.sample);
@@ -96,29 +126,32 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     fillTick(sample.engaged);
     const double perMetre = guards_.limits().scale;
     // The time is on the device's clock. A recording of ticks keeps that clock, so that a replay finds the same forces.
-    Guards::Reading reading{deviceTime,
-                            present,
-                            sample.engaged,
-                            static_cast<double>(input_.surfaceAgeNs) * 1e-9,
-                            (1 / perMetre) * tick_.place,
-                            (1 / perMetre) * tick_.velocity,
-                            {}};
+    Guards::Reading reading{.time = deviceTime,
+                            .present = present,
+                            .engaged = sample.engaged,
+                            .edited = input_.edited,
+                            .surfaceAge = tick_.surfaceAge,
+                            .stepAge = tick_.stepAge,
+                            .share = input_.reading.second ? 0 : input_.share,  // the clutch
+                            .talus = input_.talus,
+                            .place = (1 / perMetre) * tick_.place,
+                            .velocity = (1 / perMetre) * tick_.velocity,
+                            .felt = {}};
     if (!probe) {
         reading.place.x = std::numeric_limits<double>::quiet_NaN();
     }
     if (sample.engaged) {
-        reading.felt = model_.at(surface.patch, surface.step, surface.tool, tick_.place, deviceTime);
+        reading.felt = model_.at(surface.patch, surface.step, surface.tool, tick_.place, deviceTime, input_.edited);
     }
     const Guards::Forces forces = guards_.tick(reading);
     tick_.lawful = forces.lawful;
     tick_.sent = forces.sent;
     tick_.guards = forces.acted;
-    tick_.surfaceAge = reading.surfaceAge;
     counts_.add(forces.acted);
     if (sample.engaged) {
         forceCost_.add(host::monotonicNs() - begin);
     }
-    device_->sendForce(forces.sent);
+    push(forces.sent);
     return sample;
 }
 
@@ -130,6 +163,11 @@ void HapticTick::fillTick(bool engaged) {
     tick_.place = mapping_.place(tick_.sample);
     tick_.velocity = velocity_.add(input_.time, tick_.place);
     tick_.surfaceStep = input_.surfaceStep;
+    tick_.surfaceAge = static_cast<double>(input_.surfaceAgeNs) * 1e-9;
+    tick_.stepAge = static_cast<double>(input_.stepAgeNs) * 1e-9;
+    tick_.share = input_.share;
+    tick_.talus = input_.talus;
+    tick_.edited = input_.edited;
     tick_.engaged = engaged;
 }
 

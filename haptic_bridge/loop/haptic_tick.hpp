@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,11 @@ struct FeltSand {
     sand::force::SurfacePatch patch;
     sand::ProbePoint around;    // [probe unit], the hand's place when the patch was taken; z is 0
     sand::force::Contour tool;  // outline of the tool, which an operator may change
+    double talus = 0;           // tangent of the sand's talus, which an operator may change
     std::uint64_t step = 0;     // number of the step after which the patch was taken
+    std::uint64_t edits = 0;    // number of the link's steps with an edit, up to this step
     std::int64_t timeNs = 0;    // when the patch was published, on the clock of HapticTick::tick() [ns]
+    std::int64_t stepNs = 0;    // when the patch of this step was first published, on the same clock [ns]
 };
 
 /// Runs the ticks of the force loop. A tick reads the device, quantises the pose, computes the law's force, guards it
@@ -46,6 +50,10 @@ public:
     /// `scene` must outlive this object. `datum` counts only for a device without a body.
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
                Guards::Mode mode = Guards::Mode::on);
+    /// Lets go.
+    ~HapticTick();
+    HapticTick(const HapticTick&) = delete;
+    HapticTick& operator=(const HapticTick&) = delete;
 
     /// Runs one tick. Returns the quantised sample of the hand, from which the next step is made. If the pose is not
     /// finite or an arm does not answer, the sample hovers at the last place.
@@ -57,9 +65,15 @@ public:
     /// Reads the device at `deviceTime` [s] and sends zero force. Called while no master is linked, so that the device
     /// still counts its troubles and where() follows the hand.
     void rest(double deviceTime);
+    /// Pushes 0, because an arm holds its last force until the next one. An exception of the device is dropped: it may
+    /// be the reason why the hand lets go.
+    void letGo() noexcept;
     /// Forgets all earlier ticks, except in the counters. Called when a link begins, so that its forces depend only on
     /// its own ticks.
     void restart();
+    /// Sets the share of each force that the hand feels from now on, 0 to 1. The force changes to it in a ramp. Any
+    /// thread.
+    void shareForce(double share) { share_.store(share, std::memory_order_relaxed); }
 
     /// Returns the last tick. Only for the thread that ticks.
     [[nodiscard]] const Tick& lastTick() const { return tick_; }
@@ -84,7 +98,9 @@ private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
                const LawAtRadius& law);
     void fillTick(bool engaged);
+    [[nodiscard]] bool feelsEdit(const FeltSand& surface);
     void tellWhere(const sand::ProbePoint& at);
+    void push(sand::force::Vec3 force);
 
     const sand::ForceConstants constants_;
     sand::force::ForceModel model_;
@@ -95,6 +111,8 @@ private:
     VelocityWindow velocity_;     // [scene unit/s]
     std::vector<std::string> words_;
     std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each; one value, so that no thread reads half of a place
+    std::atomic<double> share_{1};
+    std::optional<std::uint64_t> edits_;  // FeltSand::edits at the last tick; nullopt before the first
     TickInput input_;
     Tick tick_;
     base::LiveHistogram forceCost_;

@@ -15,9 +15,13 @@ struct TickInput {
     Pose pose;
     ArmReading reading;
     std::int64_t nowNs = 0;         // [ns], time of the tick, see HapticTick::tick()
-    std::int64_t surfaceAgeNs = 0;  // [ns], age of the sand at this tick
+    std::int64_t surfaceAgeNs = 0;  // [ns], since the sand was copied
+    std::int64_t stepAgeNs = 0;     // [ns], since the newest step was made
     std::uint64_t surfaceStep = 0;  // FeltSand::step
     sand::ProbePoint around;        // FeltSand::around
+    double talus = 0;               // FeltSand::talus
+    double share = 1;     // of each force that the hand may feel, as operators and the server's options have it
+    bool edited = false;  // whether this is the first tick that feels a step with an edit
 };
 
 /// Complete record of one tick of the force loop. --record writes it, and a replay must reproduce it bit for bit.
@@ -25,12 +29,16 @@ struct Tick {
     double time = 0;                          // [s], argument of Device::read(); counts only while a master is linked
     sand::force::Vec3 armPlace, armVelocity;  // [m], [m/s], along the device's axes; 0 for a recording
     sand::force::Vec3 place, velocity;        // [scene unit], [scene unit/s], east, north, up
-    sand::force::Vec3 lawful, sent;           // [N], scene axes, before and after the guards
+    sand::force::Vec3 lawful, sent;           // [N], scene axes: by the law, and as the gate pushed it
     std::uint32_t guards = 0;                 // one bit for each guard that acted (hand/guard_counts.hpp)
-    double surfaceAge = 0;                    // [s], age of the sand
+    double surfaceAge = 0;                    // [s], since the sand was copied
+    double stepAge = 0;                       // [s], since the newest step was made
+    double share = 1;                         // TickInput::share
+    double talus = 0;                         // TickInput::talus
     std::uint64_t surfaceStep = 0;            // number of the step whose sand was felt
     sand::ProbePoint sample;                  // probe point that goes into the steps
     bool engaged = false;
+    bool edited = false;  // TickInput::edited
 };
 
 }  // namespace haptic_bridge

@@ -49,6 +49,10 @@ void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std:
         takeSurface(terrain, input.around, surface_);
     }
     surface_.timeNs = input.nowNs - input.surfaceAgeNs;
+    surface_.stepNs = input.nowNs - input.stepAgeNs;
+    surface_.talus = input.talus;
+    surface_.edits += input.edited ? 1 : 0;
+    hand_->shareForce(input.share);
     player_->set(input);
     (void)hand_->tick(input.time, input.nowNs, surface_);
     appendRow(hand_->lastTick(), rows);

@@ -5,17 +5,27 @@
 
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 
 namespace haptic_bridge {
 namespace {
 
 using sand::force::Vec3;
 
-enum Flag : std::uint8_t { kEngaged = 1, kFirst = 2, kSecond = 4, kPresent = 8, kElsewhere = 16 };
+enum Flag : std::uint8_t {
+    kEngaged = 1,
+    kFirst = 2,
+    kSecond = 4,
+    kPresent = 8,
+    kElsewhere = 16,
+    kTuned = 32,
+    kEdited = 64
+};
 
 std::uint8_t flagsOf(const TickInput& tick) {
     return static_cast<std::uint8_t>((tick.pose.engaged ? kEngaged : 0) | (tick.reading.first ? kFirst : 0) |
-                                     (tick.reading.second ? kSecond : 0) | (tick.reading.present ? kPresent : 0));
+                                     (tick.reading.second ? kSecond : 0) | (tick.reading.present ? kPresent : 0) |
+                                     (tick.edited ? kEdited : 0));
 }
 
 void putVec(const Vec3& v, base::ByteWriter& writer) {
@@ -47,6 +57,15 @@ std::int64_t getNs(std::int64_t beforeNs, base::ByteReader& reader) {
         throw base::FormatError(fmt::format("a tick {} ns after {} ns, which no clock shows", span, beforeNs));
     }
     return beforeNs + span;
+}
+
+/// Reads a number from 0 to `most`.
+double getBounded(double most, const char* what, base::ByteReader& reader) {
+    const auto number = reader.get<double>();
+    if (!(number >= 0 && number <= most)) {
+        throw base::FormatError(fmt::format("a tick with {} of {}", what, number));
+    }
+    return number;
 }
 
 /// Visits all numbers of an arm. Both encoding and decoding use this list.
@@ -104,22 +123,30 @@ base::Bytes encode(const TrackPiece& piece) {
     }
     writer.putVarint(piece.ticks.size());
     std::int64_t beforeNs = 0;
-    sand::ProbePoint around;  // FeltSand::around of the previous tick
+    sand::ProbePoint around;      // of the previous tick
+    double share = 0, talus = 0;  // of the previous tick
     for (const TickInput& tick : piece.ticks) {
-        const bool elsewhere = tick.around != around;
+        const bool elsewhere = tick.around != around, tuned = tick.share != share || tick.talus != talus;
         writer.put(tick.time);
         putVec({tick.pose.x, tick.pose.y, tick.pose.z}, writer);
         putVec(tick.reading.place, writer);
-        writer.put(static_cast<std::uint8_t>(flagsOf(tick) | (elsewhere ? kElsewhere : 0)));
+        writer.put(static_cast<std::uint8_t>(flagsOf(tick) | (elsewhere ? kElsewhere : 0) | (tuned ? kTuned : 0)));
         writer.putSigned(tick.nowNs - beforeNs);
         writer.putSigned(tick.surfaceAgeNs);
+        writer.putSigned(tick.stepAgeNs);
         writer.putVarint(tick.surfaceStep);
         if (elsewhere) {
             writer.putSigned(tick.around.x);
             writer.putSigned(tick.around.y);
         }
+        if (tuned) {
+            writer.put(tick.share);
+            writer.put(tick.talus);
+        }
         beforeNs = tick.nowNs;
         around = tick.around;
+        share = tick.share;
+        talus = tick.talus;
     }
     return writer.take();
 }
@@ -138,6 +165,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
         }
         std::int64_t beforeNs = 0;
         sand::ProbePoint around;
+        double share = 0, talus = 0;
         for (std::uint64_t i = 0; i < count; ++i) {
             TickInput& tick = piece.ticks.emplace_back();
             tick.time = reader.get<double>();
@@ -149,13 +177,21 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.reading.second = (flags & kSecond) != 0;
             tick.reading.present = (flags & kPresent) != 0;
             tick.nowNs = beforeNs = getNs(beforeNs, reader);
+            tick.edited = (flags & kEdited) != 0;
             tick.surfaceAgeNs = getNs(0, reader);
+            tick.stepAgeNs = getNs(0, reader);
             tick.surfaceStep = reader.getVarint();
             if ((flags & kElsewhere) != 0) {
                 around.x = getProbe(reader);
                 around.y = getProbe(reader);
             }
             tick.around = around;
+            if ((flags & kTuned) != 0) {
+                share = getBounded(1, "a share of the force", reader);
+                talus = getBounded(std::numeric_limits<double>::max(), "a talus", reader);
+            }
+            tick.share = share;
+            tick.talus = talus;
         }
     }
     if (!reader.atEnd()) {
@@ -166,7 +202,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
 
 std::string tickTitles() {
     return "time,arm_x,arm_y,arm_z,arm_vx,arm_vy,arm_vz,x,y,z,vx,vy,vz,law_x,law_y,law_z,sent_x,sent_y,sent_z,guards,"
-           "surface_age,surface_step,engaged\n";
+           "surface_age,surface_step,step_age,share,talus,edited,engaged\n";
 }
 
 void appendRow(const Tick& tick, std::string& text) {
@@ -175,7 +211,8 @@ void appendRow(const Tick& tick, std::string& text) {
     for (const Vec3& v : {tick.armPlace, tick.armVelocity, tick.place, tick.velocity, tick.lawful, tick.sent}) {
         fmt::format_to(out, ",{},{},{}", v.x, v.y, v.z);
     }
-    fmt::format_to(out, ",{},{},{},{}\n", tick.guards, tick.surfaceAge, tick.surfaceStep, tick.engaged ? 1 : 0);
+    fmt::format_to(out, ",{},{},{},{},{},{},{},{}\n", tick.guards, tick.surfaceAge, tick.surfaceStep,
+                   tick.stepAge, tick.share, tick.talus, tick.edited ? 1 : 0, tick.engaged ? 1 : 0);
 }
 
 }  // namespace haptic_bridge

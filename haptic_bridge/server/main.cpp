@@ -128,13 +128,13 @@ std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTic
                                           hand);
 }
 
-Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, Device& device) {
+Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, HapticTick& hand) {
     Service service{.io = io};
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
     service.log = print;
-    service.shareForce = [&device, ceiling = options.force ? options.forceScale : 0](const auto& told) {
-        device.shareForce(feltShare(ceiling, told));
+    service.shareForce = [&hand, ceiling = options.force ? options.forceScale : 0](const auto& told) {
+        hand.shareForce(feltShare(ceiling, told));
     };
     service.tests = options.tests;
     return service;
@@ -178,11 +178,11 @@ void serve(const Options& options) {
     const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
-    Device& device = *opened;  // the hand takes ownership below
-    device.shareForce(0);      // until a master has told its share
+    const Device& device = *opened;  // the hand takes ownership below
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
+    hand.shareForce(0);  // until a master has told its share
     hand.rest(0);  // so that a master that links before the force loop's first tick also feels the sand under the hand
     const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand);
     HandChannel channel;
@@ -192,7 +192,7 @@ void serve(const Options& options) {
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
     std::function<Report()> measure;
-    Service service = serviceOf(options, scene, io, device);
+    Service service = serviceOf(options, scene, io, hand);
     service.report = [&measure] { return measure(); };
     service.ticks = ticksOf(recorder.get());
     service.security = security;

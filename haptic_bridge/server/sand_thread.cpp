@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/server/sand_thread.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -55,15 +56,12 @@ void SandThread::run() {
         }
         stopping = commands.stops;
         const bool commanded = !commands.empty();
-        const bool ran = maker_.running();
         obey(commands);
         maker_.collect();
-        const bool steps = stepDue && !commanded && maker_.running();
-        if (steps) {
+        if (stepDue && !commanded && maker_.running()) {
             maker_.makeStep();
         }
-        if (steps || maker_.running() != ran) {
-        }
+        maker_.refresh();
     }
 }
 
@@ -100,9 +98,9 @@ bool SandThread::waitForWork() {
         }
         return true;
     }
-    const std::int64_t until = running ? maker_.due() : host::monotonicNs() + kIdlePoll;
+    const std::int64_t until = running ? std::min(maker_.due(), feed_->refreshDue()) : host::monotonicNs() + kIdlePoll;
     const std::chrono::steady_clock::time_point when{std::chrono::nanoseconds(until)};
-    return !wake_.wait_until(lock, when, commanded) && running;
+    return !wake_.wait_until(lock, when, commanded) && running && host::monotonicNs() >= maker_.due();
 }
 
 }  // namespace haptic_bridge

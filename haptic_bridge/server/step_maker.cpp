@@ -150,8 +150,6 @@ std::int64_t StepMaker::fill(sand::Step& step) {
 void StepMaker::makeStep() {
     if (blocked()) {  // only in real time, because the fast pace waits instead
         ++withheld_;
-        // Publishes the same sand with a new time, so that the hand continues to feel it while the wall waits.
-        hand_.publish(terrain_);
         clock_.advance(now_());
         return;
     }
@@ -163,11 +161,18 @@ void StepMaker::makeStep() {
         message.serverTimeNs = readNs;
     }
     message.step.edit = std::exchange(edit_, {});
+    const bool edited = message.step.edit.any();
     terrain_.apply(message.step);
     message.stateHash = terrain_.stateHash();
     output_.step(session_, encode(std::move(message)));
-    hand_.publish(terrain_);
+    hand_.publish(terrain_, edited);
     clock_.advance(now_());
+}
+
+void StepMaker::refresh() {
+    if (running()) {
+        hand_.refresh(terrain_);
+    }
 }
 
 }  // namespace haptic_bridge

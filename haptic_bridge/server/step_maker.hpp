@@ -64,6 +64,8 @@ public:
     /// Makes the next step and sends it. Withholds it while blocked(); the hand then keeps feeling the same sand. Call
     /// this only while running().
     void makeStep();
+    /// Gives the hand the same sand again if it has not got any for HandFeed::kRefreshNs. Call this at least as often.
+    void refresh();
 
     [[nodiscard]] const sand::Replica& sand() const { return terrain_; }
     /// Returns whether an epoch runs.

@@ -5,12 +5,14 @@
 
 namespace sand::force {
 
-Response ForceModel::at(const SurfacePatch& surface, std::uint64_t step, const Contour& tool, Vec3 place, double time) {
+Response ForceModel::at(const SurfacePatch& surface, std::uint64_t step, const Contour& tool, Vec3 place, double time,
+                        bool edited) {
     if (surface.empty() || !(tool.reach > 0)) {
         known_ = false;
         return {};
     }
-    const bool forget = !known_ || time - time_ > kForget;
+    // Sand of an edit has not moved there, so that no earlier sand can take over into it.
+    const bool forget = !known_ || edited || time - time_ > kForget;
     const bool replaced = forget || step != step_;
     known_ = true;
     step_ = step;

@@ -29,10 +29,11 @@ public:
     /// Returns the response of the sand to `tool` with its centre at `place`.
     ///
     /// `step` is the number of the step that made `surface`; another number means another surface. `time` [s] must
-    /// never decrease. If the last call was more than kForget ago, the result does not depend on earlier calls. Returns
-    /// a response without a force, and forgets earlier calls, if `surface` is empty or `tool` has no reach.
+    /// never decrease. If the last call was more than kForget ago, or if `edited` says that an operator has replaced
+    /// sand or tool, the result does not depend on earlier calls. Returns a response without a force, and forgets
+    /// earlier calls, if `surface` is empty or `tool` has no reach.
     [[nodiscard]] Response at(const SurfacePatch& surface, std::uint64_t step, const Contour& tool,
-                              Vec3 place /* [scene unit] */, double time);
+                              Vec3 place /* [scene unit] */, double time, bool edited = false);
 
     static constexpr double kForget = 0.05;  // longest time between two calls that belong together [s]
 

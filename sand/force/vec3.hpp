@@ -13,5 +13,10 @@ struct Vec3 {
 [[nodiscard]] inline Vec3 operator*(double s, Vec3 a) { return {s * a.x, s * a.y, s * a.z}; }
 [[nodiscard]] inline double dot(Vec3 a, Vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 [[nodiscard]] inline double norm(Vec3 a) { return std::sqrt(dot(a, a)); }
+/// Returns `a` with its direction and a norm of at most `most`.
+[[nodiscard]] inline Vec3 shortened(Vec3 a, double most) {
+    const double size = norm(a);
+    return size > most ? (most / size) * a : a;
+}
 
 }  // namespace sand::force

@@ -8,16 +8,8 @@
 
 namespace haptic_bridge {
 
+using sand::force::shortened;
 using sand::force::Vec3;
-
-namespace {
-
-Vec3 shortened(Vec3 vector, double most) {
-    const double size = norm(vector);
-    return size > most ? (most / size) * vector : vector;
-}
-
-}  // namespace
 
 Guards::Forces Guards::tick(const Reading& reading) {
     Forces forces;
@@ -34,11 +26,14 @@ Guards::Forces Guards::tick(const Reading& reading) {
     forces.acted = faults(reading, span, forces.lawful);
     time_ = reading.time;
     place_ = reading.place;
+    const double share = share_.next(span, std::clamp(reading.share, 0.0, 1.0));
     if (mode_ == Mode::literal) {
         forces.acted &= bit(Guard::notANumber) | bit(Guard::lost);
-        forces.sent = forces.acted == 0 ? forces.lawful : Vec3{};
+        forces.sent = forces.acted == 0 ? share * forces.lawful : Vec3{};
         return forces;
     }
+    const double moving = frozen_.next(span, reading.stepAge);
+    const double softness = late_.next(span, reading.stepAge);
     if (forces.acted != 0) {
         restart(reading.time);
         // Stale sand counts only while the tool touches it.
@@ -47,41 +42,42 @@ Guards::Forces Guards::tick(const Reading& reading) {
     }
 
     passivity_.observe(reading.place, span);
-    forces.sent = limited(reading, forces.acted);
+    ForceGate::Wanted wish = wanted(reading, share * moving, softness, forces.acted);
+    forces.acted |= moving < 1 && wish.contact ? bit(Guard::frozen) : 0;
+    forces.sent = gate_.pass(wish, forces.acted);
     passivity_.sent(forces.sent);
     return forces;
 }
 
-/// Returns the part of the law's force that may be sent, at a tick without faults. Adds a bit to `acted` for each guard
-/// that acts.
-Vec3 Guards::limited(const Reading& reading, std::uint32_t& acted) {
-    Vec3 force;
+/// Returns what the gate gets at a tick without faults: the part of the law's force that the device can bear, times
+/// `share`. `softness` lowers the stiffness. Adds a bit to `acted` for each guard that acts.
+ForceGate::Wanted Guards::wanted(const Reading& reading, double share, double softness, std::uint32_t& acted) {
+    ForceGate::Wanted wish{reading.time, {}, 0, false, reading.edited};
     if (reading.engaged) {
-        force = limitedForce(reading.felt, reading.velocity, limits_, acted);
+        wish.force = limitedForce(reading.felt, reading.velocity, LimitsNow(limits_, softness, reading.talus), acted);
     }
-    force = slew_.follow(force, acted);
+    const double limited = norm(wish.force);
+    wish.contact = limited > 0;
+    wish.whole = share * std::min(limited, limits_.maxForce);
+    wish.force = slew_.follow(wish.force, acted);
     // Damping may reduce a push, but must not turn it into a pull. It also grows no faster than a force may.
-    const double pushed = std::max(dot(force, reading.felt.normal), 0.0);
+    const double pushed = std::max(dot(wish.force, reading.felt.normal), 0.0);
     const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, acted) : Vec3{};
     damping_ = shortened(damping_ + shortened(damping - damping_, limits_.slew / 2), pushed);
     acted |= norm(damping_) > 0 ? bit(Guard::passivity) : 0;
-    force = force + damping_;
-    const double size = norm(force);
-    acted |= size > limits_.maxForce ? bit(Guard::clamp) : 0;
-    force = shortened(force, limits_.maxForce);
-    const double share = std::min((reading.time - rampFrom_) / ForceLimits::kRamp, 1.0);
-    if (share < 1 && size > 0) {
-        acted |= bit(Guard::ramp);
-        force = share * force;
-    }
-    return force;
+    wish.force = wish.force + damping_;
+    acted |= norm(wish.force) > limits_.maxForce ? bit(Guard::clamp) : 0;
+    // The share is that of the force that the device can produce.
+    wish.force = share * shortened(wish.force, limits_.maxForce);
+    return wish;
 }
 
 /// Returns one bit for each fault of this tick. After any fault no force is sent.
 std::uint32_t Guards::faults(const Reading& reading, double span, Vec3 lawful) const {
     std::uint32_t acted = 0;
     const bool numbers = std::isfinite(norm(lawful)) && std::isfinite(norm(reading.place)) &&
-                         std::isfinite(norm(reading.velocity)) && std::isfinite(reading.felt.stiffness);
+                         std::isfinite(norm(reading.velocity)) && std::isfinite(reading.felt.stiffness) &&
+                         std::isfinite(reading.talus) && std::isfinite(reading.share);
     acted |= numbers ? 0 : bit(Guard::notANumber);
     acted |= reading.present ? 0 : bit(Guard::lost);
     acted |= reading.surfaceAge <= ForceLimits::kStaleSurface ? 0 : bit(Guard::stale);
@@ -92,10 +88,17 @@ std::uint32_t Guards::faults(const Reading& reading, double span, Vec3 lawful) c
 }
 
 void Guards::restart(double time) {
-    rampFrom_ = time;
+    gate_.restart(time);
     slew_.restart();
     passivity_.restart();
     damping_ = {};
+}
+
+void Guards::forget() {
+    begun_ = false;
+    share_ = {};
+    frozen_ = FrozenSand(limits_.stepSeconds);
+    late_ = LateStep(limits_);
 }
 
 }  // namespace haptic_bridge

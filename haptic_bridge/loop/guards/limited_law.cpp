@@ -19,11 +19,12 @@ Vec3 lawfulForce(const sand::force::Response& felt, Vec3 velocity, double scale)
     return sand::force::lawfulForce(felt, (scale / kFramesPerSecond) * velocity);
 }
 
-Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const ForceLimits& limits, std::uint32_t& acted) {
+Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const LimitsNow& now, std::uint32_t& acted) {
+    const ForceLimits& limits = now.limits;
     // The gain is the same everywhere. Otherwise the force would rise within a fraction of a cell where little of the
     // tool is over the sand. The gain is smaller only where the law is stiffer than at a depth of one radius.
     const double stiffness = limits.gain * felt.stiffness * limits.scale;
-    const double gain = limits.gain * (stiffness > limits.stiffness ? limits.stiffness / stiffness : 1);
+    const double gain = now.softness * limits.gain * (stiffness > limits.stiffness ? limits.stiffness / stiffness : 1);
     const Vec3 push = gain * felt.push;
     const double pressed = norm(push);
     acted |= gain < kMatters && pressed > 0 ? bit(Guard::stiffness) : 0;
@@ -34,7 +35,7 @@ Vec3 limitedForce(const sand::force::Response& felt, Vec3 velocity, const ForceL
     const double soft = asked / (1 + 2 * asked * ForceLimits::kTick / limits.arm.mass);
     const double viscous = std::min(soft, limits.damping);
     acted |= viscous < kMatters * asked && speed > 0 ? bit(Guard::damping) : 0;
-    const double held = limits.internalFriction * pressed;
+    const double held = now.talus * pressed;
     acted |= held < kMatters * viscous * speed ? bit(Guard::friction) : 0;
     const double drag = viscous * speed > held ? held / speed : viscous;
     return push - drag * slip;

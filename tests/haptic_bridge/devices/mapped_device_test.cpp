@@ -120,20 +120,14 @@ TEST_F(Mapped, TheClutchHoldsTheToolWhileTheHandMoves) {
     const Pose before = at({0.03, 0, 0});
     expectEqual(feel({0, 0, 1}), {0, 0, 1});
     state_.reading.second = true;
-    double last = 1;
     for (int i = 0; i <= 60; ++i) {
         const Pose held = at({0.03 - 0.001 * i, 0, 0});
         EXPECT_DOUBLE_EQ(held.x, before.x);
         EXPECT_TRUE(held.engaged);
-        const double force = feel({0, 0, 1}).z;
-        EXPECT_LE(last - force, kArmTick / MappedDevice::kFadeSeconds + 1e-12) << "no jump";
-        last = force;
+        EXPECT_TRUE(device_->reading().second) << "the guards must notice";
     }
-    EXPECT_DOUBLE_EQ(last, 0);
     state_.reading.second = false;
     EXPECT_NEAR(at({-0.02, 0, 0}).x, before.x + 0.01 * 2 / half_, 1e-12) << "the tool continues from there";
-    EXPECT_GT(feel({0, 0, 1}).z, 0);
-    EXPECT_LE(feel({0, 0, 1}).z, kArmTick / MappedDevice::kRampSeconds + 1e-12);
 }
 
 TEST_F(Mapped, TheWorkspaceDriftsToTheHandWhileNothingIsFelt) {
@@ -154,26 +148,7 @@ TEST_F(Mapped, TheWorkspaceDriftsToTheHandWhileNothingIsFelt) {
     EXPECT_DOUBLE_EQ(at({0.05, 0, 0}).x, drifted) << "a force is felt: a moving origin would do work";
 }
 
-TEST_F(Mapped, ForceIsSwitchedWithARamp) {
-    map({});
-    double last = 0;
-    const auto settle = [&](double share) {
-        device_->shareForce(share);
-        for (int i = 0; i < 1000; ++i) {
-            (void)at({});
-            const double now = feel({2, 0, 0}).x;
-            EXPECT_LE(std::abs(now - last), 2 * kArmTick / MappedDevice::kFadeSeconds + 1e-12) << "tick " << i;
-            last = now;
-        }
-        return last;
-    };
-    EXPECT_DOUBLE_EQ(settle(1), 2);
-    EXPECT_DOUBLE_EQ(settle(0), 0);
-    EXPECT_DOUBLE_EQ(settle(0.25), 0.5);
-    EXPECT_DOUBLE_EQ(settle(7), 2) << "never more than the guards let pass";
-}
-
-TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
+TEST_F(Mapped, ABadReadingLiftsTheHandAndCountsAsAbsent) {
     const std::array<std::pair<Trouble, ArmReading>, 3> bad{{
         {Trouble::absent, {{}, false, false, false}},
         {Trouble::noNumber, {{0, kNoNumber, 0}, false, false, true}},
@@ -189,16 +164,13 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndTakesTheForceAway) {
         const Pose during = device_->read(time_ += kArmTick);
         EXPECT_FALSE(during.engaged);
         EXPECT_DOUBLE_EQ(during.x, before.x) << "the tool stays where it was";
-        expectEqual(feel({0, 0, 2}), {});
         EXPECT_FALSE(device_->reading().present) << "the guards must notice";
         EXPECT_DOUBLE_EQ(device_->reading().place.x, 0.01) << "and never see an invalid place";
         EXPECT_EQ(device_->troubles()->of(trouble), 1U);
         // The tool comes back: after a jump, at the arm's new place.
         state_.reading = {{trouble == Trouble::jump ? 1 : 0.01, 0, 0}, false, false, true};
         EXPECT_TRUE(device_->read(time_ += kArmTick).engaged);
-        const double returned = feel({0, 0, 2}).z;
-        EXPECT_GT(returned, 0);
-        EXPECT_LE(returned, 2 * kArmTick / MappedDevice::kRampSeconds + 1e-12);
+        EXPECT_TRUE(device_->reading().present);
     }
 }
 
@@ -210,7 +182,7 @@ TEST_F(Mapped, ReadingsThatRunBackwardsAreLeftOut) {
     const Pose during = device_->read(time_ - 0.5);
     EXPECT_FALSE(during.engaged);
     EXPECT_DOUBLE_EQ(during.x, before.x);
-    expectEqual(feel({0, 0, 2}), {});
+    EXPECT_FALSE(device_->reading().present);
     EXPECT_EQ(device_->troubles()->of(Trouble::backwards), 1U);
 }
 

@@ -134,19 +134,35 @@ struct Warm {
     }
 };
 
-// K · 2 m/s · T is 0.2333333 N per tick. A tool that is put deep into the sand at once is pushed as by a hand of 2 m/s.
+// K · 2 m/s · T is 0.2333333 N per tick. A tool that touches the surface, with 1 N of the law, and goes deep at once is
+// pushed as by a hand of 2 m/s. 1 N of the law is 116.6667/6250 N for the hand.
 TEST(GuardFigures, AForceGrowsByTheSlewAndFallsAtOnce) {
     Warm hand;
     hand.reading.engaged = true;
-    hand.reading.felt = {{0, 0, 5000}, {0, 0, 1}, 0, 500};
+    hand.reading.felt = {{0, 0, 1}, {0, 0, 1}, 0, 500};
+    EXPECT_NEAR(hand.next().sent.z, 0.01866667, 1e-8) << "a contact that begins at the surface has no ramp";
+    hand.reading.felt.push.z = 5000;
     for (int tick = 1; tick <= 14; ++tick) {
         const Guards::Forces forces = hand.next();
-        EXPECT_NEAR(forces.sent.z, 0.2333333 * tick, 1e-5) << tick;
+        EXPECT_NEAR(forces.sent.z, 0.01866667 + 0.2333333 * tick, 1e-5) << tick;
         EXPECT_EQ(forces.acted & bit(Guard::slew), bit(Guard::slew));
     }
     EXPECT_NEAR(hand.next().sent.z, 3.3, 1e-12) << "a Touch's greatest force";
     hand.reading.engaged = false;
     EXPECT_EQ(norm(hand.next().sent), 0);
+}
+
+// 5000 N of the law are more than a Touch's 3.3 N. A contact that begins with them grows by 3.3 N / 200 per tick.
+TEST(GuardFigures, AContactThatBeginsInTheDeepGrowsOverAFifthOfASecond) {
+    Warm hand;
+    hand.reading.engaged = true;
+    hand.reading.felt = {{0, 0, 5000}, {0, 0, 1}, 0, 500};
+    for (int tick = 0; tick <= 200; ++tick) {
+        const Guards::Forces forces = hand.next();
+        EXPECT_NEAR(forces.sent.z, 0.0165 * tick, 1e-9) << tick;
+        EXPECT_TRUE(tick == 200 || (forces.acted & bit(Guard::contact)) != 0) << tick;
+    }
+    EXPECT_EQ(hand.next().acted & bit(Guard::contact), 0U);
 }
 
 /// Returns whether a tip that moves by `way` [m] within `span` [s] sets the guard `jumped`.

@@ -52,7 +52,7 @@ TEST_F(FeedTest, AVirtualClockGivesEachStepItsMilliseconds) {
         const std::size_t before = times_.size();
         feed.tickForStep(path_);
         ticks.push_back(times_.size() - before);
-        feed.publish(sand_);
+        feed.publish(sand_, false);
     }
     EXPECT_EQ(ticks, (std::vector<std::size_t>{16, 17, 17, 16, 17, 17}));
     for (std::size_t i = 1; i < times_.size(); ++i) {
@@ -72,7 +72,7 @@ TEST_F(FeedTest, AVirtualHandFeelsTheSandThatWasPublishedLast) {
     sand::Step step;
     step.number = 1;
     later.apply(step);
-    feed.publish(later);
+    feed.publish(later, false);
     feed.tickForStep(path_);
     EXPECT_EQ(hand_.lastTick().surfaceStep, 1U);
     EXPECT_EQ(hand_.lastTick().surfaceAge, 0) << "never stale";

@@ -24,11 +24,19 @@ public:
         }
     }
     void tickForStep(PathBuilder&) override {}
-    void publish(const sand::Replica& terrain) override { felt.push_back(terrain.stepNumber()); }
+    void publish(const sand::Replica& terrain, bool withEdit) override {
+        felt.push_back(terrain.stepNumber());
+        if (withEdit) {
+            edited.push_back(terrain.stepNumber());
+        }
+    }
+    void refresh(const sand::Replica&) override { ++refreshes; }
     [[nodiscard]] bool onHostClock() const override { return true; }
 
     std::vector<HandSample> samples;
-    std::vector<std::uint64_t> felt;  // step number at every publish
+    std::vector<std::uint64_t> felt;    // step number at every publish
+    std::vector<std::uint64_t> edited;  // the numbers among them whose step held an edit
+    int refreshes = 0;
     bool began = false, ended = false;
 };
 
@@ -144,11 +152,15 @@ TEST_F(StepMakerTest, AsksForTheWholeSandOnceAlthoughMoreCatchUpsWait) {
 }
 
 TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
+    maker_.refresh();
+    EXPECT_EQ(hand_.refreshes, 0) << "no epoch runs";
     maker_.start(1, grantOf(sand::Replica(scene_)));
     step(StepMaker::kWindow + 3);
     EXPECT_EQ(steps_.size(), StepMaker::kWindow);
     EXPECT_EQ(maker_.withheld(), 3U);
-    EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow + 3) << "the hand continues to feel the sand while the wall waits";
+    EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow) << "a withheld step gives no newer sand";
+    maker_.refresh();
+    EXPECT_EQ(hand_.refreshes, 1) << "the hand continues to feel the sand while the wall waits";
     maker_.shown({100, 16'666'667}, now_);
     step(StepMaker::kWindow + 1);
     EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "a wall cannot show more than was sent";
@@ -169,6 +181,7 @@ TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
     maker_.start(2, grantOf(maker_.sand(), 2));
     step();
     EXPECT_FALSE(steps_[2].step.edit.any());
+    EXPECT_EQ(hand_.edited, std::vector<std::uint64_t>{1}) << "the hand knows which sand an edit made";
 }
 
 // The sand of a load is decoded before it is in a step, because every rank has to apply a step.

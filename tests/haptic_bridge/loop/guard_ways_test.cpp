@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ways around the guards, tried on a whole server under a virtual clock. Every push of the arm is checked.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "scene/scene.hpp"
+#include "tests/haptic_bridge/loop/push_check.hpp"
+#include "tests/haptic_bridge/loop/virtual_server.hpp"
+#include "tests/support/arm_on_sand.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using sand::force::Vec3;
+using test::VirtualServer;
+
+/// Returns an arm without a body of its own: it moves along the test's path, whatever pushes it.
+ArmPhysics strongArm() {
+    ArmPhysics arm;
+    arm.name = "strong";
+    arm.mass = 0.2;
+    arm.damping = 1;
+    arm.friction = 0.3;
+    arm.resolution = 2e-5;
+    arm.maxForce = 8;
+    arm.reach = 0.06;
+    arm.maxStiffness = 2000;
+    arm.delayTicks = 1;
+    return arm;
+}
+
+constexpr double kToolInArm = 0.006;  // [m], of the tool, in metres of the arm
+
+/// Returns a path that rests at `depth` [tool radius] below level sand.
+test::LoggingArm::Path restsAt(double depth) {
+    return [depth](double) { return ArmReading{{0, 0, -depth * kToolInArm}, true, false, true}; };
+}
+class WayAround : public testing::Test {
+protected:
+    void open(test::LoggingArm::Path path, double ceiling = 1, const std::vector<std::string>& map = {}) {
+        server_ =
+            std::make_unique<VirtualServer>(scene_, strongArm(), std::move(path), ceiling, HandSettings::parse(map));
+    }
+    /// Ends the server, and checks all of its pushes.
+    void TearDown() override {
+        if (!server_) {
+            return;
+        }
+        const ForceLimits limits = server_->hand().guards().limits();
+        server_->end();
+        test::PushCheck check(limits);
+        for (const test::Push& push : server_->pushes) {
+            const std::string wrong = check.wrong(push.force);
+            ASSERT_EQ(wrong, "") << "at " << push.time << " s";
+        }
+        EXPECT_EQ(norm(server_->pushed()), 0) << "the last push";
+    }
+    [[nodiscard]] double force() const { return norm(server_->pushed()); }
+    /// Returns the greatest force of the last `seconds` [s].
+    [[nodiscard]] double greatest(double seconds) const {
+        double most = 0;
+        for (std::size_t i = server_->pushes.size() - static_cast<std::size_t>(seconds * 1000);
+             i < server_->pushes.size(); ++i) {
+            most = std::max(most, norm(server_->pushes[i].force));
+        }
+        return most;
+    }
+    /// Returns the tuning of the sand with another talus [deg].
+    [[nodiscard]] sand::Edit talus(double degrees) const {
+        sand::Tuning tuning = server_->sand().rules().tuning();
+        tuning.threshold = tuning.startThreshold =
+            static_cast<std::int32_t>(std::lround(std::tan(degrees * std::numbers::pi / 180) * sand::kUnitsPerCell));
+        return sand::Edit::tuned(tuning);
+    }
+
+    scene::Scene scene_ = test::levelSand({}, 128, 0.25);
+    std::unique_ptr<VirtualServer> server_;
+};
+
+TEST_F(WayAround, AServerPushesNothingBeforeAndAfterAMaster) {
+    open(restsAt(1));
+    server_->run(0.5);
+    EXPECT_EQ(greatest(0.5), 0);
+    server_->link();
+    server_->run(3);
+    EXPECT_GT(force(), 1);
+    server_->unlink();
+    server_->tick();
+    EXPECT_EQ(force(), 0);
+    server_->run(0.5);
+    EXPECT_EQ(greatest(0.5), 0);
+}
+
+TEST_F(WayAround, AnOperatorsShareHoldsOverTheServersOptionsInBothDirections) {
+    open(restsAt(1), 0);  // --force off
+    server_->link();
+    server_->run(3);
+    EXPECT_EQ(greatest(3), 0) << "no operator has set a share";
+    server_->share(ForceShare{1, true});
+    server_->run(1);
+    EXPECT_GT(force(), 1) << "ctl force on";
+    server_->share(ForceShare{0, true});
+    server_->run(1);
+    EXPECT_EQ(greatest(0.5), 0) << "ctl force off";
+    server_->unlink();
+    server_->link({0, true});  // the restarted master tells the share of its journal
+    server_->run(3);
+    EXPECT_EQ(greatest(3), 0) << "after a restart";
+    server_->unlink();
+    server_->link({1, false});
+    server_->run(3);
+    EXPECT_EQ(greatest(3), 0) << "another session starts under the server's own options";
+}
+
+TEST_F(WayAround, OneSessionsForceOffDoesNotSilenceTheNext) {
+    open(restsAt(1));
+    server_->link({0, true});
+    server_->run(3);
+    EXPECT_EQ(greatest(3), 0);
+    server_->unlink();
+    server_->link({1, false});
+    server_->run(3);
+    EXPECT_GT(force(), 1);
+}
+
+TEST_F(WayAround, FrictionFollowsTheTalusOfTheSandAtTheHand) {
+    // A stroke to and fro at 0.25 m/s, in sand of 45 degrees and then of 5.
+    open([](double time) {
+        return ArmReading{
+            {0.02 * std::sin(12.5 * time), 0, -1.5 * kToolInArm * std::min(time, 1.0)}, true, false, true};
+    });
+    const auto steepest = [&](double seconds) {
+        double ratio = 0;
+        for (int tick = 0; tick < seconds * 1000; ++tick) {
+            server_->tick();
+            const test::Push& push = server_->pushes.back();
+            // On level sand the push is vertical, and only friction is horizontal.
+            ratio = push.force.z > 0.5 ? std::max(ratio, std::hypot(push.force.x, push.force.y) / push.force.z) : ratio;
+        }
+        return ratio;
+    };
+    scene_.force.friction = 1000;  // more than any talus holds
+    open([](double time) {
+        return ArmReading{
+            {0.02 * std::sin(12.5 * time), 0, -1.5 * kToolInArm * std::min(time, 1.0)}, true, false, true};
+    });
+    server_->link();
+    server_->run(3);
+    EXPECT_GT(steepest(1), 0.3) << "sand of 34 degrees holds 0.67";
+    server_->edit(talus(5));
+    server_->run(0.1);
+    EXPECT_NEAR(server_->last().talus, 0.0875, 1e-3);
+    const double held = std::tan(5 * std::numbers::pi / 180);
+    // The ring around the furrow leans a little, so that the push does, too.
+    const double slippery = steepest(1);
+    EXPECT_LT(slippery, 3 * held);
+    // A master that has resumed such a session gives the tuned sand to another server.
+    const sand::Replica tuned = server_->sand();
+    open([](double time) {
+        return ArmReading{
+            {0.02 * std::sin(12.5 * time), 0, -1.5 * kToolInArm * std::min(time, 1.0)}, true, false, true};
+    });
+    server_->link({}, tuned);
+    server_->run(3);
+    EXPECT_NEAR(server_->last().talus, 0.0875, 1e-3);
+    EXPECT_LT(steepest(1), 1.2 * slippery);
+}
+
+// The wall shows nothing for eight seconds, as when its master hangs.
+TEST_F(WayAround, SandWithoutStepsFadesAndComesBackWhenStepsHaveComeForASecond) {
+    open(restsAt(1));
+    server_->link();
+    server_->run(4);
+    const double whole = force();
+    ASSERT_GT(whole, 1);
+    server_->wallStands = true;
+    server_->run(8.0 / 60 + 0.2);
+    EXPECT_NEAR(force(), whole, 0.05 * whole) << "a hiccup of the wall";
+    server_->run(0.2);
+    EXPECT_EQ(force(), 0);
+    server_->run(8);
+    EXPECT_EQ(greatest(8), 0);
+    EXPECT_EQ(server_->counted(Guard::stale), 0U) << "the thread that makes steps still copies its sand";
+    EXPECT_GT(server_->counted(Guard::frozen), 8000U);
+    server_->wallStands = false;
+    server_->run(0.99);
+    EXPECT_EQ(greatest(0.9), 0) << "steps must come for a second";
+    server_->run(0.3);
+    EXPECT_GT(force(), 0.3 * whole);
+    EXPECT_LT(force(), 0.8 * whole) << "the ramp of half a second";
+    server_->run(0.4);
+    EXPECT_NEAR(force(), whole, 0.05 * whole);
+}
+
+TEST_F(WayAround, AHungSandThreadIsStaleAtOnce) {
+    open(restsAt(1));
+    server_->link();
+    server_->run(4);
+    const double whole = force();
+    ASSERT_GT(whole, 1);
+    server_->sandThreadHangs = true;
+    server_->run(0.040);
+    EXPECT_GT(force(), 0.9 * whole);
+    server_->run(0.025);
+    EXPECT_EQ(force(), 0);
+    EXPECT_GT(server_->counted(Guard::stale), 0U);
+    server_->sandThreadHangs = false;
+    server_->run(0.5);
+    EXPECT_LT(force(), 0.3 * whole) << "the ramp of two seconds";
+    server_->run(2);
+    EXPECT_NEAR(force(), whole, 0.05 * whole);
+}
+
+TEST_F(WayAround, SlowStepsAreNoHungThread) {
+    for (const int perSecond : {1, 5, 19}) {
+        scene_.rules.stepsPerSecond = perSecond;
+        open(restsAt(1));
+        server_->link();
+        server_->run(5);
+        EXPECT_GT(force(), 1) << perSecond << " steps per second";
+        EXPECT_EQ(server_->counted(Guard::stale), 0U) << perSecond;
+        EXPECT_EQ(server_->counted(Guard::frozen), 0U) << perSecond;
+    }
+}
+
+/// Returns the tick at which the force first exceeds `share` of its final value, counted from tick `from`.
+std::size_t reaches(const VirtualServer& server, std::size_t from, double share) {
+    const double whole = norm(server.pushed());
+    std::size_t tick = from;
+    while (norm(server.pushes[tick].force) < share * whole) {
+        ++tick;
+    }
+    return tick - from;
+}
+
+TEST_F(WayAround, AButtonThatEngagesTheToolInDeepSandIsFeltInARamp) {
+    double pressedAt = 1e9;
+    open(
+        [&pressedAt](double time) {
+            return ArmReading{{0, 0, -4 * kToolInArm}, time >= pressedAt, false, true};
+        },
+        1, {"engage=button"});
+    server_->link();
+    server_->run(3);
+    EXPECT_EQ(force(), 0);
+    const std::size_t from = server_->pushes.size();
+    pressedAt = 0;
+    server_->run(1);
+    EXPECT_GT(force(), 7);
+    EXPECT_GT(reaches(*server_, from, 0.9), 150U) << "ticks";
+    EXPECT_GT(server_->counted(Guard::contact), 100U);
+    EXPECT_EQ(server_->counted(Guard::gate), 0U);
+}
+
+TEST_F(WayAround, SandThatAnEditPutsOnAHandIsFeltInARamp) {
+    struct Way {
+        const char* name;
+        std::function<sand::Edit(const VirtualServer&)> edit;
+    };
+    const Way wider{"a wider tool", [](const VirtualServer& server) {
+                        sand::Tuning tuning = server.sand().rules().tuning();
+                        tuning.toolRadius *= 4;
+                        return sand::Edit::tuned(tuning);
+                    }};
+    const Way reset{"reset", [](const VirtualServer&) { return sand::Edit(sand::Edit::reset); }};
+    const Way load{"load", [this](const VirtualServer&) {
+                       scene::Scene high = scene_;
+                       for (int y = 0; y < high.rules.rows; ++y) {
+                           for (int x = 0; x < high.rules.columns; ++x) {
+                               high.terrain.setHeight(x, y, 20 * sand::kUnitsPerCell);
+                           }
+                       }
+                       return sand::Edit::loaded(sand::Replica(high).copySand()->encode());
+                   }};
+    for (const Way& way : {wider, reset, load}) {
+        SCOPED_TRACE(way.name);
+        // The hand rests just above the sand. For `reset` it has dug a wide pit before, and rests in it.
+        const bool inPit = std::string(way.name) == "reset";
+        open([inPit](double time) {
+            const double out = inPit ? 0.03 * std::clamp(4 - time, 0.0, 1.0) * std::sin(3 * time) : 0;
+            const double depth = !inPit ? -0.2 : time < 4 ? 2 : 1.2;
+            return ArmReading{
+                {out * std::cos(40 * time), out * std::sin(40 * time), -depth * kToolInArm}, true, false, true};
+        });
+        server_->link();
+        server_->run(6);
+        const double before = force();
+        server_->edit(way.edit(*server_));
+        const std::size_t from = server_->pushes.size();
+        server_->run(1);
+        EXPECT_GT(force(), before + 1) << "the edit must bury the hand";
+        EXPECT_GT(server_->counted(Guard::contact), 100U);
+        const double excess = force() - before;
+        for (std::size_t i = from; i < server_->pushes.size(); ++i) {
+            // An edit is felt at the next step, and then its excess grows within a fifth of a second. The sand still
+            // settles, so that the last force is only near the one that the growth aimed at.
+            const double allowed = before + 1.3 * excess * std::min(static_cast<double>(i - from) / 200, 1.0) + 0.3;
+            ASSERT_LT(norm(server_->pushes[i].force), allowed) << i - from << " ticks after the edit";
+        }
+    }
+}
+
+TEST_F(WayAround, AContactAtTheSurfaceHasNoRamp) {
+    // A tap: the hand is above the sand for 3 s, and then goes one radius deep and back within 100 ms.
+    open([](double time) {
+        const double down = std::clamp(1 - std::abs(time - 3.05) / 0.05, 0.0, 1.0);
+        return ArmReading{{0, 0, kToolInArm * (0.1 - 1.1 * down)}, true, false, true};
+    });
+    server_->link();
+    server_->run(3.05);
+    EXPECT_GT(force(), 1.4) << "half of a radius is felt as 1 N per 3 mm";
+    EXPECT_EQ(server_->counted(Guard::contact), 0U);
+    EXPECT_EQ(server_->counted(Guard::slew), 0U);
+    server_->run(0.2);
+    EXPECT_EQ(force(), 0);
+}
+
+TEST_F(WayAround, TheClutchAndAPauseHaveRampsOfTheirOwnAndAreNoFaults) {
+    bool clutch = false;
+    open([&clutch](double) { return ArmReading{{0, 0, -kToolInArm}, true, clutch, true}; });
+    server_->link();
+    server_->run(4);
+    const double whole = force();
+    clutch = true;
+    server_->run(0.06);
+    EXPECT_EQ(force(), 0);
+    clutch = false;
+    server_->run(0.55);
+    EXPECT_NEAR(force(), whole, 0.05 * whole) << "half a second";
+    server_->wallStands = true;
+    server_->run(1);
+    EXPECT_EQ(force(), 0);
+    server_->wallStands = false;
+    server_->run(1.6);
+    EXPECT_NEAR(force(), whole, 0.05 * whole);
+    EXPECT_EQ(server_->counted(Guard::missed) + server_->counted(Guard::lost) + server_->counted(Guard::stale), 0U);
+}
+
+TEST_F(WayAround, AnArmThatComesBackIsFeltInTheRampOfTwoSeconds) {
+    bool there = true;
+    double place = 0;
+    open([&](double) { return ArmReading{{place, 0, -kToolInArm}, true, false, there}; });
+    server_->link();
+    server_->run(4);
+    const double whole = force();
+    ASSERT_GT(whole, 1);
+    for (const double away : {0.0, std::nan("")}) {
+        there = std::isnan(away);
+        place = away;
+        server_->tick();
+        EXPECT_EQ(force(), 0);
+        there = true;
+        place = 0;
+        server_->run(1);
+        EXPECT_NEAR(force(), whole / 2, 0.1 * whole);
+        server_->run(1.1);
+        EXPECT_NEAR(force(), whole, 0.05 * whole);
+    }
+    server_->tick(15'000'000);  // fifteen ticks missed
+    EXPECT_EQ(force(), 0);
+    server_->run(1);
+    EXPECT_NEAR(force(), whole / 2, 0.1 * whole);
+}
+
+}  // namespace

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "haptic_bridge/devices/mapped_device.hpp"
+#include "haptic_bridge/server/force_ceiling.hpp"
+#include "haptic_bridge/server/step_maker.hpp"
+#include "tests/haptic_bridge/loop/logging_arm.hpp"
+
+namespace test {
+
+/// A whole haptic server and a master under one virtual clock, without threads and sockets: arm, ticks of 1 ms, guards,
+/// steps, copies of the sand, and a wall that shows the steps.
+class VirtualServer {
+public:
+    static constexpr std::int64_t kTickNs = 1'000'000;
+
+    /// `scene` must outlive this object. `ceiling` is the server's own share of the force.
+    VirtualServer(const scene::Scene& scene, const haptic_bridge::ArmPhysics& arm, LoggingArm::Path path,
+                  double ceiling = 1, const haptic_bridge::HandSettings& settings = {})
+        : hand_(std::make_unique<haptic_bridge::HapticTick>(
+              scene,
+              std::make_unique<haptic_bridge::MappedDevice>(std::make_unique<LoggingArm>(arm, std::move(path), pushes),
+                                                            settings, scene),
+              haptic_bridge::HandSettings::Datum::level)),
+          feed_(*hand_, *channel_, [this] { return now_; }),
+          maker_(scene, feed_, output(), {}, [this] { return now_; }),
+          sand_(scene),
+          ceiling_(ceiling) {
+        share(std::nullopt);
+        hand_->rest(0);
+    }
+
+    /// Links a master with the sand that the server has, or with `sand`.
+    void link(const haptic_bridge::ForceShare& force = {}, std::optional<sand::Replica> sand = std::nullopt) {
+        sand_ = sand ? *std::move(sand) : maker_.sand();
+        share(force);
+        maker_.start(++session_, {++epoch_, sand_.stepNumber(), sand_.stateHash(), force});
+        if (!maker_.running()) {
+            maker_.state(sand_.encodeState());
+        }
+        shown_ = sand_.stepNumber();
+    }
+    /// Ends the link, as when a master leaves or dies.
+    void unlink() {
+        share(std::nullopt);
+        maker_.release();
+    }
+    void share(const std::optional<haptic_bridge::ForceShare>& told) {
+        hand_->shareForce(haptic_bridge::feltShare(ceiling_, told));
+    }
+    void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
+
+    /// Runs one tick of the force loop, and what the other threads do until then.
+    void tick(std::int64_t span = kTickNs) {
+        now_ += span;
+        if (!sandThreadHangs) {
+            runSand();
+        }
+        const double time = static_cast<double>(handNs_ += channel_->moving ? span : 0) * 1e-9;
+        if (!channel_->moving) {
+            hand_->rest(time);
+            return;
+        }
+        if (channel_->sitting != sitting_) {
+            sitting_ = channel_->sitting;
+            channel_->beginSitting(*hand_);
+        }
+        (void)channel_->samples.push(hand_->tick(time, now_, channel_->surface.latest()));
+    }
+    void run(double seconds) {
+        for (std::int64_t ticks = std::llround(seconds * 1000); ticks > 0; --ticks) {
+            tick();
+        }
+    }
+    /// Ends the server in order.
+    void end() {
+        unlink();
+        hand_.reset();
+    }
+
+    [[nodiscard]] haptic_bridge::HapticTick& hand() { return *hand_; }
+    [[nodiscard]] const haptic_bridge::Tick& last() const { return hand_->lastTick(); }
+    [[nodiscard]] sand::force::Vec3 pushed() const { return pushes.back().force; }
+    [[nodiscard]] const sand::Replica& sand() const { return maker_.sand(); }
+    [[nodiscard]] bool linked() const { return maker_.running(); }
+    [[nodiscard]] std::uint64_t counted(haptic_bridge::Guard guard) const {
+        return hand_->guardCounts().all()[static_cast<std::size_t>(guard)];
+    }
+
+    std::vector<Push> pushes;      // that the arm got
+    bool wallStands = false;       // the wall shows no steps: a pause, a full disk, a master that hangs
+    bool sandThreadHangs = false;  // the thread that makes steps does nothing
+
+private:
+    [[nodiscard]] haptic_bridge::StepMaker::Output output() {
+        return {[](std::uint32_t) {}, [](std::uint32_t, haptic_bridge::NeedState) {},
+                [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}};
+    }
+    void runSand() {
+        maker_.collect();
+        if (maker_.running() && now_ >= maker_.due()) {
+            maker_.makeStep();
+            if (!wallStands) {
+                maker_.shown({maker_.sand().stepNumber(), 16'666'667}, now_);
+            }
+        }
+        maker_.refresh();
+    }
+
+    std::int64_t now_ = 0, handNs_ = 0;  // [ns]
+    std::unique_ptr<haptic_bridge::HandChannel> channel_ = std::make_unique<haptic_bridge::HandChannel>();
+    std::unique_ptr<haptic_bridge::HapticTick> hand_;
+    haptic_bridge::ChannelFeed feed_;
+    haptic_bridge::StepMaker maker_;
+    sand::Replica sand_;
+    double ceiling_;
+    std::uint32_t session_ = 0, epoch_ = 0, sitting_ = 0;
+    std::uint64_t shown_ = 0;
+};
+
+}  // namespace test
