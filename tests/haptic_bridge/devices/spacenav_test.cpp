@@ -6,6 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
+#include "haptic_bridge/devices/open_device.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
 
 namespace {
@@ -65,6 +66,16 @@ TEST_F(Spacenav, SaysWhatIsMissing) {
               "--device spacenav: libnospnav.so cannot be loaded; install Debian's libspnav0 and spacenavd");
     call("fakeSpnavDaemon", 0);
     EXPECT_EQ(complaint(library_), "--device spacenav: no daemon answers; start spacenavd");
+}
+
+TEST(RealDevice, IsADriverOrASixAxisMouseAndNothingElse) {
+    for (const char* spec : {"driver:arm.so", "driver:/a/b.so:what", "driver:", "spacenav", "spacenav:lib.so"}) {
+        EXPECT_TRUE(haptic_bridge::isRealDevice(spec)) << spec;
+    }
+    for (const char* spec : {"script:gis", "script:driver:a", "trace:spacenav", "sim:touch",
+                             "sim:touch,path=driver:", "pointer", "none", "", "drivers:a.so", "spacenavd"}) {
+        EXPECT_FALSE(haptic_bridge::isRealDevice(spec)) << spec;
+    }
 }
 
 TEST(Driver, TheExampleOfTheDocumentIsAnArm) {
