@@ -107,7 +107,7 @@ TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
     } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   std::filesystem::absolute(file).string() +
-                      ": is a driver of interface version 0, and this program takes version 1; build it with "
+                      ": is a driver of interface version 0, and this program takes version 2; build it with "
                       "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)");
     }
 }
