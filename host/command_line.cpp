@@ -3,11 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <string_view>
+#include <type_traits>
 
 #include "base/input_error.hpp"
 #include "host/worker_pool.hpp"
@@ -85,9 +87,28 @@ CommandLine::CommandLine(CLI::App* command) : app_(command) {}
 CommandLine::~CommandLine() = default;
 CommandLine::CommandLine(CommandLine&&) noexcept = default;
 
+namespace {
+
+template <class T>
+constexpr bool kIsReal = std::is_same_v<T, double> || std::is_same_v<T, std::optional<double>>;
+
+/// Returns why `text` is not a finite number. Returns an empty text for a finite number, and for a text that is not a
+/// number, which the conversion refuses.
+std::string notFinite(const std::string& text) {
+    double number = 0;
+    const bool finite = !CLI::detail::lexical_cast(text, number) || std::isfinite(number);
+    return finite ? "" : "must be a finite number, got " + text;
+}
+
+}  // namespace
+
 template <class T>
 Option CommandLine::option(const std::string& name, T& value, const std::string& help) {
-    return Option(app_->add_option(name, value, help));
+    CLI::Option* option = app_->add_option(name, value, help);
+    if constexpr (kIsReal<T>) {
+        option->check(notFinite);  // because CLI11 converts "nan" and "inf", and its ranges let NaN pass
+    }
+    return Option(option);
 }
 
 template Option CommandLine::option(const std::string&, std::string&, const std::string&);

@@ -57,7 +57,7 @@ public:
 
     /// Adds an option if `name` begins with "--", otherwise an argument at this place. T: std::string, a path, int,
     /// std::uint16_t, std::uint32_t, std::uint64_t, std::int64_t, double; an optional of most of these; a vector of int
-    /// or std::string. command_line.cpp lists them all.
+    /// or std::string. command_line.cpp lists them all. A double must be a finite number.
     template <class T>
     Option option(const std::string& name, T& value, const std::string& help = "");
     Option flag(const std::string& name, bool& value, const std::string& help = "");

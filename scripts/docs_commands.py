@@ -29,6 +29,7 @@ import time
 
 sys.dont_write_bytecode = True
 import docs_blocks
+from command_line import Parser
 from docs_blocks import BIN, ROOT
 
 PR_SET_CHILD_SUBREAPER = 36
@@ -206,7 +207,7 @@ def pages(paths):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--list", action="store_true")
     parser.add_argument("--seconds", type=int, default=600)
     parser.add_argument("paths", nargs="*", metavar="PAGE.md")

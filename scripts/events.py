@@ -2,13 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """The events that programs of a session write for other programs (docs/events.md)."""
 
-import argparse
 import json
 import os
 import sys
 import time
 
 import checked_json
+import command_line
 import console
 
 VARIABLE = "SANDWALL_EVENTS"
@@ -83,11 +83,11 @@ def wait_for(path, name, seconds, alive=lambda: True, **fields):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Waits for an event in a growing file of output, and prints one field of the event.")
+    parser = command_line.Parser(description="Waits for an event in a growing file of output, and prints one field of the event.")
     parser.add_argument("file")
     parser.add_argument("event")
     parser.add_argument("field")
-    parser.add_argument("--seconds", type=float, default=60, help="how long to wait (default: 60)")
+    parser.add_argument("--seconds", type=command_line.at_least(float, 0), default=60, help="how long to wait (default: 60)")
     args = parser.parse_args()
     event = wait_for(args.file, args.event, args.seconds)
     if event is None or args.field not in event:

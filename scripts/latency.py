@@ -6,7 +6,6 @@ Runs whole sessions for that paper's three walls, directly and over a link that 
 in Markdown. `sandwall-bench latency` runs this script; docs/latency.md explains the table.
 """
 
-import argparse
 import ctypes
 import json
 import math
@@ -21,8 +20,10 @@ import time
 from dataclasses import dataclass
 
 sys.dont_write_bytecode = True
+import command_line
 import events
 import session_results
+from command_line import within
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
@@ -35,7 +36,6 @@ TESTS_PER_SECOND = 20
 REFRESH = 60  # Hz, on every wall
 # Replaces a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
 WIRELESS = {"delay": 3, "jitter": 6, "loss": 0.02, "stall": 40}
-BAD_INPUT = 2
 
 
 @dataclass
@@ -283,12 +283,7 @@ def write_csv(file, rows, said, command):
     file.write_text("\n".join(lines) + "\n")
 
 
-class Parser(argparse.ArgumentParser):
-    """Reports an error in one line."""
-
-    def error(self, message):
-        self.exit(BAD_INPUT, f"{self.prog}: {message}; try --help\n")
-
+class Parser(command_line.Parser):
     def chosen(self, option, text, known):
         names = text.split(",")
         for name in names:
@@ -299,20 +294,14 @@ class Parser(argparse.ArgumentParser):
 
 def parse():
     parser = Parser(prog="sandwall-bench latency", description=__doc__)
-    parser.add_argument("--seconds", type=float, default=20, help="seconds of each session after its warm-up (default: 20)")
-    parser.add_argument("--seed", type=int, default=7, help="seed of the random times and of the impaired link (default: 7)")
-    parser.add_argument("--warm-up", type=float, default=5, help="seconds at the start of each session that do not count (default: 5)")
+    parser.add_argument("--seconds", type=within(float, 1, 3600), default=20, help="seconds of each session after its warm-up (default: 20)")
+    parser.add_argument("--seed", type=within(int, 0, 2**32 - 1), default=7, help="seed of the random times and of the impaired link (default: 7)")
+    parser.add_argument("--warm-up", type=within(float, 0, 3600), default=5, help="seconds at the start of each session that do not count (default: 5)")
     parser.add_argument("--walls", default="portable,FLEX,tiled wall", help="names of walls, separated by commas (default: portable,FLEX,tiled wall)")
     parser.add_argument("--links", default="direct,impaired", help="names of links, separated by commas (default: direct,impaired)")
     parser.add_argument("--loads", default="digging,still", help="names of loads, separated by commas (default: digging,still)")
     parser.add_argument("--out", type=pathlib.Path, help="CSV file to write with the same table")
     args = parser.parse_args()
-    for option, least in (("seconds", 1), ("warm_up", 0)):
-        value = getattr(args, option)
-        if not least <= value <= 3600:
-            parser.error(f"--{option.replace('_', '-')} {value:g}: must be from {least} to 3600")
-    if not 0 <= args.seed < 2**32:
-        parser.error(f"--seed {args.seed}: must be from 0 to 4294967295")
     args.walls = parser.chosen("--walls", args.walls, {wall.name: wall for wall in WALLS})
     args.links = parser.chosen("--links", args.links, {link: link for link in LINKS})
     args.loads = parser.chosen("--loads", args.loads, {load.name: load for load in LOADS})

@@ -8,7 +8,6 @@ period between two ticks and of the time of one force, and the share of missed d
 usage: scripts/loop_timings.py [--seconds 60] [--scene scenes/sandbox.toml]   (leave the machine alone meanwhile)
 """
 
-import argparse
 import csv
 import os
 import pathlib
@@ -17,6 +16,7 @@ import tempfile
 
 sys.dont_write_bytecode = True  # writes no files into the project's folder
 import latency
+from command_line import Parser, above
 
 # Edges of the histogram of periods between two ticks [us]; the target is 1000.
 PERIODS = [0, 500, 900, 990, 1010, 1100, 1500, 2000, 5000, 20000]
@@ -73,8 +73,8 @@ def run(args):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, default=60, help="seconds of digging (default: 60)")
+    parser = Parser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=above(float, 0), default=60, help="seconds of digging (default: 60)")
     parser.add_argument("--scene", type=pathlib.Path, default=latency.SCENE, help="scene file (default: scenes/sandbox.toml)")
     args = parser.parse_args()
     args.warm_up = 0

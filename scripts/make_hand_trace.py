@@ -5,11 +5,13 @@
 It has properties of a real recording that a script device lacks: smooth accelerations, tremor, a position sensor with steps
 of 0.1 mm, and late ticks. The mean period is 1.017 ms, the 99th percentile 2.3 ms; rare gaps last up to 20 ms.
 """
-import argparse
 import math
 import os
 import random
 import sys
+
+sys.dont_write_bytecode = True
+from command_line import Parser, above
 
 MM_PER_HALF_SIDE = 100.0  # the written word is about 180 mm wide
 MM_PER_RADIUS = 4.0       # 0.04 half sides, as in scenes/writing.toml
@@ -29,6 +31,8 @@ def read_strokes(path):
                 continue
             try:
                 values = [float(word) for word in words[1:]]
+                if not all(map(math.isfinite, values)):
+                    raise ValueError
                 if words[0] == "stroke":
                     strokes.append([])
                 elif words[0] == "point":
@@ -99,15 +103,12 @@ def period(luck):
 
 def main():
     here = os.path.dirname(os.path.abspath(__file__))
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("output", help="CSV to write: time,x,y,z in seconds and millimetres")
     parser.add_argument("--strokes", default=os.path.join(here, "..", "haptic_bridge", "devices", "gis.strokes"))
-    parser.add_argument("--seconds", type=float, default=12.0, help="duration of the recording [s] (default: 12)")
+    parser.add_argument("--seconds", type=above(float, 0), default=12.0, help="duration of the recording [s] (default: 12)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    if not options.seconds > 0:
-        sys.exit(f"--seconds must be positive, got {options.seconds}")
-
     luck = random.Random(options.seed)
     tremor = [(luck.uniform(8, 12), luck.uniform(0, 2 * math.pi)) for _ in range(3)]
     plan = moves(read_strokes(options.strokes), options.seconds)

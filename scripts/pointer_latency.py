@@ -18,6 +18,7 @@ import time
 sys.dont_write_bytecode = True
 import events
 import session_results
+from command_line import above, at_least
 from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, pm, processor
 from x_server import XServer
 
@@ -89,8 +90,8 @@ def report(summary, before):
 
 def main():
     parser = Parser(prog="pointer_latency.py", description=__doc__)
-    parser.add_argument("--seconds", type=float, default=20, help="seconds of the session after its warm-up (default: 20)")
-    parser.add_argument("--warm-up", type=float, default=5, help="seconds at the start that do not count as frames (default: 5)")
+    parser.add_argument("--seconds", type=above(float, 0), default=20, help="seconds of the session after its warm-up (default: 20)")
+    parser.add_argument("--warm-up", type=at_least(float, 0), default=5, help="seconds at the start that do not count as frames (default: 5)")
     parser.add_argument("--scene", default=ROOT / "scenes" / "writing.toml", help="scene file (default: scenes/writing.toml)")
     parser.add_argument("--json", action="store_true", help="print the session's summary as JSON")
     args = parser.parse_args()

@@ -7,7 +7,6 @@ continue each time without losing a step that was shown. Its last state hash mus
 journal. The exit status is 0 if all of this holds, else 1. docs/recovery.md
 """
 
-import argparse
 import json
 import os
 import pathlib
@@ -24,6 +23,7 @@ import events
 import processes
 import session_control
 import session_results
+from command_line import Parser, above
 from rank_hosts import BadInput
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -162,7 +162,7 @@ def times(name, seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = Parser(description=__doc__)
     parser.add_argument("--kills", type=int, default=5)
     parser.add_argument("--seed", type=int, default=None, help="seed of victims, signals and times (default: a random one, which is printed)")
     parser.add_argument("--wall", default=str(ROOT / "walls/configs/desktop.toml"))
@@ -170,7 +170,7 @@ def main():
     parser.add_argument("--out", required=True)
     parser.add_argument("--victims", default="rank,master,server", help="programs to kill, separated by commas (default: rank,master,server)")
     parser.add_argument("--signals", default=",".join(SIGNALS))
-    parser.add_argument("--frame-timeout", type=float, default=3, help="seconds after which a hung rank is given up (default: 3)")
+    parser.add_argument("--frame-timeout", type=above(float, 0), default=3, help="seconds after which a hung rank is given up (default: 3)")
     parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
     args = parser.parse_args()
     seed = args.seed if args.seed is not None else random.randrange(1 << 32)

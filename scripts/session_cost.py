@@ -8,7 +8,6 @@ build's folder of programs; the scripts/sandwall of its own source folder starts
 usage: scripts/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs 5]
 """
 
-import argparse
 import os
 import pathlib
 import resource
@@ -20,6 +19,7 @@ import time
 
 sys.dont_write_bytecode = True
 import session_results
+from command_line import Parser
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAMS = {"sandwall-render-node": "rank", "sandwall-master": "master", "sandwall-haptic-server": "haptic server"}
@@ -84,7 +84,7 @@ def session(folder, programs, scene, steps):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", nargs="+", type=pathlib.Path, metavar="BIN", help="a build's folder of programs")
     parser.add_argument("--scene", type=pathlib.Path, default=ROOT / "scenes" / "writing.toml")
     parser.add_argument("--steps", type=int, default=60)

@@ -7,7 +7,6 @@ last state hash and steps with a replay of the journal. Prints a table in Markdo
 threads change after the warm-up, if memory grows, or if sand or steps differ. docs/recovery.md
 """
 
-import argparse
 import os
 import pathlib
 import re
@@ -20,6 +19,7 @@ import time
 sys.dont_write_bytecode = True
 import processes
 import session_results
+from command_line import Parser, above, at_least
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NAMES = ("mpirun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
@@ -120,14 +120,14 @@ def replayed(out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--minutes", type=float, default=60)
+    parser = Parser(description=__doc__)
+    parser.add_argument("--minutes", type=above(float, 0), default=60)
     parser.add_argument("--wall", default=str(ROOT / "walls/configs/desktop.toml"))
     parser.add_argument("--scene", default=str(ROOT / "scenes/sandbox.toml"))
     parser.add_argument("--device", default="script:gis")
     parser.add_argument("--out", required=True)
-    parser.add_argument("--period", type=float, default=5, help="seconds between two samples (default: 5)")
-    parser.add_argument("--warm-up", type=float, default=None, help="seconds before the first sample that counts (default: a quarter of the time, at most 120)")
+    parser.add_argument("--period", type=above(float, 0), default=5, help="seconds between two samples (default: 5)")
+    parser.add_argument("--warm-up", type=at_least(float, 0), default=None, help="seconds before the first sample that counts (default: a quarter of the time, at most 120)")
     parser.add_argument("options", nargs="*", help="after --: more options of sandwall run")
     args = parser.parse_args()
     warm_up = min(120, 15 * args.minutes) if args.warm_up is None else args.warm_up

@@ -11,7 +11,6 @@ is the processor time of a rank for the sand and the busiest tile. The other is 
 usage: scripts/wall_rates.py [--tin] [--seconds S]   (takes six minutes, or fifteen with --tin; the machine should be idle otherwise)
 """
 
-import argparse
 import json
 import math
 import os
@@ -24,6 +23,7 @@ import tempfile
 
 sys.dont_write_bytecode = True
 import session_results
+from command_line import Parser, above
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BIN = ROOT / "build" / "release" / "bin"
@@ -242,8 +242,8 @@ def measure(folder, seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seconds", type=float, help="seconds of each digging session after the warm-up (default: 60; with --tin 12)")
+    parser = Parser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=above(float, 0), help="seconds of each digging session after the warm-up (default: 60; with --tin 12)")
     parser.add_argument("--tin", action="store_true", help="compare TINs with a height field, and measure nothing else")
     parser.add_argument("--runs", type=int, default=3, help="number of runs of each scene with --tin (default: 3)")
     parser.add_argument("--frames", type=int, default=240, help="number of frames of each run with --tin (default: 240)")

@@ -6,6 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
+#include "haptic_bridge/hand/arm_numbers.hpp"
 #include "host/module.hpp"
 
 namespace haptic_bridge {
@@ -77,7 +78,11 @@ std::unique_ptr<Arm> openArmModule(const std::string& spec) {
     void* handle = loadDriver(file, option);
     requireInterface(handle, file);
     const auto open = find<OpenArm>(handle, kArmSymbol, file);
-    return made(option, [&] { return std::unique_ptr<Arm>(open(what.c_str())); });
+    auto arm = made(option, [&] { return std::unique_ptr<Arm>(open(what.c_str())); });
+    if (const auto complaint = complaintAbout(arm->physics(), "a driver")) {
+        throw base::InputError(fmt::format("{}: {}", option, *complaint));
+    }
+    return arm;
 }
 
 }  // namespace haptic_bridge

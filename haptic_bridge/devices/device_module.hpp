@@ -10,7 +10,8 @@
 namespace haptic_bridge {
 
 /// Loads a driver and opens its arm. `spec` is "FILE.so" or "FILE.so:WHAT". Throws base::InputError that begins with
-/// --device if the file is not a driver or the arm cannot be opened. Modules stay loaded.
+/// --device if the file is not a driver or the arm cannot be opened. It also throws if a number of the arm's physics is
+/// missing or out of its bounds. Modules stay loaded.
 [[nodiscard]] std::unique_ptr<Arm> openArmModule(const std::string& spec);
 
 }  // namespace haptic_bridge

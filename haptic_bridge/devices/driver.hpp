@@ -4,7 +4,8 @@
 ///
 /// Derive a class from haptic_bridge::Arm. Give it a constructor that takes `const char* what`: the text after the
 /// file's name in --device, which may be empty. The constructor throws std::exception with one line for the user if the
-/// device does not answer. Name the class in SANDWALL_DRIVER at the end of the source.
+/// device does not answer. It sets every number of ArmPhysics. The server reads them once, when it opens the device.
+/// Name the class in SANDWALL_DRIVER at the end of the source.
 /// haptic_bridge/examples/driver_arm.cpp is a whole driver.
 #pragma once
 
@@ -16,7 +17,7 @@ namespace haptic_bridge {
 
 /// Version of the interface. It grows when drivers must be built again, because Arm, ArmPhysics, ArmReading or the
 /// symbols below have changed.
-inline constexpr int kDriverInterface = 1;
+inline constexpr int kDriverInterface = 2;
 
 inline constexpr const char* kDriverInterfaceSymbol = "sandwallDriverInterface";
 using DriverInterface = int();

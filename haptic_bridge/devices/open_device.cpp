@@ -47,6 +47,11 @@ std::unique_ptr<Device> openTrace(const std::string& what, const HandSettings& s
 
 }  // namespace
 
+bool isRealDevice(std::string_view spec) {
+    const std::string_view kind = spec.substr(0, spec.find(':'));
+    return kind == "driver" || kind == "spacenav";
+}
+
 std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings, const scene::Scene& scene) {
     const auto colon = spec.find(':');
     const std::string kind = spec.substr(0, colon);

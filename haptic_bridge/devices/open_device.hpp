@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/hand_settings.hpp"
@@ -15,5 +16,9 @@ namespace haptic_bridge {
 /// not answer.
 [[nodiscard]] std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& settings,
                                                  const scene::Scene& scene);
+
+/// Returns whether `spec` names hardware, which a person may hold: "driver:FILE.so" or "spacenav". Hardware cannot
+/// follow a virtual clock, and gets no force without limits.
+[[nodiscard]] bool isRealDevice(std::string_view spec);
 
 }  // namespace haptic_bridge

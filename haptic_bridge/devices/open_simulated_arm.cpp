@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
+#include "haptic_bridge/hand/arm_numbers.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 
 namespace haptic_bridge {
@@ -32,11 +32,14 @@ struct Spec {
         return word;
     }
     [[nodiscard]] bool more() const { return begin <= text.size(); }
-    [[nodiscard]] double number(std::string_view key, std::string_view word, double lowest, double highest) const {
+    /// Reads a number for which `allowed` is true. `bounds` are what it allows, in words.
+    template <class Allowed>
+    [[nodiscard]] double number(std::string_view key, std::string_view word, const Allowed& allowed,
+                                const std::string& bounds) const {
         double value = 0;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc{} || end != word.data() + word.size() || !(value >= lowest && value <= highest)) {
-            fail(fmt::format("{} needs a number from {} to {}, got '{}'", key, lowest, highest, word));
+        if (error != std::errc{} || end != word.data() + word.size() || !allowed(value)) {
+            fail(fmt::format("{} needs {}, got '{}'", key, bounds, word));
         }
         return value;
     }
@@ -67,30 +70,37 @@ SimulatedArm::Path pathAlong(const Strokes& strokes, const StrokeSpace& space) {
 struct Settings {
     ArmPhysics physics;
     Grip grip = kUsualGrip;
-    double delay = 0;  // [tick]
 };
+
+/// Sets the number of the arm with this key. Returns false if no number has that key.
+bool setNumberOfArm(ArmPhysics& physics, const Spec& spec, std::string_view key, std::string_view word) {
+    const auto* number =
+        std::find_if(kArmNumbers.begin(), kArmNumbers.end(), [&](const ArmNumber& n) { return n.key == key; });
+    if (key.empty() || number == kArmNumbers.end()) {
+        return false;
+    }
+    const auto allowed = [number](double value) { return number->allows(value); };
+    const double value = spec.number(key, word, allowed, number->bounds());
+    if (number->member != nullptr) {
+        physics.*number->member = value;
+        return true;
+    }
+    if (value != std::floor(value)) {
+        spec.fail(fmt::format("{} must be a whole number of {}, got {}", key, number->unit, word));
+    }
+    physics.delayTicks = static_cast<int>(value);
+    return true;
+}
 
 /// Sets the number with this name. Returns false if no number has that name.
 bool setNumber(Settings& settings, const Spec& spec, std::string_view name, std::string_view value) {
-    struct Key {
-        std::string_view name;
-        double& number;
-        double lowest, highest;
-    };
-    const std::array<Key, 9> keys{{{"grip", settings.grip.stiffness, 0, 1e5},
-                                   {"grip_damping", settings.grip.damping, 0, 1e3},
-                                   {"delay", settings.delay, 0, 10},
-                                   {"damping", settings.physics.damping, 0, 1e3},
-                                   {"mass", settings.physics.mass, 1e-3, 1e2},
-                                   {"friction", settings.physics.friction, 0, 1e2},
-                                   {"resolution", settings.physics.resolution, 0, 1e-2},
-                                   {"max_force", settings.physics.maxForce, 0, 1e3},
-                                   {"stiffness", settings.physics.maxStiffness, 0, 1e6}}};
-    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
-    if (key == keys.end()) {
-        return false;
+    if (name != "grip" && name != "grip_damping") {
+        return setNumberOfArm(settings.physics, spec, name, value);
     }
-    key->number = spec.number(name, value, key->lowest, key->highest);
+    const double highest = name == "grip" ? 1e5 : 1e3;
+    double& number = name == "grip" ? settings.grip.stiffness : settings.grip.damping;
+    const auto allowed = [highest](double given) { return given >= 0 && given <= highest; };
+    number = spec.number(name, value, allowed, fmt::format("a number from 0 to {}", highest));
     return true;
 }
 
@@ -103,7 +113,7 @@ std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const St
     if (!physics) {
         spec.fail(fmt::format("preset '{}' is unknown; give touch, falcon, omega.3 or delta.3", preset));
     }
-    Settings settings{.physics = *physics, .delay = static_cast<double>(physics->delayTicks)};
+    Settings settings{.physics = *physics};
     SimulatedArm::Path path;
     while (spec.more()) {
         const std::string_view word = spec.next();
@@ -119,10 +129,6 @@ std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& text, const St
                 name));
         }
     }
-    if (settings.delay != std::floor(settings.delay)) {
-        spec.fail(fmt::format("delay must be a whole number of ticks, got {}", settings.delay));
-    }
-    settings.physics.delayTicks = static_cast<int>(settings.delay);
     return std::make_unique<SimulatedArm>(settings.physics, settings.grip, std::move(path));
 }
 

@@ -45,7 +45,7 @@ public:
     [[nodiscard]] double kineticEnergy() const;                                              // [J]
 
 private:
-    static constexpr std::size_t kMostPending = 16;
+    static constexpr std::size_t kMostPending = 32;  // twice the longest delay, because ticks may come early
     struct Pending {
         double due = 0;  // [s]
         sand::force::Vec3 force;
@@ -75,8 +75,8 @@ struct StrokeSpace {
 };
 
 /// Opens "sim:PRESET[,KEY=VALUE]...". The keys are path=FILE.strokes or path=gis, grip=N/m, grip_damping=N·s/m, and
-/// delay (ticks), damping, mass, friction, resolution, max_force and stiffness in the units of ArmPhysics. Throws
-/// base::InputError.
+/// delay (ticks), damping, mass, friction, resolution, max_force and stiffness in the units and bounds of kArmNumbers.
+/// Throws base::InputError.
 [[nodiscard]] std::unique_ptr<SimulatedArm> openSimulatedArm(const std::string& spec, const StrokeSpace& space = {});
 
 }  // namespace haptic_bridge

@@ -39,7 +39,8 @@ public:
         if (!maker::open(what)) {
             throw std::runtime_error(maker::lastError());
         }
-        // From the data sheet. The guards rely on these numbers. If in doubt, give too little damping, not too much.
+        // From the data sheet. The guards rely on these numbers. The server refuses a number that is missing or out of
+        // the bounds in docs/devices.md. If in doubt, give too little damping, not too much.
         physics_.name = "my device";
         physics_.mass = 0.2;           // [kg], apparent at the tip
         physics_.damping = 1.0;        // [N s/m]
@@ -47,7 +48,7 @@ public:
         physics_.resolution = 2e-5;    // [m]
         physics_.maxForce = 8;         // [N]
         physics_.reach = 0.06;         // [m]
-        physics_.maxStiffness = 2000;  // [N/m]
+        physics_.maxStiffness = 2000;  // [N/m]; infinity if the maker states none
         physics_.delayTicks = 1;       // [tick of 1 ms]; this thread adds up to one
         thread_ = std::thread([this] { talk(); });
     }

@@ -136,10 +136,20 @@ def secret_of(file):
     sys.exit(f"{file}: holds no line: move SECRET, of at least 16 characters; openssl rand -hex 32 makes one")
 
 
+def positive(text):
+    number = float(text)
+    if not (math.isfinite(number) and number > 0):  # float() also reads nan and inf
+        raise argparse.ArgumentTypeError(f"must be a finite number above 0, got {text}")
+    return number
+
+
+positive.__name__ = "number"  # argparse prints this name if the text is not a number
+
+
 def main():
     parser = argparse.ArgumentParser(description="Streams a hand's positions to the master of a wall.")
     parser.add_argument("--listen", default="127.0.0.1:7750", metavar="ADDRESS:PORT", help="port 0 takes any free one")
-    parser.add_argument("--rate", type=float, default=500, help="positions a second")
+    parser.add_argument("--rate", type=positive, default=500, help="positions a second")
     parser.add_argument("--secret-file", metavar="FILE", help="line: move SECRET, the same as the wall's")
     args = parser.parse_args()
     address, _, port = args.listen.rpartition(":")

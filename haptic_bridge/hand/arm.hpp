@@ -9,18 +9,21 @@
 namespace haptic_bridge {
 
 /// Physical properties of an arm, from its data sheet or from measurements. The limits of its forces follow from them
-/// (docs/forces.md).
+/// (docs/forces.md). No number has a default. The server refuses a driver that leaves one out, or gives one outside
+/// the bounds of haptic_bridge/hand/arm_numbers.hpp.
 struct ArmPhysics {
+    static constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+    static constexpr int kNoDelayGiven = -1;
+
     std::string name;
-    double mass = 0.05;                                             // [kg], apparent mass at the tip
-    double damping = 0.5;                                           // [N · s/m], of the arm itself
-    double friction = 0;                                            // [N], Coulomb friction
-    double resolution = 0;                                          // [m]
-    double maxForce = 3.3;                                          // [N]
-    double reach = 0.075;                                           // [m], from the middle of its workspace
-    double maxStiffness = std::numeric_limits<double>::infinity();  // [N/m], largest that its maker allows; infinite if
-                                                                    // the maker states none
-    int delayTicks = 0;  // [tick of 1 ms], from reading a place until the force acts
+    double mass = kNotGiven;          // [kg], apparent mass at the tip
+    double damping = kNotGiven;       // [N · s/m], of the arm itself
+    double friction = kNotGiven;      // [N], Coulomb friction
+    double resolution = kNotGiven;    // [m]
+    double maxForce = kNotGiven;      // [N]
+    double reach = kNotGiven;         // [m], from the middle of its workspace
+    double maxStiffness = kNotGiven;  // [N/m], largest that its maker allows; infinite if the maker states none
+    int delayTicks = kNoDelayGiven;   // [tick of 1 ms], from reading a place until the force acts
 };
 
 /// One reading of an arm, in the arm's own axes.

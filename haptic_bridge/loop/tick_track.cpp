@@ -7,6 +7,8 @@
 #include <iterator>
 #include <limits>
 
+#include "haptic_bridge/hand/arm_numbers.hpp"
+
 namespace haptic_bridge {
 namespace {
 
@@ -96,6 +98,11 @@ TrackHeader getHeader(base::ByteReader& reader) {
     header.scale = reader.get<double>();
     header.datum = static_cast<HandSettings::Datum>(reader.get<std::uint8_t>() & 1);
     header.literal = reader.get<std::uint8_t>() != 0;
+    if (header.body) {  // a replay computes the limits of the forces from these numbers
+        if (const auto complaint = complaintAbout(header.physics, "an arm")) {
+            throw base::FormatError("a tick track: " + *complaint);
+        }
+    }
     return header;
 }
 

@@ -173,7 +173,22 @@ void tellAtTheEnd(const Options& options, const HapticTick& hand, const ForceLoo
     }
 }
 
+/// Refuses what a real device cannot do or may not get. Call it before the device is opened.
+void checkRealDevice(const Options& options) {
+    if (isRealDevice(options.device) && options.pace == Pace::fast) {
+        throw base::InputError(
+            "--pace fast: drives a virtual clock, which a real device cannot follow; use it with script:, trace: or "
+            "sim:, or give --pace realtime");
+    }
+    if (isRealDevice(options.device) && options.guards == Guards::Mode::literal) {
+        throw base::InputError(
+            "--guards literal: sends the law without limits, which only a simulated arm may get; use it with sim:, or "
+            "give --guards on");
+    }
+}
+
 void serve(const Options& options) {
+    checkRealDevice(options);
     const LinkSecurity security = options.link.forServer();
     const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
@@ -227,7 +242,7 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--map", options.map, "KEY=VALUE, a setting of the mapping to the sand (docs/devices.md); repeatable")
         .oneValueEach();
     line.choice<Pace>("--pace", options.pace, {{"realtime", Pace::realtime}, {"fast", Pace::fast}},
-                      "realtime, or fast: a virtual clock that runs as fast as the wall");
+                      "realtime, or fast: a virtual clock that runs as fast as the wall; not for driver: and spacenav");
     line.option("--record", options.record,
                 "a CSV file: one row per tick, and the same ticks go into the session's journal");
     line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
@@ -235,9 +250,9 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--force-scale", options.forceScale,
                 "0 to 1: the share of the force that an arm feels, until an operator of the session sets one")
         .range(0.0, 1.0);
-    line.choice<Guards::Mode>("--guards", options.guards,
-                              {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
-                              "on, or literal: the paper's law without limits, for simulated arms only");
+    line.choice<Guards::Mode>(
+        "--guards", options.guards, {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
+        "on, or literal: the paper's law without limits, for simulated arms only; not for driver: and spacenav");
     line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     line.option("--port-file", options.portFile, "file that gets the port's number when the server listens");
     line.option("--timings", options.timings,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -25,7 +24,7 @@ void require(bool good, const char* option, const char* range, Number got) {
     }
 }
 
-/// Checks the options. The checks of the command line would accept "nan".
+/// Checks the ranges of the options. Some of these ranges are open, and a message names their unit.
 void check(const Options& options) {
     require(options.talus >= 0 && options.talus < 90, "--talus", "within [0, 90) degrees", options.talus);
     require(options.band >= 0 && options.band <= 1, "--band", "within [0, 1]", options.band);
@@ -38,8 +37,7 @@ void check(const Options& options) {
                 *options.most);
     }
     if (options.maxError) {
-        require(*options.maxError >= 0 && std::isfinite(*options.maxError), "--max-error", "0 or more",
-                *options.maxError);
+        require(*options.maxError >= 0, "--max-error", "0 or more", *options.maxError);
     }
     if (options.vertices) {
         require(*options.vertices >= 4 && *options.vertices <= scene::relax::kMostVertices, "--vertices",

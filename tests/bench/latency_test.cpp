@@ -60,7 +60,7 @@ TEST(LatencyBench, MeasuresAWallBesideTheFloor) {
 
 TEST(LatencyBench, RefusesInOneLineWhatItCannotDo) {
     for (const auto& [arguments, named] : {std::pair{"--walls cave", "--walls: 'cave'"},
-                                           {"--seconds 0", "--seconds 0"},
+                                           {"--seconds 0", "--seconds: 0 must be from 1 to 3600"},
                                            {"--out /nowhere/a.csv", "/nowhere/a.csv"},
                                            {"--secnods 3", "--secnods 3"}}) {
         const support::Ran ran = runProgram("sandwall-bench", std::string("latency ") + arguments);

@@ -23,6 +23,14 @@ TEST_F(BadInput, OfTheHapticServerIsNamed) {
     const std::string trace = write("t.csv", "time,x,y,z\n0.0,1,2,3\n0.001,1,zwei,3\n");
     expectRefusal({"--wall", wall(1, 1), "--scene", scene(), "--out", out(), "--device", "trace:" + trace},
                   "t.csv:3: ");
+    const std::vector<std::string> driver{"--wall", wall(1, 1), "--scene",  scene(),
+                                          "--out",  out(),      "--device", "driver:/nowhere/my.so"};
+    for (const std::vector<std::string>& unsafe :
+         {std::vector<std::string>{"--pace", "fast"}, {"--guards", "literal"}}) {
+        std::vector<std::string> all = driver;
+        all.insert(all.end(), unsafe.begin(), unsafe.end());
+        expectRefusal(all, "sandwall-haptic-server: " + unsafe[0] + " " + unsafe[1] + ": ");
+    }
     expectRefusal({"--wall", wall(1, 1), "--scene", scene(), "--out", out(), "--device", "glove"}, "glove");
 }
 

@@ -35,6 +35,8 @@ protected:
         line_.option("FILE", file_, "a file").required();
         line_.option("--rate", rate_, "a rate").range(1, 1000);
         line_.option("--share", share_, "a share").range(0.0, 1.0);
+        line_.option("--way", way_, "a way [m]");
+        line_.option("--wait", wait_, "a wait [s]").notNegative();
         line_.option("--kind", kind_, "a kind").oneOf({"grid", "tin"});
         line_.option("--sizes", sizes_, "sizes").commaSeparated();
         line_.choice<bool>("--force", force_, {{"on", true}, {"off", false}}, "whether there is a force");
@@ -57,7 +59,8 @@ protected:
     host::CommandLine line_{"Does something.", "tool"};
     std::string file_, kind_, eye_;
     int rate_ = 5;
-    double share_ = 0;
+    double share_ = 0, way_ = 0;
+    std::optional<double> wait_;
     std::vector<int> sizes_;
     bool force_ = true, film_ = false, live_ = false;
     std::optional<std::uint64_t> until_;
@@ -111,6 +114,19 @@ TEST_F(CommandLineOptions, RefusesWhatItCannotUseInOneLine) {
     expectRefused({"a", "--live", "--film"}, "--film");
     expectRefused({"a", "--until", "13"}, "13 brings no luck");
     expectRefused({"a", "--unknown"}, "--unknown");
+}
+
+// CLI11 converts all of these texts. Its ranges do not refuse NaN, because each comparison with NaN is false.
+TEST_F(CommandLineOptions, RefusesNumbersThatAreNotFinite) {
+    for (const std::string option : {"--share", "--way", "--wait"}) {
+        for (const std::string number : {"nan", "NaN", "-nan", "nan(0x1)", "inf", "-inf", "Infinity", "1e999"}) {
+            expectRefused({"a", option + "=" + number}, option + ": must be a finite number, got " + number);
+        }
+        expectRefused({"a", option, "far"}, option);
+    }
+    EXPECT_EQ(parse(line_, {"a", "--way", "-1e300", "--wait", "0x10"}).status, std::nullopt);
+    EXPECT_EQ(way_, -1e300);
+    EXPECT_EQ(wait_, 16);
 }
 
 TEST(CommandLineCommands, OneOfThemMustBeGiven) {

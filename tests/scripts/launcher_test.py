@@ -185,8 +185,7 @@ class Refusals(LauncherTest):
         self.assertIn("not allowed with argument", self.refused(["-"], "--mono", "--stereo", "mono"))
 
     def test_a_number_that_is_none_or_too_small_is_refused(self):
-        for option, value in (("--restarts", "-1"), ("--restart-window", "nan"), ("--restart-window", "-5"),
-                              ("--checkpoint", "inf")):
+        for option, value in (("--restarts", "-1"), ("--restart-window", "-5"), ("--checkpoint", "-0.1")):
             self.assertEqual(self.refused(["-"], option, value),
                              f"sandwall run: argument {option}: {value} must be 0 or more; try --help\n")
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "haptic_bridge/devices/simulated_arm.hpp"
 
@@ -20,6 +21,7 @@ inline haptic_bridge::ArmPhysics textbookArm(double damping, int delayTicks = 0,
     arm.resolution = 0;
     arm.maxForce = 1e300;
     arm.reach = 1e300;
+    arm.maxStiffness = std::numeric_limits<double>::infinity();
     arm.delayTicks = delayTicks;
     return arm;
 }

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cfenv>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -15,8 +17,9 @@ using haptic_bridge::ArmReading;
 using sand::force::Vec3;
 
 /// A faulty arm. It presses into the sand, and after half a second has the fault `what`. With "press:FILE" it keeps
-/// pressing. With "rough" its constructor leaves another rounding behind. Its destructor writes the greatest force that
-/// it was pushed with.
+/// pressing, and its destructor writes the greatest force that it was pushed with. With "rough" its constructor leaves
+/// another rounding behind. With "number:NAME=VALUE:FILE" a number of its physics has this value, or its default for
+/// the value "forgotten". Each push then adds a line to the file.
 class BadArm : public haptic_bridge::Arm {
 public:
     explicit BadArm(std::string what) : what_(std::move(what)) {
@@ -27,7 +30,10 @@ public:
             std::fesetround(FE_UPWARD);  // as a library of fast-math that the driver loads when it opens its device
         }
         physics_.name = "bad";
-        physics_.reach = 0.1;
+        if (what_.starts_with("number:")) {
+            takeNumber();
+        }
+        setOthers();
     }
     ~BadArm() override {
         if (what_.starts_with("press:")) {
@@ -48,11 +54,57 @@ public:
         }
         return reading;
     }
-    void push(Vec3 force) override { largest_ = std::max(largest_, norm(force)); }
+    void push(Vec3 force) override {
+        largest_ = std::max(largest_, norm(force));
+        if (!pushed_.empty()) {
+            std::ofstream(pushed_, std::ios::app) << norm(force) << '\n';
+        }
+    }
 
 private:
+    void takeNumber() {
+        const auto equals = what_.find('='), colon = what_.find(':', equals);
+        name_ = what_.substr(7, equals - 7);
+        pushed_ = what_.substr(colon + 1);
+        const std::string value = what_.substr(equals + 1, colon - equals - 1);
+        if (value == "forgotten") {
+            return;
+        }
+        if (name_ == "delayTicks") {
+            physics_.delayTicks = std::stoi(value);
+        } else {
+            *numbers_.at(name_) = std::strtod(value.c_str(), nullptr);
+        }
+    }
+    /// Sets all numbers but that of the SPEC to those of a Touch with a larger reach.
+    void setOthers() {
+        for (const auto& [name, value] : std::map<std::string, double>{{"mass", 0.05},
+                                                                       {"damping", 0.5},
+                                                                       {"friction", 0},
+                                                                       {"resolution", 0},
+                                                                       {"maxForce", 3.3},
+                                                                       {"reach", 0.1},
+                                                                       {"maxStiffness", HUGE_VAL}}) {
+            if (name != name_) {
+                *numbers_.at(name) = value;
+            }
+        }
+        if (name_ != "delayTicks") {
+            physics_.delayTicks = 0;
+        }
+    }
+
     std::string what_;
     haptic_bridge::ArmPhysics physics_;
+    const std::map<std::string, double*> numbers_{{"mass", &physics_.mass},
+                                                  {"damping", &physics_.damping},
+                                                  {"friction", &physics_.friction},
+                                                  {"resolution", &physics_.resolution},
+                                                  {"maxForce", &physics_.maxForce},
+                                                  {"reach", &physics_.reach},
+                                                  {"maxStiffness", &physics_.maxStiffness}};
+    std::string name_;    // of the number that `what` sets
+    std::string pushed_;  // file of the pushes
     int reads_ = 0;
     double largest_ = 0;
 };

@@ -106,8 +106,11 @@ TEST(TraceDevice, BridgesGapsByTime) {
 }
 
 TEST(HandSettings, NamesTheOptionItCannotRead) {
-    for (const char* wrong : {"scale", "scale=0", "scale=x", "axes=x,y", "axes=x,x,z", "axes=x,y,q", "time=h",
-                              "columns=a,b,c", "columns=a,,c,d", "origin=1,2", "engage=maybe", "datum=sea", "tilt=3"}) {
+    for (const char* wrong :
+         {"scale",           "scale=0",       "scale=x",        "axes=x,y",     "axes=x,x,z",   "axes=x,y,q",
+          "time=h",          "columns=a,b,c", "columns=a,,c,d", "origin=1,2",   "engage=maybe", "datum=sea",
+          "tilt=3",          "scale=nan",     "scale=inf",      "vertical=nan", "vertical=inf", "origin=0,nan,0",
+          "origin=0,0,-inf", "depth=nan",     "depth=inf",      "drift=nan",    "drift=inf"}) {
         const std::string message = test::refusalOf([&] { (void)HandSettings::parse({wrong}); });
         EXPECT_EQ(message.find(std::string("--map ") + wrong + ":"), 0U) << message;
     }
@@ -126,6 +129,18 @@ TEST(Strokes, NamesTheLineOfWhatItCannotRead) {
     starts("speed 0\n", "word:1: 'speed' needs a number");
     starts("stroke\nline 0 0\n", "word:2: 'line' is unknown; write stroke");
     starts("stroke\narc 0 0 1 1 0\n", "word:2: 'arc' takes");
+    for (const std::string number : {"nan", "inf", "-inf"}) {
+        for (const std::string word : {"speed", "depth", "travel", "lift", "heading"}) {
+            starts(word + " " + number, "word:1: '" + word + "' needs a number from ");
+        }
+        starts("stroke\npoint 0 0\nhold " + number, "word:3: 'hold' needs a number from ");
+        starts("stroke\npoint 0 " + number, "word:2: 'point' needs a number from ");
+        for (const std::string arc :
+             {"? 0 1 1 0 90", "0 ? 1 1 0 90", "0 0 ? 1 0 90", "0 0 1 ? 0 90", "0 0 1 1 ? 90", "0 0 1 1 0 ?"}) {
+            std::string values = arc;
+            starts("stroke\narc " + values.replace(arc.find('?'), 1, number), "word:2: 'arc' needs a number from ");
+        }
+    }
 }
 
 TEST(StrokeDevice, DrawsAtItsSpeedLiftsBetweenAndHoversAtTheEnd) {

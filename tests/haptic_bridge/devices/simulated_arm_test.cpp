@@ -240,9 +240,9 @@ TEST(OpenSimulatedArm, NamesWhatItCannotRead) {
     };
     starts("sim:", "--device sim:: preset '' is unknown; give touch");
     starts("sim:phantom", "--device sim:phantom: preset 'phantom' is unknown; give touch, falcon, omega.3 or delta.3");
-    starts("sim:touch,mass=0", "--device sim:touch,mass=0: mass needs a number from 0.001 to 100, got '0'");
-    starts("sim:touch,mass=nan", "--device sim:touch,mass=nan: mass needs a number");
-    starts("sim:touch,damping=-1", "--device sim:touch,damping=-1: damping needs a number");
+    starts("sim:touch,mass=0", "--device sim:touch,mass=0: mass needs 0.005 to 10 kg, got '0'");
+    starts("sim:touch,mass=nan", "--device sim:touch,mass=nan: mass needs 0.005 to 10 kg, got 'nan'");
+    starts("sim:touch,damping=-1", "--device sim:touch,damping=-1: damping needs more than 0 and at most 100 N s/m");
     starts("sim:touch,delay=0.5", "--device sim:touch,delay=0.5: delay must be a whole number of ticks");
     starts("sim:touch,colour=red", "--device sim:touch,colour=red: key 'colour' is unknown");
     starts("sim:touch,", "--device sim:touch,: key '' is unknown; the keys are path");

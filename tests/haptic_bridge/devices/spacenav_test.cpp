@@ -6,6 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
+#include "haptic_bridge/devices/open_device.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
 
 namespace {
@@ -67,6 +68,16 @@ TEST_F(Spacenav, SaysWhatIsMissing) {
     EXPECT_EQ(complaint(library_), "--device spacenav: no daemon answers; start spacenavd");
 }
 
+TEST(RealDevice, IsADriverOrASixAxisMouseAndNothingElse) {
+    for (const char* spec : {"driver:arm.so", "driver:/a/b.so:what", "driver:", "spacenav", "spacenav:lib.so"}) {
+        EXPECT_TRUE(haptic_bridge::isRealDevice(spec)) << spec;
+    }
+    for (const char* spec : {"script:gis", "script:driver:a", "trace:spacenav", "sim:touch",
+                             "sim:touch,path=driver:", "pointer", "none", "", "drivers:a.so", "spacenavd"}) {
+        EXPECT_FALSE(haptic_bridge::isRealDevice(spec)) << spec;
+    }
+}
+
 TEST(Driver, TheExampleOfTheDocumentIsAnArm) {
     const auto arm = haptic_bridge::openArmModule(SANDWALL_BIN_DIR "/example-driver.so:first");
     EXPECT_EQ(arm->physics().name, "my device");
@@ -96,7 +107,7 @@ TEST(Driver, OfAnotherInterfaceVersionIsRefused) {
     } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()),
                   std::filesystem::absolute(file).string() +
-                      ": is a driver of interface version 0, and this program takes version 1; build it with "
+                      ": is a driver of interface version 0, and this program takes version 2; build it with "
                       "haptic_bridge/devices/driver.hpp of this version of Sandwall (docs/devices.md)");
     }
 }

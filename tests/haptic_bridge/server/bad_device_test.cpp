@@ -10,7 +10,7 @@ using haptic_bridge::Client;
 
 class BadDevice : public testing::Test {
 protected:
-    std::vector<std::string> words(const std::string& what, const std::string& pace) {
+    std::vector<std::string> words(const std::string& what, const std::string& pace = "realtime") {
         auto all = ServerProcess::usual(sceneFile_, folder_, 0, pace);
         all[3] = "driver:" SANDWALL_BIN_DIR "/bad-driver.so:" + what;
         return all;
@@ -25,7 +25,7 @@ TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {
          {std::pair{"stops", "does not answer; the tool is lifted and the hand feels nothing until it answers"},
           {"nan", "sends values that are not finite, "},
           {"jumps", "jumps, "}}) {
-        ServerProcess server(folder_, words(what, "fast"));
+        ServerProcess server(folder_, words(what));
         Client client(server.address(), offerOf(scene_));
         Wall wall(scene_);
         ASSERT_TRUE(wall.follow(client, 120)) << client.link().message << "\n" << server.errors();
@@ -44,14 +44,14 @@ TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {
 }
 
 TEST_F(BadDevice, ThatCannotBeOpenedIsNamed) {
-    ServerProcess server(folder_, words("throws", "fast"));
+    ServerProcess server(folder_, words("throws"));
     EXPECT_EQ(server.wait(), 2);
     EXPECT_NE(server.errors().find("bad-driver.so:throws: the device on USB 3 is taken"), std::string::npos)
         << server.errors();
 }
 
 TEST_F(BadDevice, WhoseDriverChangesTheRoundingWhenItOpensIsSetBack) {
-    ServerProcess server(folder_, words("rough", "fast"));
+    ServerProcess server(folder_, words("rough"));
     Client client(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 10)) << client.link().message << "\n" << server.errors();
@@ -62,9 +62,33 @@ TEST_F(BadDevice, WhoseDriverChangesTheRoundingWhenItOpensIsSetBack) {
     EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
 }
 
+// With "press:FILE" the driver writes a file when its arm is closed. Without the file it was never opened.
+TEST_F(BadDevice, IsNotOpenedForAVirtualClockOrForForcesWithoutLimits) {
+    const std::string pushed = folder_.file("pushed");
+    for (const std::string& device : {"driver:" SANDWALL_BIN_DIR "/bad-driver.so:press:" + pushed,
+                                      std::string("spacenav:" SANDWALL_BIN_DIR "/fake-spnav.so")}) {
+        auto fast = words("");
+        auto literal = words("");
+        fast[3] = literal[3] = device;
+        fast[5] = "fast";
+        literal.insert(literal.end(), {"--guards", "literal"});
+        ServerProcess first(folder_, fast);
+        EXPECT_EQ(first.wait(), 2);
+        EXPECT_EQ(first.errors(),
+                  "sandwall-haptic-server: --pace fast: drives a virtual clock, which a real device cannot follow; use "
+                  "it with script:, trace: or sim:, or give --pace realtime\n");
+        ServerProcess second(folder_, literal);
+        EXPECT_EQ(second.wait(), 2);
+        EXPECT_EQ(second.errors(),
+                  "sandwall-haptic-server: --guards literal: sends the law without limits, which only a simulated arm "
+                  "may get; use it with sim:, or give --guards on\n");
+        EXPECT_FALSE(std::filesystem::exists(pushed));
+    }
+}
+
 TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeel) {
     for (const bool asked : {false, true}) {
-        auto all = words("press:" + folder_.file("pushed"), "realtime");
+        auto all = words("press:" + folder_.file("pushed"));
         all.insert(all.end(), {"--force", "off"});
         ServerProcess server(folder_, all);
         Client client(server.address(), offerOf(scene_));

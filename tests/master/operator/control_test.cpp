@@ -71,6 +71,12 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
     EXPECT_EQ(complaint("tool radius=1e999"), "a tool's radius must be a number, got '1e999'");
     EXPECT_EQ(complaint("tool heading=nan"), "a tool's heading must be a number, got 'nan'");
+    for (const std::string number : {"nan", "inf", "-inf"}) {
+        EXPECT_EQ(complaint("material talus " + number), "talus must be a number, got '" + number + "'");
+        EXPECT_EQ(complaint("tool radius=" + number), "a tool's radius must be a number, got '" + number + "'");
+        EXPECT_EQ(complaint("tool width=" + number), "a tool's width must be a number, got '" + number + "'");
+        EXPECT_NE(complaint("tool " + number).find("left or right, got '" + number + "'"), std::string::npos);
+    }
     EXPECT_EQ(complaint("tool 1e999"),
               "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
               "heading=, foot=left or right, got '1e999'");

@@ -102,7 +102,7 @@ TEST_F(RelaxTin, OptionsThatWouldDoNothingAreRefused) {
     expectRefused("in.csv out.ply --talus 30 --scheme g_plain", "--scheme must be g or settle for a TIN, got g_plain");
     expectRefused("in.csv out.ply --talus 30 --threads 2", "--threads must be left out for a TIN");
     expectRefused("in.csv out.ply --talus 30 --bedrock in.asc", "--bedrock must be left out for a TIN");
-    expectRefused("in.asc out.ply --talus 30 --max-error nan", "--max-error must be 0 or more, got nan");
+    expectRefused("in.asc out.ply --talus 30 --max-error -1", "--max-error must be 0 or more, got -1");
     expectRefused("in.asc out.ply --talus 30 --vertices 3", "--vertices must be within [4, 4194304], got 3");
     expectRefused("in.csv none/out.ply --talus 30", "none/out.ply");
 }

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Command lines of the scripts: errors in one line, and types of numbers for argparse. These types refuse nan and inf."""
+
+import argparse
+import math
+
+BAD_INPUT = 2
+
+
+class Parser(argparse.ArgumentParser):
+    """Reports an error in one line, as all our programs do."""
+
+    def error(self, message):
+        self.exit(BAD_INPUT, f"{self.prog}: {message}; try --help\n")
+
+
+def number(kind, allowed, words):
+    """Returns a type for argparse: finite numbers of `kind` for which `allowed` is true. `words` say which these are."""
+    def read(text):
+        value = kind(text)
+        if not math.isfinite(value):
+            raise argparse.ArgumentTypeError(f"must be a finite number, got {text}")
+        if not allowed(value):
+            raise argparse.ArgumentTypeError(f"{text} must be {words}")
+        return value
+
+    read.__name__ = kind.__name__  # argparse prints this name if the text is not a number
+    return read
+
+
+def at_least(kind, least):
+    return number(kind, lambda value: value >= least, f"{least} or more")
+
+
+def above(kind, bound):
+    return number(kind, lambda value: value > bound, f"more than {bound}")
+
+
+def within(kind, least, most):
+    return number(kind, lambda value: least <= value <= most, f"from {least} to {most}")
