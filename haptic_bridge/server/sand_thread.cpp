@@ -55,14 +55,10 @@ void SandThread::run() {
         }
         stopping = commands.stops;
         const bool commanded = !commands.empty();
-        const bool ran = maker_.running();
         obey(commands);
         maker_.collect();
-        const bool steps = stepDue && !commanded && maker_.running();
-        if (steps) {
+        if (stepDue && !commanded && maker_.running()) {
             maker_.makeStep();
-        }
-        if (steps || maker_.running() != ran) {
         }
     }
 }
