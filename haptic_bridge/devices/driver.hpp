@@ -5,6 +5,9 @@
 /// Derive a class from haptic_bridge::Arm. Give it a constructor that takes `const char* what`: the text after the
 /// file's name in --device, which may be empty. The constructor throws std::exception with one line for the user if the
 /// device does not answer. Name the class in SANDWALL_DRIVER at the end of the source.
+///
+/// A device holds its last force when this process is killed, crashes or hangs. So a driver sends 0 to its device when
+/// push() was not called for 10 ms. It also switches on the watchdog of the device, if the device has one.
 /// haptic_bridge/examples/driver_arm.cpp is a whole driver.
 #pragma once
 
