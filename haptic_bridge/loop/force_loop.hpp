@@ -13,12 +13,19 @@ namespace haptic_bridge {
 ///
 /// It sleeps until absolute deadlines, with real-time priority if the host allows it. If the loop is late by one tick
 /// or more, it skips the missed ticks. A burst of late ticks would feel the same place again and again.
+///
+/// When it ends, it pushes 0, whatever the reason. An exception of the device or of a tick ends it too; the channel
+/// gets the exception.
 class ForceLoop {
 public:
-    ForceLoop(HapticTick& hand, HandChannel& channel);
+    /// `device` names the device in messages.
+    ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device);
     ~ForceLoop();
     ForceLoop(const ForceLoop&) = delete;
     ForceLoop& operator=(const ForceLoop&) = delete;
+
+    /// Ends the loop, and waits until it has pushed 0.
+    void stop();
 
     // These functions may be called by any thread.
     [[nodiscard]] const base::LiveHistogram& period() const { return period_; }

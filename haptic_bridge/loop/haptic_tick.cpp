@@ -57,6 +57,15 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
     tellWhere(tick_.sample);
 }
 
+HapticTick::~HapticTick() { letGo(); }
+
+void HapticTick::letGo() noexcept {
+    try {
+        device_->sendForce({});
+    } catch (...) {  // a device that takes no force any more
+    }
+}
+
 void HapticTick::restart() {
     model_ = sand::force::ForceModel(constants_);
     guards_.forget();

@@ -46,6 +46,10 @@ public:
     /// `scene` must outlive this object. `datum` counts only for a device without a body.
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum,
                Guards::Mode mode = Guards::Mode::on);
+    /// Lets go.
+    ~HapticTick();
+    HapticTick(const HapticTick&) = delete;
+    HapticTick& operator=(const HapticTick&) = delete;
 
     /// Runs one tick. Returns the quantised sample of the hand, from which the next step is made. If the pose is not
     /// finite or an arm does not answer, the sample hovers at the last place.
@@ -57,6 +61,9 @@ public:
     /// Reads the device at `deviceTime` [s] and sends zero force. Called while no master is linked, so that the device
     /// still counts its troubles and where() follows the hand.
     void rest(double deviceTime);
+    /// Pushes 0, because an arm holds its last force until the next one. An exception of the device is dropped: it may
+    /// be the reason why the hand lets go.
+    void letGo() noexcept;
     /// Forgets all earlier ticks, except in the counters. Called when a link begins, so that its forces depend only on
     /// its own ticks.
     void restart();

@@ -119,12 +119,12 @@ scene::Scene openScene(const std::string& file) {
     return scene;
 }
 
-std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand) {
+std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand, FirstFailure& failure) {
     if (options.record.empty()) {
         return nullptr;
     }
     return std::make_unique<TickRecorder>(TickRecorder::Options{options.record, options.pace == Pace::fast, print},
-                                          hand);
+                                          hand, failure);
 }
 
 Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, Device& device) {
@@ -176,16 +176,19 @@ void serve(const Options& options) {
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     Device& device = *opened;  // the hand takes ownership below
+    asio::io_context io;
+    HandChannel channel;
+    channel.failure.onFailure([&io] { io.stop(); });
     device.shareForce(options.force ? options.forceScale : 0);
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
-    hand.rest(0);  // so that a master that links before the force loop's first tick also feels the sand under the hand
-    const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand);
-    HandChannel channel;
+    // So that a master that links before the force loop's first tick also feels the sand under the hand.
+    channel.failure.run("device " + options.device, [&hand] { hand.rest(0); });
+    channel.failure.rethrow();
+    const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand, channel.failure);
     channel.recorder = recorder.get();
 
-    asio::io_context io;
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
     std::function<Report()> measure;
@@ -197,7 +200,8 @@ void serve(const Options& options) {
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
     SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()});
-    const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
+    const auto loop =
+        options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel, options.device) : nullptr;
     measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
@@ -213,6 +217,10 @@ void serve(const Options& options) {
     listener.serve(sandThread);
     announce(options, hand, endpoint);
     runLinks(io);
+    if (loop != nullptr) {
+        loop->stop();  // pushes 0 before anything that may take long
+    }
+    channel.failure.rethrow();
     tellAtTheEnd(options, hand, loop.get());
 }
 

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// An arm holds its last force. On each orderly way out of the server, this force must be 0.
+#include "tests/haptic_bridge/server/pressing_server.hpp"
+
+namespace {
+
+using namespace test;
+
+class LastForce : public PressingServer {};
+
+TEST_F(LastForce, IsZeroAfterAMasterThatLeavesAndASigterm) {
+    ServerProcess server(folder_, words("none"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    client_->stop();
+    EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
+    EXPECT_EQ(lastForce(), 0);
+}
+
+TEST_F(LastForce, IsZeroAfterAnExceptionOfTheDriver) {
+    for (const auto& [fault, reason] : {std::pair{"read throws", "the cable?is out"},
+                                        {"read throws 7", "an exception without a text"},
+                                        {"push throws", "the motor is hot"}}) {
+        std::filesystem::remove(folder_.file("forces.now"));
+        ServerProcess server(folder_, words(fault));
+        ASSERT_NO_FATAL_FAILURE(press(server.address()));
+        breakDown();
+        EXPECT_EQ(server.wait(), 1) << server.errors();
+        EXPECT_EQ(lastForce(), 0) << fault;
+        const std::string last =
+            "sandwall-haptic-server: the force loop of device " + words(fault)[3] + " has failed: " + reason + "\n";
+        EXPECT_TRUE(server.errors().ends_with(last)) << server.errors();
+    }
+}
+
+TEST_F(LastForce, CannotBeZeroIfTheDriverThrowsForThatTooAndTheServerStillEndsWithALine) {
+    ServerProcess server(folder_, words("push throws again"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    breakDown();
+    EXPECT_EQ(server.wait(), 1) << server.errors();
+    EXPECT_TRUE(server.errors().ends_with("has failed: the motor is hot\n")) << server.errors();
+}
+
+}  // namespace
