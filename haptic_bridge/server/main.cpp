@@ -3,7 +3,6 @@
 #include <signal.h>
 #include <sys/prctl.h>
 
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
 
@@ -14,6 +13,7 @@
 #include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/server/end_signals.hpp"
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
 #include "haptic_bridge/server/timings.hpp"
@@ -177,6 +177,7 @@ void serve(const Options& options) {
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     Device& device = *opened;  // the hand takes ownership below
     asio::io_context io;
+    EndSignals signals(io);  // lives longer than the hand, so that a second signal cannot keep it from letting go
     HandChannel channel;
     channel.failure.onFailure([&io] { io.stop(); });
     device.shareForce(options.force ? options.forceScale : 0);
@@ -208,12 +209,7 @@ void serve(const Options& options) {
     }
 
     DeviceWatch watch(io, options.device, device);
-    asio::signal_set signals(io, SIGINT, SIGTERM);
-    signals.async_wait([&listener](error_code error, int) {
-        if (!error) {
-            listener.shut("the server was stopped");
-        }
-    });
+    signals.onFirst([&listener] { listener.shut("the server was stopped"); });
     listener.serve(sandThread);
     announce(options, hand, endpoint);
     runLinks(io);

@@ -16,6 +16,31 @@ TEST_F(LastForce, IsZeroAfterAMasterThatLeavesAndASigterm) {
     EXPECT_EQ(lastForce(), 0);
 }
 
+TEST_F(LastForce, IsZeroAfterASignalInTheMiddleOfATouch) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+        ServerProcess server(folder_, words("none"));
+        ASSERT_NO_FATAL_FAILURE(press(server.address()));
+        EXPECT_EQ(server.stop(signal), 0) << server.errors();
+        EXPECT_EQ(lastForce(), 0) << "signal " << signal;
+    }
+}
+
+TEST_F(LastForce, IsZeroEvenIfMoreSignalsComeWhileTheServerEnds) {
+    ServerProcess server(folder_, words("zero waits"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    breakDown();
+    kill(server.pid(), SIGTERM);
+    ASSERT_TRUE(logs("waits"));
+    client_->stop();  // now the server waits for its arm alone
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
+        kill(server.pid(), signal);
+    }
+    EXPECT_GT(lastForce(), 0) << "the arm has not taken the 0 yet";
+    (void)folder_.write("forces.go", "");
+    EXPECT_EQ(server.wait(), 0) << server.errors();
+    EXPECT_EQ(lastForce(), 0);
+}
+
 TEST_F(LastForce, IsZeroAfterAnExceptionOfTheDriver) {
     for (const auto& [fault, reason] : {std::pair{"read throws", "the cable?is out"},
                                         {"read throws 7", "an exception without a text"},

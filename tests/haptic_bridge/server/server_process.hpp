@@ -82,6 +82,7 @@ public:
         arguments.insert(arguments.begin(), SANDWALL_BIN_DIR "/sandwall-haptic-server");
         pid_ = fork();
         if (pid_ == 0) {
+            signal(SIGHUP, SIG_DFL);  // the tests may run under nohup
             if (const rlimit limit{most, most}; most != 0) {
                 setrlimit(RLIMIT_AS, &limit);
             }
