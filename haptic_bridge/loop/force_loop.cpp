@@ -36,8 +36,8 @@ private:
 
 }  // namespace
 
-ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device)
-    : hand_(hand), channel_(channel) {
+ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device, const std::atomic<bool>& over)
+    : hand_(hand), channel_(channel), over_(over) {
     thread_ = std::thread([this, who = "the force loop of device " + device] {
         channel_.failure.run(who, [this] {
             const LetGo atTheEnd(hand_);
@@ -66,7 +66,7 @@ void ForceLoop::run() {
     std::int64_t due = host::monotonicNs(), last = due;
     std::int64_t handTimeNs = 0;  // [ns], advances while a master is linked
     std::uint32_t sitting = 0;
-    while (!stopping_) {
+    while (!stopping_ && !over_) {
         due += kTickNs;
         sleepUntil(due);
         const std::int64_t now = host::monotonicNs();

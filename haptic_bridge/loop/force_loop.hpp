@@ -18,8 +18,8 @@ namespace haptic_bridge {
 /// gets the exception.
 class ForceLoop {
 public:
-    /// `device` names the device in messages.
-    ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device);
+    /// The loop also ends when `over` becomes true. `device` names the device in messages.
+    ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device, const std::atomic<bool>& over);
     ~ForceLoop();
     ForceLoop(const ForceLoop&) = delete;
     ForceLoop& operator=(const ForceLoop&) = delete;
@@ -41,6 +41,7 @@ private:
 
     HapticTick& hand_;
     HandChannel& channel_;
+    const std::atomic<bool>& over_;
     base::LiveHistogram period_, computing_;
     std::atomic<std::uint64_t> missed_{0};
     std::string priorityRefused_;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/prctl.h>
+#include <unistd.h>
 
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include "haptic_bridge/server/end_signals.hpp"
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
+#include "haptic_bridge/server/parent_watch.hpp"
 #include "haptic_bridge/server/timings.hpp"
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
@@ -201,8 +201,9 @@ void serve(const Options& options) {
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
     SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()});
-    const auto loop =
-        options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel, options.device) : nullptr;
+    const auto loop = options.pace == Pace::realtime
+                          ? std::make_unique<ForceLoop>(hand, channel, options.device, aboutToBeKilled())
+                          : nullptr;
     measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
@@ -251,12 +252,13 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
     host::addSandThreads(line, options.sandThreads);
-    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+    line.flag("--die-with-parent", options.dieWithParent, "end in order when the program that started this one ends");
 }
 
 }  // namespace
 
 int main(int count, char** words) {
+    const pid_t parent = getppid();
     if (host::answersVersion(count, words, "sandwall-haptic-server",
                              {{"algorithm", sand::kAlgorithmVersion},
                               {"protocol", kProtocolVersion},
@@ -272,7 +274,7 @@ int main(int count, char** words) {
     }
     try {
         if (options.dieWithParent) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            endWithParent(parent);
         }
         serve(options);
         return 0;

@@ -108,13 +108,24 @@ TEST_F(LetGo, AFailedSandThreadEndsTheServerWithZero) {
                  throw std::runtime_error("no memory for a step");
              }
          }});
-    ForceLoop loop(*hand_, *channel_, "a hand");
+    const std::atomic<bool> over{false};
+    ForceLoop loop(*hand_, *channel_, "a hand", over);
     sandThread.start(1, {1, 0, sand::Replica(scene_).stateHash()});
     io.run();
     loop.stop();
     EXPECT_TRUE(pushed_.pressed);
     EXPECT_EQ(pushed_.last, 0);
     EXPECT_EQ(lineOf(channel_->failure), "the sand thread has failed: no memory for a step");
+}
+
+TEST_F(LetGo, AForceLoopPushesZeroWhenTheProcessIsAboutToBeKilled) {
+    std::atomic<bool> over{false};
+    const ForceLoop loop(*hand_, *channel_, "a hand", over);
+    ChannelFeed feed(*hand_, *channel_);
+    feed.begin(sand::Replica(scene_));
+    ASSERT_TRUE(test::eventually([this] { return pushed_.last > 0; }));
+    over = true;
+    EXPECT_TRUE(test::eventually([this] { return pushed_.last == 0; }));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An arm holds its last force. On each orderly way out of the server, this force must be 0.
+#include "haptic_bridge/server/parent_watch.hpp"
 #include "tests/haptic_bridge/server/pressing_server.hpp"
 
 namespace {
@@ -63,6 +64,73 @@ TEST_F(LastForce, CannotBeZeroIfTheDriverThrowsForThatTooAndTheServerStillEndsWi
     breakDown();
     EXPECT_EQ(server.wait(), 1) << server.errors();
     EXPECT_TRUE(server.errors().ends_with("has failed: the motor is hot\n")) << server.errors();
+}
+
+// The reader ends after the server's first line. A later line would bring SIGPIPE.
+TEST_F(LastForce, IsZeroAlthoughNobodyReadsWhatTheServerPrints) {
+    LaunchedServer server(folder_, words("none"), R"(mkfifo "$0.pipe"; read -r ignored < "$0.pipe" &
+"$@" > "$0.pipe" 2>&1 & echo $! > "$0"; wait)");
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    server.killLauncher();
+    EXPECT_EQ(server.wait(), 0);
+    EXPECT_EQ(lastForce(), 0);
+}
+
+TEST_F(LastForce, IsZeroAfterTheLauncherWasKilled) {
+    LaunchedServer server(folder_, words("none"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    server.killLauncher();
+    EXPECT_EQ(server.wait(), 0) << folder_.read("pid.err");
+    EXPECT_EQ(lastForce(), 0);
+}
+
+TEST_F(LastForce, IsZeroAfterTheLauncherOfAStoppedServerWasKilled) {
+    LaunchedServer server(folder_, words("none"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    kill(server.pid(), SIGSTOP);
+    server.killLauncher();
+    EXPECT_EQ(server.wait(), 0) << folder_.read("pid.err");
+    EXPECT_EQ(lastForce(), 0);
+}
+
+TEST_F(LastForce, IsZeroAfterTheLauncherOfAHungMainThreadWasKilled) {
+    LaunchedServer server(folder_, words("main hangs"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    breakDown();
+    ASSERT_TRUE(logs("hangs"));
+    server.killLauncher();
+    EXPECT_EQ(server.wait(), -SIGKILL) << folder_.read("pid.err");
+    EXPECT_EQ(lastForce(), 0);
+}
+
+TEST_F(LastForce, OfADriverThatHangsIsHeldAndTheServerStillEndsAfterItsLauncher) {
+    LaunchedServer server(folder_, words("read hangs"));
+    ASSERT_NO_FATAL_FAILURE(press(server.address()));
+    breakDown();
+    ASSERT_TRUE(logs("hangs"));
+    server.killLauncher();
+    EXPECT_EQ(server.wait(), -SIGKILL) << folder_.read("pid.err");
+}
+
+class ParentWatch : public testing::Test {
+protected:
+    void SetUp() override { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+};
+
+/// A process whose parent has ended before the watch begins, so that its parent is another now.
+[[noreturn]] void outlive() {
+    haptic_bridge::endWithParent(getppid() + 1, std::chrono::milliseconds(50));
+    while (true) {
+        pause();
+    }
+}
+
+TEST_F(ParentWatch, EndsAProcessWhoseParentHasEndedBefore) {
+    EXPECT_EXIT(outlive(), testing::KilledBySignal(SIGTERM), "");
+}
+
+TEST_F(ParentWatch, KillsAProcessThatDoesNotEndByItself) {
+    EXPECT_EXIT((signal(SIGTERM, SIG_IGN), outlive()), testing::KilledBySignal(SIGKILL), "");
 }
 
 }  // namespace

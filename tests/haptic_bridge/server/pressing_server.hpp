@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <sys/prctl.h>
+
 #include <cmath>
 #include <memory>
 #include <sstream>
@@ -57,6 +59,68 @@ protected:
     std::string sceneFile_ = folder_.write("small.toml", kSmallScene);
     scene::Scene scene_ = scene::loadScene(sceneFile_);
     std::unique_ptr<haptic_bridge::Client> client_;
+};
+
+/// A server that a shell has started, as a launcher does. When the shell ends, the test is the server's new parent.
+class LaunchedServer {
+public:
+    /// `script` starts the server "$@" in the background, and writes its process id to "$0".
+    LaunchedServer(const Folder& folder, std::vector<std::string> arguments,
+                   std::string script = R"("$@" > "$0.out" 2> "$0.err" & echo $! > "$0"; wait)")
+        : folder_(folder) {
+        prctl(PR_SET_CHILD_SUBREAPER, 1);
+        const std::string program = SANDWALL_BIN_DIR "/sandwall-haptic-server";
+        arguments.insert(arguments.begin(), {"sh", "-c", std::move(script), folder.file("pid"), program});
+        std::vector<char*> words;
+        words.reserve(arguments.size() + 1);
+        for (std::string& argument : arguments) {
+            words.push_back(argument.data());
+        }
+        words.push_back(nullptr);
+        shell_ = fork();
+        if (shell_ == 0) {
+            execv("/bin/sh", words.data());
+            _exit(127);
+        }
+        eventually([&] { return folder.read("pid").ends_with('\n'); });
+        server_ = std::atoi(folder.read("pid").c_str());
+    }
+    ~LaunchedServer() {
+        killLauncher();
+        if (server_ > 0) {
+            kill(server_, SIGKILL);
+            wait();
+        }
+        prctl(PR_SET_CHILD_SUBREAPER, 0);
+    }
+    LaunchedServer(const LaunchedServer&) = delete;
+    LaunchedServer& operator=(const LaunchedServer&) = delete;
+
+    [[nodiscard]] haptic_bridge::Address address() const {
+        eventually([this] { return std::filesystem::exists(folder_.file("port")); });
+        return {"127.0.0.1", static_cast<std::uint16_t>(std::atoi(folder_.read("port").c_str()))};
+    }
+    [[nodiscard]] pid_t pid() const { return server_; }
+    void killLauncher() {
+        if (shell_ > 0) {
+            kill(shell_, SIGKILL);
+            waitpid(shell_, nullptr, 0);
+            shell_ = 0;
+        }
+    }
+    /// After killLauncher(): returns the server's exit status, −signal, or 999 if it does not end in time.
+    int wait() {
+        int status = 0;
+        if (!eventually([&] { return waitpid(server_, &status, WNOHANG) == server_; })) {
+            return 999;
+        }
+        server_ = 0;
+        return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+    }
+
+private:
+    const Folder& folder_;
+    pid_t shell_ = 0, server_ = 0;
 };
 
 }  // namespace test
