@@ -20,8 +20,7 @@ public:
     InputError(const std::string& file, long lineNumber, const std::string& message)
         : InputError(file + ":" + std::to_string(lineNumber) + ": " + message) {}
 
-private:
-    /// Replaces control characters, because text that is quoted from the user may contain line feeds.
+    /// Replaces control characters, because text that is quoted from the user or a library may contain line feeds.
     static std::string oneLine(std::string text) {
         std::replace_if(
             text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');

@@ -54,7 +54,7 @@ class HapticServer:
     """The haptic server of a session on this machine. All its starts listen on the same port.
 
     `command_at(address, start)` returns the command for an address to listen at and the number of the start. Only the main
-    thread may start the server, because the kernel kills the server when the thread that started it ends.
+    thread may start the server, because the kernel kills a server that still begins when the thread that started it ends.
     """
 
     def __init__(self, command_at, folder):
@@ -67,7 +67,7 @@ class HapticServer:
     def start(self):
         self.starts += 1
         self.port_file.unlink(missing_ok=True)
-        command = [*self.command_at(f"127.0.0.1:{self.port}", self.starts), "--port-file", str(self.port_file)]
+        command = [*self.command_at(f"127.0.0.1:{self.port}", self.starts), "--port-file", str(self.port_file), "--die-with-parent"]
         self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                         start_new_session=True, preexec_fn=die_with(os.getpid()))
 

@@ -6,6 +6,9 @@
 /// file's name in --device, which may be empty. The constructor throws std::exception with one line for the user if the
 /// device does not answer. It sets every number of ArmPhysics. The server reads them once, when it opens the device.
 /// Name the class in SANDWALL_DRIVER at the end of the source.
+///
+/// A device holds its last force when this process is killed, crashes or hangs. So a driver sends 0 to its device when
+/// push() was not called for 10 ms. It also switches on the watchdog of the device, if the device has one.
 /// haptic_bridge/examples/driver_arm.cpp is a whole driver.
 #pragma once
 

@@ -12,6 +12,9 @@
 #include "haptic_bridge/devices/driver.hpp"
 #include "host/clock.hpp"
 
+#ifdef MAKER_HEADER
+#include MAKER_HEADER  // a file of yours that defines the six functions
+#else
 /// Replace these bodies by calls of your library. Unchanged, they describe an arm that no hand holds.
 namespace maker {
 inline bool open(const char*) { return true; }
@@ -24,6 +27,7 @@ inline bool button(int) { return false; }
 inline bool setForce(double, double, double) { return true; }
 inline const char* lastError() { return "no device"; }
 }  // namespace maker
+#endif
 
 namespace {
 
@@ -33,6 +37,9 @@ using sand::force::Vec3;
 
 /// Arm that uses its device on a thread of its own, because a driver may wait for its hardware and the force loop must
 /// not.
+///
+/// The thread also sends 0 when no new force comes. It cannot do so in a process that was killed, has crashed or is
+/// stopped. Let your library switch on the watchdog of the device in maker::open(), if the device has one.
 class DriverArm : public haptic_bridge::Arm {
 public:
     explicit DriverArm(const char* what) {
@@ -68,15 +75,20 @@ public:
         return reading;
     }
     void push(Vec3 force) override {
-        force_.next() = force;
+        force_.next() = {force, host::monotonicNs()};
         force_.publish();
     }
 
 private:
     static constexpr std::int64_t kPatienceNs = 50'000'000;
+    static constexpr std::int64_t kForceNs = 10'000'000;  // a force without a successor ends then
     struct Seen {
         ArmReading reading;
         std::int64_t timeNs = host::monotonicNs();
+    };
+    struct Wanted {
+        Vec3 force;
+        std::int64_t timeNs = 0;
     };
 
     void talk() {
@@ -89,7 +101,9 @@ private:
             reading.second = maker::button(1);
             seen.timeNs = host::monotonicNs();
             seen_.publish();
-            const Vec3 force = force_.latest();
+            // The device would hold the last force of a force loop that stands still.
+            const Wanted& wanted = force_.latest();
+            const Vec3 force = host::monotonicNs() - wanted.timeNs < kForceNs ? wanted.force : Vec3{};
             maker::setForce(force.x, force.y, force.z);  // [N]
             due += std::chrono::milliseconds(1);
             std::this_thread::sleep_until(due);
@@ -97,8 +111,8 @@ private:
     }
 
     ArmPhysics physics_;
-    base::TripleBuffer<Seen> seen_;   // device to force loop
-    base::TripleBuffer<Vec3> force_;  // force loop to device
+    base::TripleBuffer<Seen> seen_;     // device to force loop
+    base::TripleBuffer<Wanted> force_;  // force loop to device
     std::atomic<bool> stopping_{false};
     std::thread thread_;
 };

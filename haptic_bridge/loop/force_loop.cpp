@@ -22,10 +22,28 @@ void sleepUntil(std::int64_t whenNs) {
     }
 }
 
+/// Lets go of the hand at the end of a scope, also when an exception ends it.
+class LetGo {
+public:
+    explicit LetGo(HapticTick& hand) : hand_(hand) {}
+    ~LetGo() { hand_.letGo(); }
+    LetGo(const LetGo&) = delete;
+    LetGo& operator=(const LetGo&) = delete;
+
+private:
+    HapticTick& hand_;
+};
+
 }  // namespace
 
-ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel) : hand_(hand), channel_(channel) {
-    thread_ = std::thread([this] { run(); });
+ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device, const std::atomic<bool>& over)
+    : hand_(hand), channel_(channel), over_(over) {
+    thread_ = std::thread([this, who = "the force loop of device " + device] {
+        channel_.failure.run(who, [this] {
+            const LetGo atTheEnd(hand_);
+            run();
+        });
+    });
     const sched_param priority{.sched_priority = 10};
     const int error = pthread_setschedparam(thread_.native_handle(), SCHED_FIFO, &priority);
     if (error != 0) {
@@ -33,9 +51,13 @@ ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel) : hand_(hand), chan
     }
 }
 
-ForceLoop::~ForceLoop() {
+ForceLoop::~ForceLoop() { stop(); }
+
+void ForceLoop::stop() {
     stopping_ = true;
-    thread_.join();
+    if (thread_.joinable()) {
+        thread_.join();
+    }
 }
 
 void ForceLoop::run() {
@@ -44,7 +66,7 @@ void ForceLoop::run() {
     std::int64_t due = host::monotonicNs(), last = due;
     std::int64_t handTimeNs = 0;  // [ns], advances while a master is linked
     std::uint32_t sitting = 0;
-    while (!stopping_) {
+    while (!stopping_ && !over_) {
         due += kTickNs;
         sleepUntil(due);
         const std::int64_t now = host::monotonicNs();

@@ -13,12 +13,19 @@ namespace haptic_bridge {
 ///
 /// It sleeps until absolute deadlines, with real-time priority if the host allows it. If the loop is late by one tick
 /// or more, it skips the missed ticks. A burst of late ticks would feel the same place again and again.
+///
+/// When it ends, it pushes 0, whatever the reason. An exception of the device or of a tick ends it too; the channel
+/// gets the exception.
 class ForceLoop {
 public:
-    ForceLoop(HapticTick& hand, HandChannel& channel);
+    /// The loop also ends when `over` becomes true. `device` names the device in messages.
+    ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device, const std::atomic<bool>& over);
     ~ForceLoop();
     ForceLoop(const ForceLoop&) = delete;
     ForceLoop& operator=(const ForceLoop&) = delete;
+
+    /// Ends the loop, and waits until it has pushed 0.
+    void stop();
 
     // These functions may be called by any thread.
     [[nodiscard]] const base::LiveHistogram& period() const { return period_; }
@@ -34,6 +41,7 @@ private:
 
     HapticTick& hand_;
     HandChannel& channel_;
+    const std::atomic<bool>& over_;
     base::LiveHistogram period_, computing_;
     std::atomic<std::uint64_t> missed_{0};
     std::string priorityRefused_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "base/triple_buffer.hpp"
+#include "haptic_bridge/loop/first_failure.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
 
@@ -20,6 +21,7 @@ struct HandChannel {
     std::atomic<bool> moving{false};         // whether a master is linked; without one the hand rests
     std::atomic<std::uint32_t> sitting{0};   // number of links so far; with each, the hand forgets its earlier ticks
     TickRecorder* recorder = nullptr;        // recorder of all ticks; null if they are not recorded
+    FirstFailure failure;                    // of the threads
 
     // For the thread that runs the ticks.
     void beginSitting(HapticTick& hand) const {

@@ -19,9 +19,13 @@ constexpr std::size_t kPieceMessage = 16;  // [byte], more than the header of a 
 
 }  // namespace
 
-TickRecorder::TickRecorder(Options options, const HapticTick& hand)
+TickRecorder::TickRecorder(Options options, const HapticTick& hand, FirstFailure& failure)
     : options_(std::move(options)), hand_(hand), header_(headerOf(hand)), file_(options_.file, options_.log) {
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this, &failure] {
+        if (!failure.run("the recorder of ticks", [this] { run(); })) {
+            stopping_ = true;  // no thread waits for a recorder that has failed
+        }
+    });
 }
 
 TickRecorder::~TickRecorder() {
@@ -109,7 +113,7 @@ std::vector<base::Bytes> TickRecorder::takePieces() {
 void TickRecorder::flush() {
     const std::uint64_t wanted = added_.load(std::memory_order_acquire);
     const int longest = options_.wait ? 30'000 : 300;  // [ms]
-    for (int i = 0; i < longest && done_.load(std::memory_order_acquire) < wanted; ++i) {
+    for (int i = 0; i < longest && !stopping_ && done_.load(std::memory_order_acquire) < wanted; ++i) {
         std::this_thread::sleep_for(1ms);
     }
 }

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "haptic_bridge/loop/first_failure.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
 #include "haptic_bridge/loop/tick_file.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
@@ -28,8 +29,9 @@ public:
         bool wait = false;                            // true under the fast pace: wait when the queue is full
         std::function<void(const std::string&)> log;  // gets one line for the user, on the recorder's thread
     };
-    /// Throws base::InputError if the file cannot be created. `hand` must outlive this object.
-    TickRecorder(Options options, const HapticTick& hand);
+    /// Throws base::InputError if the file cannot be created. `hand` and `failure` must outlive this object. `failure`
+    /// gets an exception of the recorder's thread.
+    TickRecorder(Options options, const HapticTick& hand, FirstFailure& failure);
     ~TickRecorder();
     TickRecorder(const TickRecorder&) = delete;
     TickRecorder& operator=(const TickRecorder&) = delete;

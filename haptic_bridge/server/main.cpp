@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <signal.h>
-#include <sys/prctl.h>
+#include <unistd.h>
 
-#include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
 
@@ -14,9 +12,11 @@
 #include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
+#include "haptic_bridge/server/end_signals.hpp"
 #include "haptic_bridge/server/force_ceiling.hpp"
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
+#include "haptic_bridge/server/parent_watch.hpp"
 #include "haptic_bridge/server/timings.hpp"
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
@@ -120,12 +120,12 @@ scene::Scene openScene(const std::string& file) {
     return scene;
 }
 
-std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand) {
+std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand, FirstFailure& failure) {
     if (options.record.empty()) {
         return nullptr;
     }
     return std::make_unique<TickRecorder>(TickRecorder::Options{options.record, options.pace == Pace::fast, print},
-                                          hand);
+                                          hand, failure);
 }
 
 Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, HapticTick& hand) {
@@ -194,16 +194,20 @@ void serve(const Options& options) {
     const HandSettings settings = HandSettings::parse(options.map);
     std::unique_ptr<Device> opened = openDevice(options.device, settings, scene);
     const Device& device = *opened;  // the hand takes ownership below
+    asio::io_context io;
+    EndSignals signals(io);  // lives longer than the hand, so that a second signal cannot keep it from letting go
+    HandChannel channel;
+    channel.failure.onFailure([&io] { io.stop(); });
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
     hand.shareForce(0);  // until a master has told its share
-    hand.rest(0);  // so that a master that links before the force loop's first tick also feels the sand under the hand
-    const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand);
-    HandChannel channel;
+    // So that a master that links before the force loop's first tick also feels the sand under the hand.
+    channel.failure.run("device " + options.device, [&hand] { hand.rest(0); });
+    channel.failure.rethrow();
+    const std::unique_ptr<TickRecorder> recorder = recorderOf(options, hand, channel.failure);
     channel.recorder = recorder.get();
 
-    asio::io_context io;
     asio::ip::tcp::acceptor acceptor = listenAt(io, options.listen, security.proves());
     const auto endpoint = acceptor.local_endpoint();
     std::function<Report()> measure;
@@ -215,22 +219,23 @@ void serve(const Options& options) {
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
     SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()});
-    const auto loop = options.pace == Pace::realtime ? std::make_unique<ForceLoop>(hand, channel) : nullptr;
+    const auto loop = options.pace == Pace::realtime
+                          ? std::make_unique<ForceLoop>(hand, channel, options.device, aboutToBeKilled())
+                          : nullptr;
     measure = [&] { return measured(hand, loop.get(), sandThread); };
     if (loop != nullptr && !loop->priorityRefused().empty()) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
     }
 
     DeviceWatch watch(io, options.device, device);
-    asio::signal_set signals(io, SIGINT, SIGTERM);
-    signals.async_wait([&listener](error_code error, int) {
-        if (!error) {
-            listener.shut("the server was stopped");
-        }
-    });
+    signals.onFirst([&listener] { listener.shut("the server was stopped"); });
     listener.serve(sandThread);
     announce(options, hand, endpoint);
     runLinks(io);
+    if (loop != nullptr) {
+        loop->stop();  // pushes 0 before anything that may take long
+    }
+    channel.failure.rethrow();
     tellAtTheEnd(options, hand, loop.get());
 }
 
@@ -266,12 +271,13 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
     host::addSandThreads(line, options.sandThreads);
-    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+    line.flag("--die-with-parent", options.dieWithParent, "end in order when the program that started this one ends");
 }
 
 }  // namespace
 
 int main(int count, char** words) {
+    const pid_t parent = getppid();
     if (host::answersVersion(count, words, "sandwall-haptic-server",
                              {{"algorithm", sand::kAlgorithmVersion},
                               {"protocol", kProtocolVersion},
@@ -287,7 +293,7 @@ int main(int count, char** words) {
     }
     try {
         if (options.dieWithParent) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL);
+            endWithParent(parent);
         }
         serve(options);
         return 0;

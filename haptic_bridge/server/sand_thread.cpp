@@ -26,7 +26,7 @@ SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, H
     : pace_(pace),
       feed_(feedFor(pace, hand, channel, scene.rules.stepsPerSecond)),
       maker_(scene, *feed_, std::move(output), sweeps) {
-    thread_ = std::thread([this] { run(); });
+    thread_ = std::thread([this, &channel] { channel.failure.run("the sand thread", [this] { run(); }); });
 }
 
 SandThread::~SandThread() {

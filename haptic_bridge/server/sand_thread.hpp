@@ -25,7 +25,8 @@ class SandThread {
 public:
     using Output = StepMaker::Output;  // callbacks, called on the sand thread
 
-    /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it.
+    /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it. The channel gets an
+    /// exception of this thread.
     SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
                const sand::grid::Erosion::Options& sweeps = {});
     ~SandThread();

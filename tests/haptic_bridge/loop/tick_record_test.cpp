@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -40,11 +41,13 @@ scene::Scene ramp() {
 class Recorded : public testing::Test {
 protected:
     void open(const std::string& file) {
+        open(file, [this](const std::string& line) { told_.push_back(line); });
+    }
+    void open(const std::string& file, std::function<void(const std::string&)> log) {
         hand_ = std::make_unique<HapticTick>(
             scene_, std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(state_), HandSettings{}, scene_),
             HandSettings::Datum::level);
-        recorder_ = std::make_unique<TickRecorder>(
-            TickRecorder::Options{file, true, [this](const std::string& line) { told_.push_back(line); }}, *hand_);
+        recorder_ = std::make_unique<TickRecorder>(TickRecorder::Options{file, true, std::move(log)}, *hand_, failure_);
     }
     /// Runs a link with steps of 16 ticks. The arm begins in the sand, far from the sand's first probe. Then it draws,
     /// lifts, is away for a while, and once sends values that are not finite.
@@ -95,6 +98,7 @@ protected:
     const scene::Scene scene_ = ramp();
     test::FakeArm::State state_;
     std::unique_ptr<HapticTick> hand_;
+    FirstFailure failure_;
     std::unique_ptr<TickRecorder> recorder_;
     sand::Replica terrain_{scene_};
     FeltSand surface_;
@@ -161,6 +165,26 @@ TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
     }
     EXPECT_LE(bytes, Connection::kMaxUnsent);
     EXPECT_GT(bytes, Connection::kMaxUnsent / 4);
+}
+
+TEST_F(Recorded, AnExceptionOfItsThreadIsHandedOverAndNoThreadWaitsForItAnyMore) {
+    const std::string file = folder_.file("ticks.csv");
+    support::testOnSmallDisk(std::filesystem::path(file).parent_path(), "size=16k", [&] {
+        alarm(60);  // ends this child if a thread does wait
+        open(file, [](const std::string&) { throw std::runtime_error("the terminal is gone"); });
+        sit(20);                                     // more than the disk takes, which the recorder logs
+        for (int tick = 0; tick < 10'000; ++tick) {  // more than wait in the queue
+            recorder_->add();
+        }
+        recorder_->flush();
+        recorder_.reset();
+        try {
+            failure_.rethrow();
+            ADD_FAILURE() << "nothing was handed over";
+        } catch (const std::runtime_error& error) {
+            EXPECT_STREQ(error.what(), "the recorder of ticks has failed: the terminal is gone");
+        }
+    });
 }
 
 TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {

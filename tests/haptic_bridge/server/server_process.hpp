@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -82,6 +83,8 @@ public:
         arguments.insert(arguments.begin(), SANDWALL_BIN_DIR "/sandwall-haptic-server");
         pid_ = fork();
         if (pid_ == 0) {
+            prctl(PR_SET_PDEATHSIG, SIGKILL);  // --die-with-parent watches from main() on
+            signal(SIGHUP, SIG_DFL);           // the tests may run under nohup
             if (const rlimit limit{most, most}; most != 0) {
                 setrlimit(RLIMIT_AS, &limit);
             }
