@@ -11,6 +11,9 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 
 }  // namespace
 
+ChannelFeed::ChannelFeed(const HapticTick& hand, HandChannel& channel)
+    : ChannelFeed(hand, channel, host::monotonicNs) {}
+
 void ChannelFeed::begin(const sand::Replica& terrain) {
     publish(terrain, false);
     ++channel_.sitting;

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "haptic_bridge/loop/hand_channel.hpp"
-#include "host/clock.hpp"
 #include "sand/replica.hpp"
 
 namespace haptic_bridge {
@@ -50,7 +49,9 @@ class ChannelFeed : public HandFeed {
 public:
     using Clock = std::function<std::int64_t()>;  // [ns], the clock of HapticTick::tick()
 
-    ChannelFeed(const HapticTick& hand, HandChannel& channel, Clock clock = host::monotonicNs)
+    /// Uses the host's clock.
+    ChannelFeed(const HapticTick& hand, HandChannel& channel);
+    ChannelFeed(const HapticTick& hand, HandChannel& channel, Clock clock)
         : hand_(hand), channel_(channel), now_(std::move(clock)) {}
     void begin(const sand::Replica& terrain) override;
     void end() override { channel_.moving = false; }

@@ -104,13 +104,13 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .guards = {},
                   .refused = {}};
     std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{22});
-    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{34});
+    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{37});
     const base::Bytes framed = encode(report);
     base::ByteReader reader(withoutLength(framed).subspan(1));
     for (int number = 1; number <= 14; ++number) {
         EXPECT_EQ(reader.get<double>(), number);
     }
-    for (std::uint64_t number = 15; number <= 43; ++number) {
+    for (std::uint64_t number = 15; number <= 46; ++number) {
         EXPECT_EQ(reader.get<std::uint64_t>(), number);
     }
     EXPECT_TRUE(reader.atEnd());
