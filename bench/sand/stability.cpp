@@ -31,17 +31,22 @@ bool rests(const ArmPhysics& physics, double stiffness /* [N/m] */, Guards::Mode
     SimulatedArm arm(physics);
     const double load = physics.maxForce / 2;
     const double seconds = std::max(3.0, 6 * physics.mass / physics.damping * std::log(1e3));
-    const long warm = 2001, ticks = warm + std::lround(seconds * 1000);
+    constexpr long kWarm = 2001;  // [tick]
+    // Behind the guards the contact begins at the surface, a tick before. In the deep it would begin with a ramp.
+    const long touches = mode == Guards::Mode::on ? kWarm - 1 : kWarm;
+    const long ticks = kWarm + std::lround(seconds * 1000);
     double fastest = 0;
     for (long tick = 0; tick < ticks; ++tick) {
-        if (tick == warm) {
+        if (tick == kWarm - 1) {
+            arm.start({0, 0, -2 * std::max(physics.resolution, 1e-5)}, {});
+        } else if (tick == kWarm) {
             arm.start({0, 0, -load / soft}, {0, 0, -0.1});
             arm.load({0, 0, -load});
         }
         Guards::Reading reading;
         reading.time = static_cast<double>(tick) * 1e-3;
         reading.place = arm.read(reading.time).place;
-        reading.engaged = tick >= warm;
+        reading.engaged = tick >= touches;
         reading.felt = {{0, 0, std::max(0.0, -stiffness * reading.place.z)}, {0, 0, 1}, 0, stiffness};
         arm.push(guards.tick(reading).sent);
         fastest = tick >= ticks - 100 ? std::max(fastest, std::abs(arm.velocity().z)) : fastest;

@@ -80,8 +80,8 @@ public:
         surface_.talus = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
     }
 
-    /// Runs a tick on a surface that was copied `age` ago [s], `span` after the tick before [s]. The newest step was made
-    /// `stepAge` ago [s].
+    /// Runs a tick on a surface that was copied `age` ago [s], `span` after the tick before [s]. The newest step was
+    /// made `stepAge` ago [s].
     const haptic_bridge::Tick& tick(double age = 0, double span = 1e-3, double stepAge = 0) {
         time_ += span;
         const auto now = static_cast<std::int64_t>(time_ * 1e9);
@@ -158,9 +158,11 @@ inline Outcome run(const Trial& trial, const scene::Scene& scene) {
         const bool literal = trial.mode == haptic_bridge::Guards::Mode::literal;
         const double stiffness = limits.lawStiffness / (literal ? limits.gain : 1);
         const double pressed = std::min(stiffness * depth, 0.5 * trial.arm.maxForce);
-        // The contact begins at the surface, two steps of the encoder deep. In the deep it would begin with a ramp.
-        session.arm().start({0, 0, -2 * std::max(trial.arm.resolution, 1e-5)}, {});
-        (void)session.tick();
+        if (!literal) {
+            // The contact begins at the surface, two steps of the encoder deep. In the deep it would begin with a ramp.
+            session.arm().start({0, 0, -2 * std::max(trial.arm.resolution, 1e-5)}, {});
+            (void)session.tick();
+        }
         session.arm().load({0, 0, -pressed});
         session.arm().start({0, 0, -depth}, {0.8 * trial.speed, 0, -0.6 * trial.speed});
         fastest = std::hypot(trial.speed, pressed / std::sqrt(limits.lawStiffness * trial.arm.mass));
