@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/input_error.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "host/clock.hpp"
 #include "scene/scene.hpp"
@@ -31,6 +32,16 @@ ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const Law
     return limits;
 }
 
+/// Returns the limits. If there are none, lets go first, because an arm holds its last force.
+ForceLimits limitsOrLetGo(const scene::Scene& scene, Device& device, const LawAtRadius& law) {
+    try {
+        return limitsFor(scene, device, law);
+    } catch (const base::InputError&) {
+        device.sendForce({});
+        throw;
+    }
+}
+
 /// Returns the limits in words. They name the constant that the gain lowers, because a law is proportional to it.
 std::vector<std::string> inWords(const sand::ForceConstants& constants, const ForceLimits& limits,
                                  const LawAtRadius& law) {
@@ -50,7 +61,7 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
       model_(scene.force),
       device_(std::move(device)),
       mapping_(scene, device_->physics() != nullptr ? HandSettings::Datum::level : datum),
-      guards_(limitsFor(scene, *device_, law), mode),
+      guards_(limitsOrLetGo(scene, *device_, law), mode),
       armVelocity_(guards_.limits().arm.resolution),
       velocity_(guards_.limits().resolution * guards_.limits().scale),
       words_(inWords(scene.force, guards_.limits(), law)) {

@@ -7,6 +7,7 @@
 
 #include "base/input_error.hpp"
 #include "host/toml_table.hpp"
+#include "sand/force/finite_law.hpp"
 #include "sand/replica.hpp"
 #include "sand/surface_factory.hpp"
 #include "scene/load/terrain.hpp"
@@ -99,26 +100,46 @@ void readTool(const host::TomlTable& file, Scene& scene) {
     }
 }
 
-void readForce(const host::TomlTable& file, Scene& scene) {
-    sand::ForceConstants& force = scene.force;
-    force.unitLength = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
-    const std::optional<host::TomlTable> table = file.table("force");
-    if (!table) {
-        return;
-    }
+void readForceKeys(const host::TomlTable& table, sand::ForceConstants& force) {
     for (const sand::ForceKey& key : sand::forceKeys()) {
-        force.*key.constant = table->numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
+        force.*key.constant = table.numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
     }
-    force.law = static_cast<sand::ForceLaw>(table->choiceOr("law", {"repulse", "control_points"}, 0));
-    force.between = static_cast<sand::Between>(table->choiceOr("between", {"local", "hold", "interpolate"}, 0));
-    force.literal = table->flagOr("literal", false);
+    force.law = static_cast<sand::ForceLaw>(table.choiceOr("law", {"repulse", "control_points"}, 0));
+    force.between = static_cast<sand::Between>(table.choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    force.literal = table.flagOr("literal", false);
     force.frictionDirection = static_cast<sand::FrictionDirection>(
-        table->choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+        table.choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
     if (!force.literal && force.frictionDirection != sand::FrictionDirection::tangential) {
-        table->fail("friction_direction",
-                    "friction_direction other than tangential is for comparison: set literal = true beside it");
+        table.fail("friction_direction",
+                   "friction_direction other than tangential is for comparison: set literal = true beside it");
     }
-    table->finish();
+    table.finish();
+}
+
+/// Refuses a law that is not finite wherever a tool can be. The default of depth_exponent gives way instead.
+void requireFiniteLaw(const std::optional<host::TomlTable>& table, Scene& scene) {
+    const MaterialGrid grid = scene.grid();
+    const auto region = sand::force::LawRegion::of(grid.longerSide, grid.cellSize);
+    if (!table || !table->has("depth_exponent")) {
+        scene.force.depthExponent = sand::force::usualDepthExponent(scene.force, region);
+    }
+    const auto fault = sand::force::faultOf(scene.force, region);
+    if (fault && table) {
+        const std::string advice =
+            fault->allowed ? fmt::format("give at {} {:g}", fault->atMost ? "most" : "least", *fault->allowed)
+                           : "leave it out";
+        table->fail(fault->key->name, fmt::format("{} {} gives a force that is not finite {:g} scene units deep; {}",
+                                                  fault->key->name, fault->value, fault->depth, advice));
+    }
+}
+
+void readForce(const host::TomlTable& file, Scene& scene) {
+    scene.force.unitLength = std::max(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
+    const std::optional<host::TomlTable> table = file.table("force");
+    if (table) {
+        readForceKeys(*table, scene.force);
+    }
+    requireFiniteLaw(table, scene);
 }
 
 // [pixel]: GL guarantees only that the grid of vertices is at least as fine as a sixteenth of a pixel.

@@ -219,6 +219,7 @@ TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
         EXPECT_EQ(copy.rules, scene.rules) << entry.path();
         EXPECT_EQ(copy.rules.digest(), scene.rules.digest());
         EXPECT_TRUE(sameHeights(copy.terrain, scene.terrain)) << entry.path();
+        EXPECT_EQ(scene.force.depthExponent, 0.5) << entry.path() << " is small enough for the default";
         scenes.insert(entry.path().filename().string());
     }
     // The loop has loaded each kind: a level field, a field of dunes, and a TIN.

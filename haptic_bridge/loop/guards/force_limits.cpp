@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/input_error.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "sand/force/force_model.hpp"
 
@@ -23,6 +24,17 @@ double rounded(double number, int digits = 2) {
     }
     const double unit = std::pow(10.0, std::floor(std::log10(std::abs(number))) + 1 - digits);
     return std::round(number / unit) * unit;
+}
+
+/// Refuses demands that are not finite. No gain lowers such a demand to what an arm bears.
+void requireFinite(const LawAtRadius& law, double scale) {
+    const double stiffness = law.stiffness * scale, drag = law.drag * scale / 60;
+    if (!std::isfinite(stiffness) || !std::isfinite(drag) || !std::isfinite(law.push)) {
+        throw base::InputError(fmt::format(
+            "the force law at a depth of one tool radius is {:g} N, {:g} N/m and {:g} N s/m at {:g} scene units per "
+            "metre; all must be finite: lower depth_exponent or max_force in [force], or the scale in --map",
+            law.push, stiffness, drag, scale));
+    }
 }
 
 }  // namespace
@@ -75,6 +87,7 @@ double ForceLimits::shareForStepOf(double age) const {
 
 ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadius& law, double internalFriction,
                             double probeStep, const StepTiming& steps) {
+    requireFinite(law, scale);
     ForceLimits limits;
     limits.arm = arm;
     limits.scale = scale;

@@ -55,7 +55,8 @@ struct ForceLimits {
     ArmPhysics arm;
 
     /// Returns the limits of `arm` at `scale` [scene unit/m]. `probeStep` [m] is the rounding of places on their way
-    /// into the sand; it adds to the arm's own resolution.
+    /// into the sand; it adds to the arm's own resolution. Throws base::InputError if the law's demands are not finite
+    /// at that scale, because no gain would lower them.
     static ForceLimits of(const ArmPhysics& arm, double scale, const LawAtRadius& law, double internalFriction,
                           double probeStep = 0, const StepTiming& steps = {});
     /// Returns which share of `stiffness` the device bears while the newest step is `age` [s] old. It is 1 until a step

@@ -61,6 +61,51 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
     }
 }
 
+TEST_F(ForceTable, RefusesALawThatIsNotFiniteWhereAToolCanBe) {
+    const std::string flat = "[field]\ncolumns = 128\n[terrain]\n[tool]\nradius = 0.04\n[force]\n";
+    EXPECT_EQ(complaint(flat + "friction = 3\ndepth_exponent = 20000\n"),
+              "s.toml:8: depth_exponent 20000 gives a force that is not finite 2 scene units deep; give at most 166");
+    EXPECT_EQ(complaint(flat + "depth_exponent = 166\n"), "accepted");
+    EXPECT_EQ(complaint(flat + "law = \"control_points\"\nunit_length = 1e-300\n"),
+              "s.toml:8: unit_length 1e-300 gives a force that is not finite 2 scene units deep; give at least "
+              "2.02e-151");
+    EXPECT_EQ(complaint(flat + "law = \"control_points\"\nunit_length = 2.02e-151\n"), "accepted");
+    EXPECT_EQ(complaint(flat + "law = \"control_points\"\ndepth_exponent = 20000\n"), "accepted")
+        << "a constant of the other law";
+    EXPECT_EQ(complaint(flat + "depth_exponent = 20000\nstifness = 3\n").find("s.toml:8: unknown key 'stifness'"), 0U);
+    // The longer side counts.
+    EXPECT_EQ(complaint("[field]\ncolumns = 64\nrows = 128\nwidth = 1\n[terrain]\n[material]\n[force]\n"
+                        "depth_exponent = 167\n"),
+              "s.toml:8: depth_exponent 167 gives a force that is not finite 2 scene units deep; give at most 166");
+}
+
+TEST_F(ForceTable, LowersTheDefaultExponentOfALargeFieldAndRefusesNoneOfThem) {
+    const auto exponent = [&](const std::string& width, const std::string& force = "") {
+        return scene::loadScene(write("s.toml", "[field]\ncolumns = 128\nwidth = " + width +
+                                                    "\n[terrain]\n[tool]\nradius = 1\n[material]\n" + force))
+            .force.depthExponent;
+    };
+    EXPECT_EQ(exponent("600"), 0.5);
+    EXPECT_EQ(exponent("6000", "[force]\nlaw = \"control_points\"\n"), 0.5);
+    const double lower = exponent("6000");
+    EXPECT_LT(lower, 0.1);
+    EXPECT_EQ(exponent("6000", "[force]\nfriction = 10\n"), lower);
+    EXPECT_EQ(exponent("6000", fmt::format("[force]\ndepth_exponent = {}\n", lower)), lower) << "it may be given";
+    EXPECT_THROW((void)exponent("6000", "[force]\ndepth_exponent = 0.5\n"), base::InputError);
+    EXPECT_GT(exponent("6000", "[force]\nstiffness = 1\n"), lower) << "the largest for these constants";
+    for (const char* width : {"1e-200", "1e-9", "1e9", "1e100", "1e200"}) {
+        EXPECT_NO_THROW((void)scene::loadScene(write(
+            "s.toml", fmt::format("[field]\ncolumns = 8\nwidth = {}\n[terrain]\n[tool]\nradius = {}\n", width, width))))
+            << width;
+    }
+}
+
+TEST_F(ForceTable, ReadsALawFromAJournalWithoutRefusingIt) {
+    scene::Scene old = scene::loadScene(write("s.toml", kFlat));
+    old.force.depthExponent = 20000;
+    EXPECT_EQ(scene::Scene::decode(old.encode()).force, old.force) << "an older release has written it";
+}
+
 TEST_F(ForceTable, RefusesBytesThatNoSceneFileGives) {
     const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
     base::Bytes bytes = scene.encode();
