@@ -88,8 +88,12 @@ ForceLimits ForceLimits::of(const ArmPhysics& arm, double scale, const LawAtRadi
     limits.internalFriction = internalFriction;
     limits.maxForce = arm.maxForce;
     const double asked = law.stiffness * scale;
-    limits.gain = asked > limits.stiffness ? limits.stiffness / asked : 1;
-    limits.lawStiffness = limits.gain * asked;
+    if (std::isfinite(asked)) {
+        limits.gain = asked > limits.stiffness ? limits.stiffness / asked : 1;
+        limits.lawStiffness = limits.gain * asked;
+    } else {
+        limits.gain = 0;  // no device bears such a law, and a slew limit that is not a number would limit nothing
+    }
     limits.slew = limits.lawStiffness * kFastestHand * kTick;
     return limits;
 }
