@@ -27,10 +27,12 @@ Vec3 ForceGate::pass(const Wanted& wanted, std::uint32_t& acted) {
     acted |= share < 1 && size > 0 ? bit(Guard::ramp) : 0;
     const double most = mostInContact(wanted, share * wanted.whole);
     acted |= share * size > most ? bit(Guard::contact) : 0;
-    acted |= share * size > maxForce_ ? bit(Guard::clamp) : 0;
+    acted |= size > maxForce_ ? bit(Guard::clamp) : 0;
 
+    // In a ramp the device's greatest force grows too, so that no guard before can shorten the ramp.
+    const Vec3 bounded = share * shortened(wanted.force, maxForce_);
     std::uint32_t followed = 0;
-    const Vec3 pushed = follower_.follow(shortened(share * wanted.force, std::min(most, maxForce_)), followed);
+    const Vec3 pushed = follower_.follow(shortened(bounded, most), followed);
     acted |= followed != 0 ? bit(Guard::gate) : 0;
     pushed_ = norm(pushed);
     return pushed;

@@ -19,9 +19,9 @@ public:
     explicit FrozenSand(double stepSeconds) : oldest_(std::max(kOldest, kOldestSteps * stepSeconds)) {}
 
     /// Returns the share of the force at this tick, `span` [s] after the tick before. `age` [s] is that of the newest
-    /// step.
+    /// step. A `span` that is NaN counts as 0.
     [[nodiscard]] double next(double span, double age) {
-        const double passed = std::max(span, 0.0);
+        const double passed = span > 0 ? span : 0;  // a NaN would stay in every later share
         steady_ = age <= oldest_ ? steady_ + passed : 0;
         if (!(age <= oldest_)) {
             frozen_ = true;

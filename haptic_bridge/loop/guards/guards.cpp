@@ -26,7 +26,7 @@ Guards::Forces Guards::tick(const Reading& reading) {
     forces.acted = faults(reading, span, forces.lawful);
     time_ = reading.time;
     place_ = reading.place;
-    const double share = share_.next(span, std::clamp(reading.share, 0.0, 1.0));
+    const double share = share_.next(span, reading.share);
     if (mode_ == Mode::literal) {
         forces.acted &= bit(Guard::notANumber) | bit(Guard::lost);
         forces.sent = forces.acted == 0 ? share * forces.lawful : Vec3{};

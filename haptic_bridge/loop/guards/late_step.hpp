@@ -19,9 +19,10 @@ public:
     explicit LateStep(const ForceLimits& limits) : limits_(&limits) {}
 
     /// Returns the factor at this tick, `span` [s] after the tick before. `age` [s] is that of the newest step.
+    /// A `span` that is NaN counts as 0.
     [[nodiscard]] double next(double span, double age) {
         const double bearable = limits_->shareForStepOf(age);
-        risen_ += std::max(span, 0.0);
+        risen_ += span > 0 ? span : 0;
         const double rising = lowest_ + (1 - lowest_) * std::min(risen_ / kRise, 1.0);
         if (!(bearable > rising)) {
             lowest_ = bearable;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -12,41 +13,98 @@
 namespace test {
 
 /// Checks every push of an arm against the bounds of docs/forces.md. It shares no code with the guards.
+///
+/// wrong(force) checks the bounds that need no knowledge of the tick: finite, the device's force, growth. With Asked it
+/// checks all bounds.
 class PushCheck {
 public:
+    /// What a test knows about a tick, apart from its push.
+    struct Asked {
+        double time = 0;       // [s]
+        bool fault = false;    // 0 must be pushed, and a ramp begins
+        bool contact = false;  // the limited force is above 0
+        bool edited = false;   // the first tick that feels a step with an edit
+        double whole = 0;      // [N], norm of the limited force, at most the device's, in the hand's share
+        double share = 1;      // of each force that clutch, operators and frozen sand leave
+    };
+
     explicit PushCheck(const haptic_bridge::ForceLimits& limits) : maxForce_(limits.maxForce), slew_(limits.slew) {}
 
+    /// Forgets all pushes. A ramp begins at `time` [s].
+    void start(double time = 0) {
+        last_ = {};
+        from_ = time;
+        contact_ = grows_ = false;
+    }
     /// Returns what is wrong with the next push; empty if it keeps all bounds.
     [[nodiscard]] std::string wrong(sand::force::Vec3 now) {
         const sand::force::Vec3 before = last_;
         last_ = now;
-        const double size = std::sqrt(now.x * now.x + now.y * now.y + now.z * now.z);
+        const double size = sizeOf(now);
         if (!std::isfinite(size)) {
             return "it is not finite";
         }
-        if (size > maxForce_ * (1 + 1e-9)) {
+        if (!(size <= above(maxForce_))) {  // false also for limits that are NaN
             return fmt::format("{} N are more than the device's {} N", size, maxForce_);
         }
         const double turned = fromShortened(before, now);
-        if (turned > 1.5 * slew_ * (1 + 1e-9) + 1e-12) {
+        if (!(turned <= above(1.5 * slew_))) {
             return fmt::format("it grows or turns by {} N, more than 1.5 times {} N", turned, slew_);
         }
         return {};
     }
-    void restart() { last_ = {}; }
+    [[nodiscard]] std::string wrong(sand::force::Vec3 now, const Asked& asked) {
+        const double before = sizeOf(last_), size = sizeOf(now);
+        if (asked.fault) {
+            start(asked.time);
+            return size == 0 ? std::string() : fmt::format("a fault pushes {} N", size);
+        }
+        if (std::string bad = wrong(now); !bad.empty()) {
+            return bad;
+        }
+        from_ = std::isfinite(from_) ? from_ : asked.time;  // a fault without a time
+        const double ramp = std::min(std::max((asked.time - from_) / kRamp, 0.0), 1.0);
+        if (!(size <= above(ramp * asked.share * maxForce_))) {
+            return fmt::format("{} N are more than {} of the ramp and a share of {} allow", size, ramp, asked.share);
+        }
+        const double most = mostInContact(asked, ramp * asked.whole, before);
+        return size <= above(most) ? std::string()
+                                   : fmt::format("{} N are more than the {} N of a contact or an edit", size, most);
+    }
 
 private:
+    static constexpr double kRamp = 2, kContact = 0.2;  // [s]
+
+    static double above(double most /* [N] */) { return most * (1 + 1e-9) + 1e-12; }
+    static double sizeOf(sand::force::Vec3 v) { return std::hypot(v.x, v.y, v.z); }
+
+    /// Returns the greatest force that a new contact or an edit allows [N]. `whole` is in its ramp; `before` is the
+    /// size of the push before.
+    double mostInContact(const Asked& asked, double whole, double before) {
+        const bool begins = asked.contact && (!contact_ || asked.edited);
+        contact_ = asked.contact;
+        if (begins && whole > before + (1 + 1e-6) * slew_ + 1e-12) {
+            grows_ = true;
+            growsFrom_ = asked.time;
+            base_ = before;
+        }
+        const double part = (asked.time - growsFrom_) / kContact;
+        grows_ = grows_ && asked.contact && part < 1 - 1e-9;
+        return grows_ ? base_ + std::max(part, 0.0) * std::max(whole - base_, 0.0) : maxForce_;
+    }
     /// Returns the distance of `now` from the nearest force that `before` may fall to.
     static double fromShortened(sand::force::Vec3 before, sand::force::Vec3 now) {
         const double square = before.x * before.x + before.y * before.y + before.z * before.z;
         const double part = square > 0 ? (before.x * now.x + before.y * now.y + before.z * now.z) / square : 0;
         const double kept = part < 0 ? 0 : part > 1 ? 1 : part;
-        return std::sqrt(std::pow(now.x - kept * before.x, 2) + std::pow(now.y - kept * before.y, 2) +
-                         std::pow(now.z - kept * before.z, 2));
+        return std::hypot(now.x - kept * before.x, now.y - kept * before.y, now.z - kept * before.z);
     }
 
-    double maxForce_, slew_;
+    double maxForce_, slew_;  // [N], [N/tick]
     sand::force::Vec3 last_;
+    double from_ = 0;  // [s], when the ramp began
+    bool contact_ = false, grows_ = false;
+    double growsFrom_ = 0, base_ = 0;  // [s], [N]
 };
 
 }  // namespace test

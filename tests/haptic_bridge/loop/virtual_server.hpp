@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -89,6 +90,12 @@ public:
     [[nodiscard]] sand::force::Vec3 pushed() const { return pushes.back().force; }
     [[nodiscard]] const sand::Replica& sand() const { return maker_.sand(); }
     [[nodiscard]] bool linked() const { return maker_.running(); }
+    /// Returns whether the last tick felt sand; otherwise the hand rested.
+    [[nodiscard]] bool moving() const { return channel_->moving; }
+    /// Returns the number of links so far.
+    [[nodiscard]] std::uint32_t sitting() const { return sitting_; }
+    /// Returns the sand that the last tick felt.
+    [[nodiscard]] const haptic_bridge::FeltSand& felt() { return channel_->surface.latest(); }
     [[nodiscard]] std::uint64_t counted(haptic_bridge::Guard guard) const {
         return hand_->guardCounts().all()[static_cast<std::size_t>(guard)];
     }
@@ -96,11 +103,17 @@ public:
     std::vector<Push> pushes;      // that the arm got
     bool wallStands = false;       // the wall shows no steps: a pause, a full disk, a master that hangs
     bool sandThreadHangs = false;  // the thread that makes steps does nothing
+    std::function<void(const base::Bytes& stepMessage)> onStep;
 
 private:
     [[nodiscard]] haptic_bridge::StepMaker::Output output() {
         return {[](std::uint32_t) {}, [](std::uint32_t, haptic_bridge::NeedState) {},
-                [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}};
+                [](std::uint32_t, const std::string&) {},
+                [this](std::uint32_t, const base::Bytes& step) {
+                    if (onStep) {
+                        onStep(step);
+                    }
+                }};
     }
     void runSand() {
         maker_.collect();

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// Feeds random ticks to the last gate and to all guards, and checks every force that they let through.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "haptic_bridge/hand/arm_numbers.hpp"
+#include "haptic_bridge/loop/guards/guards.hpp"
+#include "tests/haptic_bridge/loop/fuzz_count.hpp"
+#include "tests/haptic_bridge/loop/push_check.hpp"
+#include "tests/haptic_bridge/loop/push_oracle.hpp"
+#include "tests/haptic_bridge/loop/random_ticks.hpp"
+#include "tests/support/seed.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using sand::force::Vec3;
+using test::Dice;
+
+constexpr const char* kGateCount = "SANDWALL_FUZZ_GATE";
+constexpr int kTicksEach = 60;
+constexpr std::uint32_t kFaults =
+    bit(Guard::notANumber) | bit(Guard::stale) | bit(Guard::missed) | bit(Guard::lost) | bit(Guard::jumped);
+
+/// Runs `sequence(dice)` for as many seeds as the environment asks for. A failure prints the seed of its sequence.
+template <class Sequence>
+void runSequences(const char* variable, unsigned usual, unsigned seed, const Sequence& sequence) {
+    const unsigned count = test::sequences(variable, usual);
+    for (unsigned i = 0; i < count; ++i) {
+        Dice dice(seed + i);
+        sequence(dice, i);
+        if (testing::Test::HasFailure()) {
+            ADD_FAILURE() << test::again(seed + i);
+            return;
+        }
+    }
+}
+
+TEST(GateFuzz, EveryForceThatPassesKeepsTheBounds) {
+    const unsigned seed = test::randomSeed();
+    test::ActedCounts counts;
+    runSequences(kGateCount, 10'000, seed, [&](Dice& dice, unsigned) {
+        const ForceLimits limits = test::randomLimits(dice);
+        ASSERT_EQ(complaintAbout(limits.arm, "the test"), std::nullopt);
+        test::GateTicks ticks(dice, limits);
+        ForceGate gate(limits);
+        test::PushCheck check(limits);
+        gate.restart(ticks.time());
+        check.start(ticks.time());
+        for (int tick = 0; tick < kTicksEach; ++tick) {
+            const ForceGate::Wanted wanted = ticks.next();
+            if (dice.chance(0.03)) {
+                gate.restart(wanted.time);
+                check.start(wanted.time);
+                continue;
+            }
+            std::uint32_t acted = 0;
+            const Vec3 passed = gate.pass(wanted, acted);
+            counts.add(acted);
+            const bool finite =
+                std::isfinite(norm(wanted.force)) && std::isfinite(wanted.whole) && std::isfinite(wanted.time);
+            ASSERT_EQ((acted & bit(Guard::notANumber)) != 0, !finite) << "tick " << tick;
+            ASSERT_EQ(check.wrong(passed, {wanted.time, !finite, wanted.contact, wanted.edited, wanted.whole}), "")
+                << "tick " << tick;
+            if (acted == 0) {
+                ASSERT_LE(norm(passed - wanted.force), 1e-12) << "no guard acted at tick " << tick;
+            }
+        }
+    });
+    for (const Guard guard : {Guard::notANumber, Guard::clamp, Guard::ramp, Guard::contact, Guard::gate}) {
+        EXPECT_TRUE(counts.of(guard) > 0 || HasFailure()) << kGuardNames[static_cast<std::size_t>(guard)];
+    }
+    counts.tell(kGateCount, "gate", test::sequences(kGateCount, 10'000), seed);
+}
+
+/// Guards, and the check of each of their ticks.
+class CheckedGuards {
+public:
+    explicit CheckedGuards(const ForceLimits& limits) : guards_(limits), oracle_(limits), check_(limits) {}
+
+    void forget() {
+        guards_.forget();
+        oracle_.forget();
+        begun_ = false;
+    }
+    /// Returns what is wrong with this tick; empty if it keeps all rules.
+    [[nodiscard]] std::string wrong(const Guards::Reading& reading) {
+        const Guards::Forces forces = guards_.tick(reading);
+        if (!std::exchange(begun_, true)) {
+            check_.start(reading.time);
+        }
+        acted = forces.acted;
+        sent = forces.sent;
+        test::PushCheck::Asked asked = oracle_.next(reading);
+        if (asked.fault && (acted & kFaults) == 0 && reading.engaged) {
+            return "no guard has acted at a fault";
+        }
+        // Numbers that are finite one by one may not be so together. A tick may then send 0, and begins a ramp.
+        if (!asked.fault && (acted & kFaults & ~bit(Guard::notANumber)) != 0) {
+            return "a guard has found a fault where there is none";
+        }
+        asked.fault = asked.fault || (acted & bit(Guard::notANumber)) != 0;
+        return check_.wrong(sent, asked);
+    }
+    /// Returns the force that a hand gets which rests there for long.
+    [[nodiscard]] double limited(const Guards::Reading& reading) const { return norm(oracle_.limitedAt(reading, 1)); }
+
+    std::uint32_t acted = 0;
+    Vec3 sent;
+
+private:
+    Guards guards_;
+    test::PushOracle oracle_;
+    test::PushCheck check_;
+    bool begun_ = false;
+};
+
+TEST(GuardsFuzz, EveryForceOfTheGuardsKeepsTheRulesWhateverTheyRead) {
+    const unsigned seed = test::randomSeed();
+    test::ActedCounts counts;
+    int rested = 0;
+    runSequences(kGateCount, 10'000, seed, [&](Dice& dice, unsigned sequence) {
+        const ForceLimits limits = test::randomLimits(dice);
+        CheckedGuards guards(limits);
+        test::HandTicks hand(dice, limits);
+        const int warm = dice.chance(0.3) ? 230 : 0;  // [tick] of 9 ms, longer than the ramp of a start
+        for (int tick = -warm; tick < kTicksEach; ++tick) {
+            if (dice.chance(0.01)) {
+                guards.forget();
+            }
+            ASSERT_EQ(guards.wrong(tick < 0 ? hand.resting() : hand.next()), "") << "tick " << tick;
+            counts.add(guards.acted);
+        }
+        if (sequence % 16 != 0) {
+            return;
+        }
+        // Whatever the guards have read, an honest hand gets its whole force again. The longest silence is that of
+        // frozen sand: a second of steps and half a second to grow, beside the ramp of two seconds.
+        Guards::Reading reading;
+        for (int tick = 0; tick < 400; ++tick) {
+            reading = hand.resting();
+            ASSERT_EQ(guards.wrong(reading), "") << "resting, tick " << tick;
+            counts.add(guards.acted);
+        }
+        const double whole = guards.limited(reading);
+        if (whole < 100 * limits.slew) {
+            ASSERT_NEAR(norm(guards.sent), std::min(whole, limits.maxForce), 1e-9 + 1e-6 * whole);
+            rested += whole > 0 ? 1 : 0;
+        }
+    });
+    EXPECT_TRUE(rested > 0 || HasFailure());
+    for (std::size_t i = 0; i < kGuards; ++i) {
+        EXPECT_TRUE(counts.all().at(i) > 0 || HasFailure()) << kGuardNames.at(i) << " has never acted";
+    }
+    counts.tell(kGateCount, "guards", test::sequences(kGateCount, 10'000), seed);
+}
+
+}  // namespace

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs whole haptic servers under a virtual clock with random arms, scenes, hands, operators and failures. Checks every
+// push of the arm, the records of the ticks, and a replay of them.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "haptic_bridge/hand/arm_numbers.hpp"
+#include "haptic_bridge/loop/tick_replay.hpp"
+#include "tests/haptic_bridge/loop/random_hand.hpp"
+#include "tests/haptic_bridge/loop/tick_check.hpp"
+#include "tests/support/seed.hpp"
+
+namespace {
+
+using namespace haptic_bridge;
+using test::Dice;
+
+constexpr const char* kLoopCount = "SANDWALL_FUZZ_LOOP";
+
+/// Keeps the ticks and steps of a server as a master's journal does.
+class Journal {
+public:
+    void add(test::VirtualServer& server) {
+        if (std::exchange(sitting_, server.sitting()) != server.sitting()) {
+            endPiece();
+            pieces_.push_back(encode(TrackPiece{sitting_, true, headerOf(server.hand()), {}}));
+        }
+        piece_.sitting = sitting_;
+        piece_.ticks.push_back(server.hand().lastInput());
+        appendRow(server.last(), rows_);
+        if (piece_.ticks.size() == kMostTicksInPiece) {
+            endPiece();
+        }
+    }
+    void keepStep(const base::Bytes& message) {
+        constexpr std::size_t kLength = 4;  // [byte], of the length of a message
+        steps_.push_back(std::get<StepMessage>(decode(std::span(message).subspan(kLength))).step);
+    }
+    void compareWithReplay(const scene::Scene& scene) {
+        endPiece();
+        TickReplay replay(scene, pieces_);
+        sand::Replica sand(scene);
+        std::string rows;
+        replay.feel(sand, rows);
+        for (const sand::Step& step : steps_) {
+            sand.apply(step);
+            replay.feel(sand, rows);
+        }
+        EXPECT_EQ(replay.left(), 0U);
+        EXPECT_FALSE(rows.empty());
+        EXPECT_TRUE(rows == rows_) << "a replay gives other rows";
+    }
+
+private:
+    void endPiece() {
+        if (!piece_.ticks.empty()) {
+            pieces_.push_back(encode(piece_));
+            piece_.ticks.clear();
+        }
+    }
+
+    std::uint32_t sitting_ = 0;
+    TrackPiece piece_;
+    std::vector<base::Bytes> pieces_;
+    std::vector<sand::Step> steps_;
+    std::string rows_;
+};
+
+/// One random server with its master, operator, hand and failures.
+class RandomServer {
+public:
+    explicit RandomServer(Dice& dice)
+        : dice_(dice),
+          scene_(test::randomScene(dice)),
+          physics_(test::randomArm(dice, !dice.chance(0.05))),
+          settings_(test::randomSettings(dice, physics_, scene_)),
+          hand_(dice, settings_, physics_, toolInArm(), dice.oneOf({0.0, 0.3, 2.0})),
+          server_(
+              scene_, physics_, [this](double) { return reading_; }, dice.oneOf({0.0, 0.5, 1.0, 1.0}), settings_),
+          check_(scene_, settings_, server_.hand().guards().limits()),
+          trouble_(dice.oneOf({0.0, 0.3, 1.0})),
+          recorded_(dice.chance(0.3)) {
+        EXPECT_EQ(complaintAbout(physics_, "the test"), std::nullopt);
+        if (recorded_) {
+            server_.onStep = [this](const base::Bytes& message) { journal_.keepStep(message); };
+        }
+    }
+
+    void run(double seconds, test::ActedCounts& counts) {
+        for (int tick = 0; tick < seconds * 1000; ++tick) {
+            reading_ = hand_.next();
+            happen();
+            const bool misses = dice_.chance(0.0005 * trouble_);
+            server_.tick(misses ? dice_.oneOf({3, 9, 10, 11, 15, 40}) * test::VirtualServer::kTickNs
+                                : test::VirtualServer::kTickNs);
+            ASSERT_EQ(check_.wrong(server_), "") << "tick " << tick;
+            if (server_.moving()) {
+                counts.add(server_.last().guards);
+                if (recorded_) {
+                    journal_.add(server_);
+                }
+            }
+        }
+        const auto counted = server_.hand().guardCounts().all();
+        EXPECT_EQ(counted, check_.counts.all()) << "counters and records";
+        if (recorded_ && check_.counts.ticks() > 0) {
+            journal_.compareWithReplay(scene_);
+        }
+        server_.end();
+        EXPECT_EQ(norm(server_.pushed()), 0) << "the last push";
+    }
+
+private:
+    [[nodiscard]] double toolInArm() const {
+        const double scale = MappedDevice::scaleFor(physics_, settings_, scene_);
+        return scene_.toolRadius() / (scale * settings_.verticalScale);
+    }
+    /// What the others do in this tick.
+    void happen() {
+        if (!server_.linked()) {
+            if (dice_.chance(0.02)) {
+                // A replay cannot know about sand of another session.
+                const bool other = !recorded_ && older_ && dice_.chance(0.3);
+                server_.link(randomShare(), other ? older_ : std::nullopt);
+            }
+            return;
+        }
+        if (dice_.chance(0.001)) {
+            older_ = server_.sand();
+        }
+        if (dice_.chance(0.002)) {
+            server_.edit(randomEdit());
+        }
+        if (dice_.chance(0.0007)) {
+            server_.share(randomShare());
+        }
+        if (dice_.chance(0.0004 * trouble_)) {
+            server_.unlink();
+        }
+        if (dice_.chance(server_.wallStands ? 0.003 : 0.0005 * trouble_)) {
+            server_.wallStands = !server_.wallStands;
+        }
+        if (dice_.chance(server_.sandThreadHangs ? 0.02 : 0.0005 * trouble_)) {
+            server_.sandThreadHangs = !server_.sandThreadHangs;
+        }
+    }
+    [[nodiscard]] ForceShare randomShare() { return {dice_.oneOf({0.0, 0.4, 1.0, 1.0, 1.0}), dice_.chance(0.5)}; }
+    [[nodiscard]] sand::Edit randomEdit() {
+        sand::Tuning tuning = server_.sand().rules().tuning();
+        switch (dice_.below(6)) {
+            case 0:
+                return sand::Edit::reset;
+            case 1:
+                return sand::Edit::undo;
+            case 2:
+                return sand::Edit::settle;
+            case 3:
+                tuning.threshold = tuning.startThreshold = test::talusOf(dice_.between(1, 60));
+                return sand::Edit::tuned(tuning);
+            case 4:
+                test::randomTool(dice_, tuning);
+                return sand::Edit::tuned(tuning);
+            default:
+                return sand::Edit::loaded(otherSand().copySand()->encode());
+        }
+    }
+    /// Returns older sand of this server, or in cells also sand that buries the hand.
+    [[nodiscard]] sand::Replica otherSand() {
+        if (scene_.tin != nullptr || dice_.chance(0.5)) {
+            return older_ ? *older_ : server_.sand();
+        }
+        scene::Scene high = scene_;
+        for (int y = 0; y < high.rules.rows; ++y) {
+            for (int x = 0; x < high.rules.columns; ++x) {
+                high.terrain.setHeight(x, y, (4 + dice_.below(2)) * sand::kUnitsPerCell);
+            }
+        }
+        return sand::Replica(high);
+    }
+
+    Dice& dice_;
+    scene::Scene scene_;
+    ArmPhysics physics_;
+    HandSettings settings_;
+    test::RandomHand hand_;
+    ArmReading reading_;
+    test::VirtualServer server_;
+    test::TickCheck check_;
+    double trouble_;
+    bool recorded_;
+    Journal journal_;
+    std::optional<sand::Replica> older_;
+};
+
+TEST(LoopFuzz, EveryPushOfARandomServerKeepsTheBoundsAndIsOnRecord) {
+    const unsigned seed = test::randomSeed(), count = test::sequences(kLoopCount, 20);
+    test::ActedCounts counts;
+    for (unsigned i = 0; i < count; ++i) {
+        Dice dice(seed + i);
+        RandomServer(dice).run(4, counts);
+        ASSERT_FALSE(HasFailure()) << test::again(seed + i);
+    }
+    counts.tell(kLoopCount, "loop", count, seed);
+}
+
+}  // namespace
