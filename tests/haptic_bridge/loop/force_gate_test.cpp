@@ -13,7 +13,7 @@ namespace {
 using namespace haptic_bridge;
 using sand::force::Vec3;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kGateTick = 1e-3;  // [s]
 
 /// A gate of 8 N with a slew limit of 0.1 N per tick, unless given. The ramp of its start is over.
@@ -119,7 +119,7 @@ TEST(ForceGate, ARampIsNotShorterForAForceBeyondTheDevices) {
 }
 
 TEST(ForceGate, PassesNothingAtANumberThatIsNotFiniteAndRampsAfterIt) {
-    for (const double bad : {kNaN, kInfinite, -kInfinite}) {
+    for (const double bad : {kNaN, kUnbounded, -kUnbounded}) {
         for (const ForceGate::Wanted& wanted :
              {ForceGate::Wanted{1, {bad, 0, 1}, 1}, ForceGate::Wanted{1, {0, bad, 1}, 1},
               ForceGate::Wanted{1, {0, 0, bad}, 1}, ForceGate::Wanted{1, {0, 0, 1}, bad},
