@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sessions with hands other than the built-in ones.
+// Sessions with hands other than the built-in ones, and the force at an arm whose processes hang and start again.
+#include <algorithm>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <regex>
+#include <sstream>
 
 #include "scene/import/esri_grid.hpp"
 #include "tests/cluster/session_fixture.hpp"
@@ -68,6 +72,85 @@ TEST_F(Devices, AJournalWithoutTicksSaysHowToGetThem) {
     const support::Ran replayed =
         support::runProgram("sandwall-replay", out() + "/session.journal --forces " + (folder_ / "again.csv").string());
     expectOneLine({replayed.status, replayed.output}, "session.journal");
+}
+
+/// A session whose arm presses into the sand and logs the forces that it takes
+/// (tests/haptic_bridge/devices/logging_driver.cpp). A server that starts again begins a new log.
+class Force : public SessionTest {
+protected:
+    [[nodiscard]] std::string device() const {
+        return "driver:" SANDWALL_BIN_DIR "/logging-driver.so:none:" + (folder_ / "forces").string();
+    }
+    /// Returns the magnitude of each force that the arm of the present server took [N].
+    [[nodiscard]] std::vector<double> forces() const {
+        std::vector<double> all;
+        std::istringstream rows(read("forces"));
+        for (std::string row; std::getline(rows, row) && !rows.eof();) {  // the last row may not be whole
+            std::istringstream parts(row);
+            double time = 0, x = 0, y = 0, z = 0;
+            if (parts >> time >> x >> y >> z) {
+                all.push_back(std::sqrt(x * x + y * y + z * z));
+            }
+        }
+        return all;
+    }
+    /// Returns whether the last `count` forces are 0, or all of them above 0.
+    [[nodiscard]] bool lastAre(bool zero, std::size_t count = 200) const {
+        const std::vector<double> all = forces();
+        return all.size() >= count && std::all_of(all.end() - static_cast<std::ptrdiff_t>(count), all.end(),
+                                                  [zero](double force) { return (force == 0) == zero; });
+    }
+    static void strike(const support::ChildProcess& session, const std::string& program, int signal) {
+        kill(support::findProgram(session.family(), program).value(), signal);
+    }
+    [[nodiscard]] static std::size_t links(const support::ChildProcess& session) {
+        const std::vector<nlohmann::json> all = session.events("link");
+        return static_cast<std::size_t>(std::count_if(
+            all.begin(), all.end(), [](const nlohmann::json& event) { return event["state"] == "linked"; }));
+    }
+};
+
+TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
+    const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--device", device(), "--out", out(),
+                                "--no-pictures", "--restarts", "100", "--restart-window", "0.001"});
+    expectHand(*session);
+    ASSERT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
+    EXPECT_TRUE(ask("status")["force_share"].is_null());
+    (void)ask("force off");
+    ASSERT_TRUE(session->waitUntil([&] { return lastAre(true); })) << session->output();
+
+    const std::size_t before = links(*session);
+    strike(*session, "sandwall-master", SIGKILL);
+    ASSERT_TRUE(session->waitUntil([&] { return links(*session) > before; })) << session->output();
+    EXPECT_EQ(ask("status")["force_share"], 0);
+    strike(*session, "sandwall-haptic-server", SIGKILL);
+    ASSERT_TRUE(session->waitUntil([&] { return links(*session) > before + 1; })) << session->output();
+    const int linked = ask("status")["step"];
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 120; });
+    const std::vector<double> all = forces();
+    EXPECT_GT(all.size(), 1000U) << "two seconds of the new server";
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](double force) { return force > 0; }), 0);
+
+    (void)ask("force on");
+    EXPECT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
+    session->signal(SIGINT);
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_EQ(forces().back(), 0);
+}
+
+TEST_F(Force, FadesWhileTheMasterHangs) {
+    const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--device", device(), "--out", out(),
+                                "--no-pictures", "--force-scale", "0.5"});
+    expectHand(*session);
+    ASSERT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
+    strike(*session, "sandwall-master", SIGSTOP);
+    EXPECT_TRUE(session->waitUntil([&] { return lastAre(true); })) << session->output();
+    strike(*session, "sandwall-master", SIGCONT);
+    EXPECT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
+    session->signal(SIGINT);
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_GT(summary()["haptic"]["guarded_ticks"]["frozen"], 0);
+    EXPECT_EQ(forces().back(), 0);
 }
 
 }  // namespace
