@@ -45,6 +45,8 @@ def fault(value, schema, whole=None, path=""):
         return f"{where} must be one of {', '.join(map(str, schema['enum']))}, got {shown(value)}"
     if "minimum" in schema and value is not None and value < schema["minimum"]:
         return f"{where} must be {schema['minimum']} or more, got {shown(value)}"
+    if "exclusiveMinimum" in schema and value is not None and value <= schema["exclusiveMinimum"]:
+        return f"{where} must be more than {schema['exclusiveMinimum']}, got {shown(value)}"
     if "pattern" in schema and not re.search(schema["pattern"], value):
         return f"{where} must match {schema['pattern']}, got {shown(value)}"
     if isinstance(value, dict):

@@ -153,8 +153,10 @@ def steps(summary, _):
 def sand(summary, _):
     compared = summary["compared"]
     differed, at_server = summary["divergences"], summary["server_divergences"]
-    # The ranks that differ in a frame are healed in that frame, so at least one is healed for each frame.
-    unhealed = max(summary["unhealed"], differed - summary["healed"])
+    # The ranks that differ in a frame are healed in that frame, or end the job. So at least one is healed for each frame,
+    # except for one frame of each earlier start.
+    earlier = len(summary["recoveries"]) + (summary["frames_before"] > 0)
+    unhealed = max(summary["unhealed"], differed - summary["healed"] - earlier)
     since = f"whole until frame {compared['last_whole']}, {counted(compared['frames_since'], 'frame')} since then"
     end = "compared whole in the last frame" if compared["at_end"] else f"not compared at the end: {since}"
     if compared["server_at_end"] is None and summary["hand"]["asked"] == "server":

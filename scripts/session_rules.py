@@ -73,7 +73,7 @@ RULES = (
     Rule("sand", "whether all replicas had the same sand, and until which frame that was compared", "no difference, and all compared in the last frame",
          "a difference that was healed, or a majority that the journal outvoted", "a difference that was not healed, in a rank or in the haptic server",
          "healing.md", ("divergences", "server_divergences", "healed", "master_healed", "outvoted", "unhealed", "compared", "state_hash",
-                        "hand.asked", "hand.links"), lines.sand),
+                        "hand.asked", "hand.links", "recoveries", "frames_before"), lines.sand),
     Rule("volume", "volume and outflow at the end, less the volume at the start", "exact", "", "not exact", "healing.md",
          ("volume_initial", "volume_final", "volume_outflow"), lines.volume),
     Rule("recoveries", "restarts after a failure, the time that the wall stood still, and failed processes that the launcher did not start again",

@@ -233,13 +233,14 @@ class Schema(unittest.TestCase):
                   "properties": {"a": {"$ref": "#/definitions/count"}, "b": {"type": ["number", "null"]}, "c": {"enum": ["x"]}, "d": {"const": 1},
                                  "e": {"type": "array", "minItems": 1, "items": {"$ref": "#/definitions/count"}},
                                  "f": {"type": "string", "pattern": "^[0-9]$"}, "g": {"oneOf": [{"type": "null"}, {"$ref": "#/definitions/count"}]},
-                                 "h": {"type": "object", "additionalProperties": {"$ref": "#/definitions/count"}}, "i": {"type": "boolean"}}}
+                                 "h": {"type": "object", "additionalProperties": {"$ref": "#/definitions/count"}}, "i": {"type": "boolean"},
+                                 "j": {"type": "number", "exclusiveMinimum": 0}}}
         for good in ({"a": 0}, {"a": 1, "b": None}, {"a": 1, "b": 2.5, "e": [1]}, {"a": 1, "f": "7", "g": None}, {"a": 1, "h": {"x": 2}}, {"a": 1, "new": []}):
             self.assertIsNone(json_schema.fault(good, schema), good)
         for wrong, field in (({}, "a is missing"), ({"a": True}, "a must"), ({"a": -1}, "a must"), ({"a": 1.0}, "a must"), ({"a": 2 ** 63}, "a must"),
                              ({"a": 1, "b": "NaN"}, "b must"), ({"a": 1, "b": float("inf")}, "b must"), ({"a": 1, "c": "y"}, "c must"),
                              ({"a": 1, "d": 2}, "d must"), ({"a": 1, "d": True}, "d must"), ({"a": 1, "e": []}, "e has 0"), ({"a": 1, "e": [-1]}, r"e[0] must"),
-                             ({"a": 1, "f": "x"}, "f must"), ({"a": 1, "g": -1}, "g must"), ({"a": 1, "h": {"x": -2}}, "h.x must"), ({"a": 1, "i": 1}, "i must"),
+                             ({"a": 1, "f": "x"}, "f must"), ({"a": 1, "g": -1}, "g must"), ({"a": 1, "h": {"x": -2}}, "h.x must"), ({"a": 1, "i": 1}, "i must"), ({"a": 1, "j": 0}, "j must"),
                              ([], "it must")):
             self.assertTrue((json_schema.fault(wrong, schema) or "").startswith(field), (wrong, json_schema.fault(wrong, schema)))
 

@@ -287,6 +287,11 @@ class Sand(Lines):
         self.only("sand", BAD, "399 not healed", "differed in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
         self.only("sand", BAD, "2 not healed", divergences=1, healed=1, unhealed=2, compared__first_difference=20)
 
+    def test_a_difference_that_ended_an_earlier_job_is_no_fault_of_the_sand_now(self):
+        fields = {"divergences": 3, "healed": 2, "compared__first_difference": 20, "frames_before": 100, "hand__frames_with_hand": 500}
+        self.check("sand", NOTE, recoveries=[RECOVERY], **fields)
+        self.check("sand", BAD, "1 not healed", recoveries=[RECOVERY], **{**fields, "divergences": 5})
+
     def test_wrong_sand_of_the_server_is_bad(self):
         self.only("sand", BAD, "the haptic server's sand was wrong at the end", compared__server_at_end=False)
         self.only("sand", NOTE, "in 1 on the haptic server", server_divergences=1, compared__first_difference=20)
