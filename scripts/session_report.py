@@ -63,7 +63,7 @@ def printable(path):
 
 def lines_of_no_summary():
     """Returns the lines of a session that ended without a summary."""
-    return [(BAD, "end", "no summary: a process failed or was killed; docs/recovery.md"),
+    return [(BAD, "end", "no summary was written: a process failed or was killed, or the disk had no room; docs/recovery.md"),
             (UNMEASURED, "sand", "not compared at the end")]
 
 
