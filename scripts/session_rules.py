@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The lines of the report at the end of a session: what each reads, its rule for ok, note and BAD, and what to do next.
+"""The lines of the report at the end of a session: what each reads, its rule for each mark, and what to do next.
 
 Prints the table of docs/summary.md. A test compares the table on that page with this list, and the fields with
 docs/schemas/summary.schema.json. The limits are in scripts/session_lines.py.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the lines of the report: which figures are ok, a note or BAD, and that every field of summary.json has a line or a reason."""
+"""Tests which figures of the report are ok, a note or BAD. Every field of summary.json must have a line or a reason."""
 
 import json
 import re
