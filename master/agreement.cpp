@@ -78,6 +78,7 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
     lockstep::Remedy remedy{!broken, divergence.source, odd};
     if (broken) {
         statistics_.addOdd(odd);
+        unhealed_ += odd.size();
         lines.push_back(giveUp(frame, *broken, again));
     } else {
         const std::vector<std::string> healed = countHealed(frame, divergence, odd);
@@ -170,6 +171,7 @@ void Agreement::reportOtherViews(std::uint64_t frame) {
         }
     }
     statistics_.addOdd(odd);
+    unhealed_ += odd.size();
     host::emitEvent("view_divergence", {{"frame", frame}, {"rank", odd.front()}});
     const std::vector<std::string> lines = lockstep::describeOtherViews(arrivals, labels_.names);
     tell(lines, out_ / "divergence.txt");

@@ -53,6 +53,8 @@ public:
     /// Return the number of frames in which ranks differed, and how often a rank was healed, since this process began.
     [[nodiscard]] std::uint64_t divergences() const { return divergences_; }
     [[nodiscard]] std::uint64_t healed() const { return healed_; }
+    /// Returns how many ranks have ended the session because their sand or view differed and could not be healed.
+    [[nodiscard]] std::uint64_t unhealed() const { return unhealed_; }
 
 private:
     [[nodiscard]] bool healSand(std::uint64_t frame, MasterSand& sand, StepSource& steps, bool again);
@@ -73,7 +75,7 @@ private:
     std::optional<JournalEnd> decision_;
     std::vector<int> healedInDoubt_;      // ranks that a majority has healed whose decision is not confirmed
     std::vector<std::uint64_t> strikes_;  // by rank: healings that count against it
-    std::uint64_t divergences_ = 0, healed_ = 0;
+    std::uint64_t divergences_ = 0, healed_ = 0, unhealed_ = 0;
 };
 
 }  // namespace master

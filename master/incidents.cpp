@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -13,6 +13,7 @@
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
+#include "master/json_count.hpp"
 
 namespace master {
 namespace {
@@ -30,7 +31,8 @@ ordered_json jsonOf(const Incidents& incidents) {
                       {"links", incidents.links},
                       {"reconnects", incidents.reconnects},
                       {"stands", incidents.stands},
-                      {"steps_left_out", incidents.stepsLeftOut}};
+                      {"steps_left_out", incidents.stepsLeftOut},
+                      {"first_difference", incidents.firstDifference}};
     for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
         const std::string kind(haptic_bridge::kRefusalNames[i]);
         json["refused_by_server"][kind] = incidents.refusedHere[i];
@@ -46,18 +48,22 @@ Incidents incidentsOf(const std::filesystem::path& file) {
         return {};
     }
     const ordered_json json = ordered_json::parse(*text);
-    Incidents incidents{.divergences = json.at("divergences"),
-                        .healed = json.at("healed"),
-                        .outvoted = json.at("outvoted"),
-                        .serverDivergences = json.at("server_divergences"),
-                        .links = json.at("links"),
-                        .reconnects = json.at("reconnects"),
-                        .stands = json.at("stands"),
-                        .stepsLeftOut = json.at("steps_left_out")};
+    const auto count = [&json](const std::string& key) {
+        return countAt(json, nlohmann::json::json_pointer("/" + key));
+    };
+    Incidents incidents{.divergences = count("divergences"),
+                        .healed = count("healed"),
+                        .outvoted = count("outvoted"),
+                        .serverDivergences = count("server_divergences"),
+                        .links = count("links"),
+                        .reconnects = count("reconnects"),
+                        .stands = count("stands"),
+                        .stepsLeftOut = count("steps_left_out"),
+                        .firstDifference = count("first_difference")};
     for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
         const std::string kind(haptic_bridge::kRefusalNames[i]);
-        incidents.refusedHere[i] = json.at("refused_by_server").at(kind);
-        incidents.refused[i] = json.at("refused").at(kind);
+        incidents.refusedHere[i] = count("refused_by_server/" + kind);
+        incidents.refused[i] = count("refused/" + kind);
     }
     return incidents;
 }
@@ -70,7 +76,7 @@ IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : 
     }
     try {
         before_ = kept_ = incidentsOf(file_);
-    } catch (const nlohmann::json::exception& error) {
+    } catch (const std::exception& error) {  // not JSON, or a number that is no count
         host::printLine("{}: {}; the summary counts from here on", file_.string(), error.what());
     }
 }

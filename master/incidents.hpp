@@ -16,14 +16,15 @@ struct Incidents {
     haptic_bridge::RefusalCounts refusedHere{}, refused{};  // of the haptic link, see LinkCounters
     std::uint64_t stands = 0;                               // times that the sand was stopped because the disk was full
     std::uint64_t stepsLeftOut = 0;                         // see Summary
+    std::uint64_t firstDifference = 0;                      // see Summary::Compared
     friend bool operator==(const Incidents&, const Incidents&) = default;
 };
 
 /// The file FOLDER/incidents.json. It is rewritten when the counts have changed, and read when the session is resumed.
 class IncidentFile {
 public:
-    /// Reads the counts from before the restart if the session is `resumed`. If the file cannot be read, prints a line
-    /// and starts at 0.
+    /// Reads the counts from before the restart if the session is `resumed`. If the file is damaged or holds a number
+    /// that is no count, prints a line and starts at 0.
     IncidentFile(const std::filesystem::path& folder, bool resumed);
     /// Removes the file, which belongs to an earlier session.
     void forget() const;

@@ -43,6 +43,10 @@ public:
     /// Returns how many hash tiles to hash again in the next frame, so that all tiles are hashed in each second at any
     /// frame rate. `sinceSwap` is the time since the last swap [s].
     [[nodiscard]] std::uint32_t auditTiles(double sinceSwap) const;
+    /// Returns the number of all hash tiles, which the last frame of a session hashes again.
+    [[nodiscard]] std::uint32_t allTiles() const {
+        return static_cast<std::uint32_t>(replica_.hashTiles().tileCount());
+    }
 
     /// Returns what the steps since the last call have left out.
     [[nodiscard]] std::vector<LeftOut> takeLeftOut() { return std::exchange(leftOut_, {}); }

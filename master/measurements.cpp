@@ -37,6 +37,8 @@ void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arri
         return;
     }
     lastFrameMs_ = frame.swap.milliseconds();
+    pausedSeconds_ += frame.held == haptic_bridge::Held::pause ? 1e-3 * lastFrameMs_ : 0;
+    fullDiskSeconds_ += frame.held == haptic_bridge::Held::disk ? 1e-3 * lastFrameMs_ : 0;
     if (counts) {
         frameMs_.add(lastFrameMs_);
         lateFrames_ += pace_ == Pace::realtime && lastFrameMs_ > kLate * 1e3 * period_ ? 1 : 0;
@@ -96,6 +98,8 @@ void Measurements::describe(nlohmann::json& status, const std::vector<std::strin
 void Measurements::fill(Summary& summary) const {
     summary.frameMs = frameMs_;
     summary.lateFrames = lateFrames_;
+    summary.pausedSeconds = pausedSeconds_;
+    summary.fullDiskSeconds = fullDiskSeconds_;
     summary.skewUs = skewUs_;
     summary.broadcastBytes = broadcastBytes_;
     summary.latency = latency_;

@@ -29,6 +29,7 @@ public:
         std::size_t bytes = 0;       // [byte], length of the frame message
         std::int64_t broadcast = 0;  // [ns], when the frame message had been sent
         Swap swap;
+        haptic_bridge::Held held = haptic_bridge::Held::no;  // why the frame took no steps
     };
     /// Adds a frame with its steps. `arrivals` are the arrivals at the frame's barrier. `clockOffset` is server's clock
     /// − master's clock [ns].
@@ -61,6 +62,7 @@ private:
     lockstep::Statistics frameMs_, skewUs_, broadcastBytes_;
     Latency latency_;
     std::uint64_t lateFrames_ = 0;
+    double pausedSeconds_ = 0, fullDiskSeconds_ = 0;
     double lastFrameMs_ = 0, lastSkewUs_ = 0;
     double fps_ = 0;                 // over about the last second
     std::int64_t lastProgress_ = 0;  // [ns]

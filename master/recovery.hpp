@@ -31,7 +31,9 @@ struct Recovery {
 /// Prints the recovery on standard error, with the time since the failure [s], emits the event `recovered`, and appends
 /// it to `folder`/recoveries.jsonl. If the file cannot be written, prints this and continues.
 void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder);
-/// Returns the lines of `folder`/recoveries.jsonl. Each line is a JSON object.
+/// Returns the lines of `folder`/recoveries.jsonl. Each line is a JSON object with the fields of a recovery
+/// (docs/recovery.md). Leaves out a line that is cut off. Also leaves out, and prints, a line with a value that no
+/// session can write.
 [[nodiscard]] std::vector<std::string> recoveriesOf(const std::filesystem::path& folder);
 /// Number of the lines that recoveriesOf() returns. The launcher also appends to the file while a session runs. So the
 /// file is read again when its length has changed, and not for each `ctl status`.

@@ -14,9 +14,7 @@
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
-#include "lockstep/session_message.hpp"
 #include "master/failure_report.hpp"
-#include "master/recovery.hpp"
 #include "master/wall_pictures.hpp"
 
 namespace master {
@@ -64,6 +62,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       agreement_(
           ranks_, labels_, options_.out, measure_.ranks(),
           {[this] { return record_.journalFile(); }, [this] { return record_.sandOfJournal(sand_, options_.sweeps); }}),
+      compared_(sand_.allTiles(), record_.before().firstDifference),
       check_({[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
               [this](const JournalChecked& checked) { record_.checked(checked); }},
              options_.out) {
@@ -122,7 +121,8 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     }
     frame.stop = last && (!check_.pending() || now - endsSince_ > kLongestWaitNs);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.wantsCapture());
-    frame.auditTiles = sand_.auditTiles(clock_.sinceSwap(now));
+    // The last frame compares the whole sand, because no later frame finds what is wrong now.
+    frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
     return frame;
 }
 
@@ -175,22 +175,43 @@ bool Session::showFrame(bool& more) {
     }
     const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
                                  0,           sand_.hash(),  viewProof_.hash(frame.view)};
-    if (!agreement_.reach(mine, sand_, *steps_, clock_.next(held()))) {
+    if (!agree(frame, mine)) {
         return false;
     }
     const Swap swap = clock_.swapped(monotonicNs());
-    measure_.add({frame.frame, bytes, broadcast, swap}, steps, barrier_.arrivals(), steps_->clockOffsetNs());
+    const haptic_bridge::Held held = heldBy();
+    measure_.add({frame.frame, bytes, broadcast, swap, held}, steps, barrier_.arrivals(), steps_->clockOffsetNs());
     desk_.answer(steps);
     if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
         desk_.takeCapture(frame.frame, barrier_);
     }
-    steps_->shown(sand_.replica().stepNumber(), swap.interval);
-    serverDivergences_ += steps_->proveServer(steps, sand_.hash()) ? 0 : 1;
+    steps_->shown(sand_.replica().stepNumber(), swap.interval, held);
+    handed_ = steps_->handed();
+    framesWithHand_ += handed_ ? 1 : 0;
+    if (!steps_->proveServer(steps, sand_.hash())) {
+        ++serverDivergences_;
+        compared_.differed(frame.frame);
+    }
     followCheck(frame.frame);
     record_.shown(swap, frame.frame, sand_, steps_->epoch());
     record_.keepIncidents(incidents(), swap.at);
     more = !frame.stop;
     return true;
+}
+
+bool Session::agree(const lockstep::FrameMessage& frame, const lockstep::Arrival& mine) {
+    const std::uint64_t before = agreement_.divergences();
+    const bool agreed = agreement_.reach(mine, sand_, *steps_, clock_.next(held()));
+    const bool differed = agreement_.divergences() != before;
+    if (differed) {
+        compared_.differed(frame.frame);
+    }
+    if (agreed) {
+        // Ranks that differed have hashed the whole sand again.
+        compared_.agreed(frame.frame, differed ? sand_.allTiles() : frame.auditTiles);
+    }
+    agreedToEnd_ = agreed && frame.stop;
+    return agreed;
 }
 
 void Session::followCheck(std::uint64_t frame) {
@@ -216,6 +237,7 @@ Incidents Session::incidents() const {
     all.serverDivergences += serverDivergences_;
     all.stepsLeftOut += stepsLeftOut_;
     all.stands += record_.stands();
+    all.firstDifference = compared_.firstDifference();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
     all.reconnects += link.reconnects;
@@ -254,82 +276,6 @@ nlohmann::json Session::status() const {
 void Session::sayProgress(bool last) {
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
     measure_.sayProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs());
-}
-
-Summary Session::finish(bool agreed) {
-    const lockstep::Watched watched(barrier_.watchdog());
-    steps_->stop();
-    try {
-        record_.keepTicks(steps_->ticks());  // the last ticks arrive at the end of the link
-    } catch (const DiskFailure& failure) {   // the ranks still have reports and pictures to send
-        host::printLine("{}", failure.what());
-    }
-    if (agreed) {
-        // A third, because the ranks wait for the master meanwhile, and their own limit must not end the job. A person
-        // who has stopped the session waits, too.
-        constexpr double kMostPatience = 20e3;  // [ms]
-        const double patience = std::min(kMostPatience, options_.frameTimeout * 1e3 / 3);
-        check_.finish(frame_, shownSand(), std::chrono::milliseconds(static_cast<std::int64_t>(patience)));
-    }
-    record_.keepLastIncidents(incidents());
-    record_.finish(sand_, agreed);
-    return summary();
-}
-
-Summary Session::summary() {
-    const sand::Replica& sand = sand_.replica();
-    const Incidents all = incidents();
-    Summary summary;
-    summary.scene = scene_.name;
-    summary.wall = wall_.name;
-    summary.frames = frame_;
-    summary.framesBefore = options_.record.resumed ? options_.record.resumed->frame : 0;
-    summary.steps = sand.stepNumber();
-    summary.edits = sand_.edits();
-    summary.ranks = wall_.ranks();
-    summary.stateHash = sand_.hash();
-    summary.divergences = all.divergences;
-    summary.healed = all.healed;
-    summary.outvoted = all.outvoted;
-    summary.serverDivergences = all.serverDivergences;
-    summary.stepsLeftOut = all.stepsLeftOut;
-    // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
-    summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
-    summary.volumeFinal = sand.volume();
-    summary.volumeOutflow = sand.outflow();
-    summary.seconds = clock_.seconds();
-    measure_.fill(summary);
-    summary.haptic = steps_->report();
-    summary.link = steps_->counters();
-    summary.link.links = all.links;
-    summary.link.reconnects = all.reconnects;
-    summary.link.refusedHere = all.refusedHere;
-    summary.link.refused = all.refused;
-    if (const tracking::TrackedViewer& viewer = desk_.views().viewer(); viewer.tracked()) {
-        summary.tracking = viewer.counters();
-    }
-    summary.ranksReports = lockstep::gatherReports(barrier_, {});
-    for (const walls::Tile& tile : wall_.tiles) {
-        summary.tileNames.push_back(tile.name);
-    }
-    summary.rankNames = labels_.names;
-    summary.masterResidentBytes = lockstep::residentBytes();
-    summary.journal = record_.summary();
-    summary.recoveries = recoveriesOf(options_.out);
-    return summary;
-}
-
-std::string Session::doubtAbout(const Summary& told) const {
-    if (check_.failed()) {
-        return fmt::format(
-            "the session ends with sand that its journal does not confirm, because {}; sandwall-replay {} computes the "
-            "right sand, and --resume continues with it",
-            check_.doubt(), record_.journalFile().string());
-    }
-    return told.exact()
-               ? std::string()
-               : fmt::format("the session ends with a wrong volume: {} + outflow {} is not {}, as at the start",
-                             told.volumeFinal, told.volumeOutflow, told.volumeInitial);
 }
 
 int Session::run() {

@@ -11,6 +11,7 @@
 #include "lockstep/frame_message.hpp"
 #include "lockstep/view_agreement.hpp"
 #include "master/agreement.hpp"
+#include "master/compare_track.hpp"
 #include "master/film.hpp"
 #include "master/frame_clock.hpp"
 #include "master/journal_check.hpp"
@@ -67,6 +68,14 @@ private:
     [[nodiscard]] bool held() const {
         return desk_.paused() || record_.full() || check_.holds() || (check_.pending() && ends());
     }
+    /// Returns why held() is true, as far as haptic servers count it. A replay of the journal counts as a slow wall.
+    [[nodiscard]] haptic_bridge::Held heldBy() const {
+        return desk_.paused()   ? haptic_bridge::Held::pause
+               : record_.full() ? haptic_bridge::Held::disk
+                                : haptic_bridge::Held::no;
+    }
+    /// Meets the ranks at the barrier of `frame`, and heals sand that differs. Returns whether all ranks agreed.
+    [[nodiscard]] bool agree(const lockstep::FrameMessage& frame, const lockstep::Arrival& mine);
     [[nodiscard]] JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
     /// Returns why the session's sand cannot be trusted at its end; an empty text if it can.
     [[nodiscard]] std::string doubtAbout(const Summary& told) const;
@@ -75,6 +84,8 @@ private:
     void sayProgress(bool last);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
+    void tellComparison(Summary& summary) const;
+    void tellHand(Summary& summary) const;
 
     const lockstep::Cluster& cluster_;
     const scene::Scene& scene_;
@@ -92,11 +103,15 @@ private:
     OperatorDesk desk_;
     Measurements measure_;
     Agreement agreement_;
+    CompareTrack compared_;
     JournalCheck check_;
     std::int64_t endsSince_ = 0;  // [ns], since when the end of the session waits for check_; 0: it does not wait
     std::optional<Film> film_;
     std::uint64_t serverDivergences_ = 0;  // since this process started
     std::uint64_t stepsLeftOut_ = 0;       // since this process started
+    std::uint64_t framesWithHand_ = 0;     // since this process started
+    bool handed_ = false;                  // whether the frame before had a hand
+    bool agreedToEnd_ = false;             // whether all ranks have agreed on the last frame
 };
 
 }  // namespace master

@@ -168,6 +168,7 @@ Summary::Journal SessionRecord::summary() const {
     told.parts = journal_->parts();
     told.checkpointsFailed = journal_->checkpointsFailed();
     told.checkpointsBeyond = journal_->checkpointsBeyond();
+    told.whole = journal_->whole();
     told.stands += journal_->stands();
     told.stoodSeconds = journal_->stoodSeconds();
     for (const double ms : journal_->copyMs()) {

@@ -42,11 +42,14 @@ struct Summary {
     std::uint64_t serverDivergences = 0;  // frames in which the haptic server's sand differed
     std::uint64_t stepsLeftOut = 0;       // steps with a sand::Replica::leftOut()
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
+    std::string pace = "realtime";                                       // "realtime", "fast" or "replay"
+    double refreshHz = 0;                                                // frames per second that were asked for
     double seconds = 0;                                                  // from the first swap to the last
-    lockstep::Statistics frameMs;                                        // from swap to swap
-    std::uint64_t lateFrames = 0;                                        // frames that took more than 1.5 periods
-    lockstep::Statistics skewUs;                                         // spread of the swap times of one frame
-    lockstep::Statistics broadcastBytes;                                 // length of the frame message
+    double pausedSeconds = 0, fullDiskSeconds = 0;  // of frames without steps because of a pause, or of a full disk
+    lockstep::Statistics frameMs;                   // from swap to swap
+    std::uint64_t lateFrames = 0;                   // frames that took more than 1.5 periods
+    lockstep::Statistics skewUs;                    // spread of the swap times of one frame
+    lockstep::Statistics broadcastBytes;            // length of the frame message
     Latency latency;
     std::optional<haptic_bridge::Report> haptic;
     haptic_bridge::LinkCounters link;
@@ -57,9 +60,24 @@ struct Summary {
     std::vector<std::string> rankNames;                          // names in messages, the master's first
     std::optional<lockstep::Drag> drag;  // rank that kept the wall waiting; nullopt if no rank stands out
     std::int64_t masterResidentBytes = 0;
-    std::uint64_t framesBefore = 0;  // those of `frames` that were shown before the last restart
+    std::uint64_t framesBefore = 0, stepsBefore = 0;  // of `frames` and `steps`, those before the last restart
+    std::uint64_t unhealed = 0;  // ranks or servers whose sand differed, and that have not got the right sand since
+    /// Tells how far the sand of all ranks has been compared, see CompareTrack.
+    struct Compared {
+        bool atEnd = false;               // the last frame has compared the whole sand, and all ranks agreed
+        std::optional<bool> serverAtEnd;  // StepSource::serverAtEnd()
+        std::uint64_t lastWhole = 0;      // frame up to which the whole sand has been compared
+        std::optional<std::uint64_t> firstDifference;  // first frame of the session in which sand differed
+    } compared;
+    struct Hand {
+        std::string asked = "none";              // "server" or "pointer" if the command line asked for one
+        std::uint64_t frames = 0;                // since the last restart, with a hand (StepSource::handed())
+        bool atEnd = false;                      // the last frame had a hand
+        std::optional<std::string> lastRefusal;  // StepSource::lastRefusal()
+    } hand;
     struct Journal {
         std::string policy = "off", state = "off";
+        bool whole = false;                 // holds every step that was shown, and an orderly end
         std::uint64_t parts = 0;            // written so far
         lockstep::Statistics checkpointMs;  // [ms], delay of the frame loop by each checkpoint
         std::uint64_t checkpointsFailed = 0;
@@ -71,6 +89,7 @@ struct Summary {
 
     /// Returns whether no sand was lost or made since the scene's start.
     [[nodiscard]] bool exact() const { return volumeFinal + volumeOutflow == volumeInitial; }
+    [[nodiscard]] double framesPerSecond() const;
 };
 
 /// Returns the rank that keeps the wall waiting, as summary.json and `ctl status` contain it; null if no rank stands

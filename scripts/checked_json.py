@@ -4,8 +4,8 @@
 import json
 import re
 
-# Control characters, and the halves of surrogate pairs, which no file and no terminal can show.
-UNPRINTABLE = re.compile("[\x00-\x1f\x7f\ud800-\udfff]")
+# Control characters and separators of lines, and the halves of surrogate pairs, which no file and no terminal can show.
+UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 
 
 def parse(text):

@@ -5,9 +5,13 @@ The launcher must not end because a log is on a full disk or the reader of its o
 that cannot be written. As soon as the stream can be written again, it prints how many lines are missing.
 """
 
+import contextlib
 import os
+import re
 import sys
 import threading
+
+CONTROLS = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029]")  # a name that holds one could begin a line of its own, or command a terminal
 
 
 def encoded(text):
@@ -63,6 +67,26 @@ OUT = Console(None if sys.stdout is None else 1)
 ERROR = Console(None if sys.stderr is None else 2)
 
 
+def colours():
+    """Returns whether standard output is a terminal whose user wants colours."""
+    return OUT.descriptor is not None and os.isatty(OUT.descriptor) and "NO_COLOR" not in os.environ
+
+
 def say(line):
-    """Prints a line of the launcher for a person."""
-    ERROR.line(f"sandwall: {line}")
+    """Prints a line of the launcher for a person. A name in it cannot begin another line."""
+    ERROR.line(f"sandwall: {CONTROLS.sub('?', str(line))}")
+
+
+@contextlib.contextmanager
+def reader_may_go():
+    """Ends the program without a traceback if the reader of standard output has gone, as `head` does."""
+    try:
+        yield
+    except BrokenPipeError:
+        pass
+    finally:
+        try:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python would try again when it ends

@@ -5,7 +5,7 @@ An installed tree may be moved as a whole, because every path begins at this fil
 
     PREFIX/bin/sandwall                 link to lib/sandwall/python/sandwall
     PREFIX/lib/sandwall/                programs and modules
-    PREFIX/lib/sandwall/python/         the launcher, with this file, and build.json
+    PREFIX/lib/sandwall/python/         the launcher, with this file, build.json and a schema
     PREFIX/share/sandwall/              walls, scenes, strokes, samples, examples
 """
 
@@ -23,6 +23,7 @@ ROOT = HERE.parents[2] if INSTALLED else HERE.parent  # prefix of the installed 
 SHARED = ROOT / "share" / "sandwall"
 FOLDERS = {"walls": SHARED / "walls", "scenes": SHARED / "scenes", "strokes": SHARED / "strokes"} if INSTALLED else {
     "walls": ROOT / "walls" / "configs", "scenes": ROOT / "scenes", "strokes": ROOT / "haptic_bridge" / "devices"}
+SCHEMAS = HERE if INSTALLED else ROOT / "docs" / "schemas"  # folder of the schema that the launcher reads
 ENDINGS = {"walls": ".toml", "scenes": ".toml", "strokes": ".strokes"}
 PROGRAM = "sandwall" if INSTALLED else "scripts/sandwall"  # how a user starts the launcher
 MEND = "install Sandwall again" if INSTALLED else "run cmake --build build/release"

@@ -4,7 +4,6 @@
 import json
 import pathlib
 import subprocess
-import sys
 
 import checked_json
 import console
@@ -58,11 +57,11 @@ def versions(as_json):
         found.append(entry)
     one_build = len({entry["build"] for entry in found}) == 1
     if as_json:
-        print(json.dumps({"version": found[0]["version"], "build": found[0]["build"] if one_build else None, "programs": found}))
+        console.OUT.line(json.dumps({"version": found[0]["version"], "build": found[0]["build"] if one_build else None, "programs": found}))
     else:
         for entry in found:
             known = "".join(f", {key} {value}" for key, value in entry.items() if key not in ("program", "version", "build"))
-            print(checked_json.one_line(f"{entry['program']} {entry['version']}, build {entry['build']}{known}"))
+            console.OUT.line(checked_json.one_line(f"{entry['program']} {entry['version']}, build {entry['build']}{known}"))
     if not one_build:
-        print(f"sandwall: the programs are of several builds; {layout.MEND}", file=sys.stderr)
+        console.say(f"the programs are of several builds; {layout.MEND}")
     return 0 if one_build else FAILED

@@ -6,6 +6,7 @@ import pathlib
 import socket
 
 import checked_json
+import console
 import session_folder
 from rank_hosts import BadInput
 
@@ -72,7 +73,7 @@ def ask(session, line, patience=PATIENCE_SECONDS):
 
 def ctl(args):
     if args.words in (["help"], ["--help"], ["-h"]):
-        print("\n".join(VERBS))
+        console.OUT.line("\n".join(VERBS))
         return 0
     line = " ".join(args.words)
     if "\n" in line:
@@ -88,7 +89,7 @@ def ctl(args):
         raise BadInput(f"{args.session}: the program that answers there is not a session")
     if not reply["ok"]:
         raise BadInput(f"{args.session}: {checked_json.one_line(str(reply.get('error')))}")
-    print(answer)
+    console.OUT.line(answer)
     return 0
 
 

@@ -1,89 +1,24 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The report at the end of `sandwall run`: the main figures of summary.json, with marks at those that are not good (docs/summary.md)."""
+"""The report at the end of `sandwall run`: what session_rules.py finds in summary.json (docs/summary.md)."""
 
 import json
 import os
 import pathlib
 import shlex
-import sys
 
 import checked_json
 import console
 import layout
 import session_results
+import session_rules
 from rank_hosts import BadInput
+from session_lines import BAD, GOOD, NOTE, UNMEASURED
 
 VERSION = 1  # of the JSON that --json prints, as in docs/schemas/report.schema.json
-MOST_LATE_SHARE = 0.01  # of the frames; more is noted
-GOOD, NOTE, BAD = "ok", "note", "BAD"
-COLOURS = {GOOD: 32, NOTE: 33, BAD: 31}
-
-
-def counted(number, one, many=None):
-    return f"{number} {one if number == 1 else many or one + 's'}"
-
-
-def refusals(haptic):
-    """Returns how often master or haptic server refused a connection."""
-    kinds = (haptic["refused_by_server"], haptic["refused"]["servers"], haptic["refused"]["guests"])
-    return sum(sum(kind.values()) for kind in kinds)
-
-
-def frames_line(summary):
-    shown = summary["frame_ms"]["count"]
-    late = summary["late_frames"]
-    share = late / shown if shown else 0
-    words = f"{late} of {shown} measured, {100 * share:.1f} %"
-    return (NOTE if share > MOST_LATE_SHARE else GOOD, "late", words)
-
-
-def latency_line(summary):
-    latency = summary["latency_ms"]
-    if not latency["mean"]:
-        return (GOOD, "latency", "no hand moved the sand")
-    return (GOOD, "latency", f"{latency['p50']:.1f} ms from hand to picture (median), {latency['p99']:.1f} ms (99 %)")
-
-
-def hand_lines(haptic):
-    """Yields lines about a hand with gaps or without a link. A session without troubles has none."""
-    gaps = [f"{counted(haptic[key], what)} {how}" for key, what, how in
-            (("steps_withheld", "step", "not made"), ("samples_dropped", "sample", "left out")) if haptic.get(key)]
-    if gaps:
-        yield (NOTE, "hand", f"{', '.join(gaps)}, because the wall was behind; strokes may have gaps")
-    if refused := refusals(haptic):
-        yield (NOTE, "refused", counted(refused, "connection") + " of the haptic link; docs/security.md")
-
-
-def sand_line(summary):
-    differed = summary["divergences"] + summary["server_divergences"]
-    healed = summary["healed"] + summary["master_healed"]
-    if differed == 0:
-        return (GOOD, "sand", f"equal on all ranks in every frame, hash {summary['state_hash']}")
-    return (NOTE if healed else BAD, "sand", f"differed in {counted(differed, 'frame')}, healed {counted(healed, 'time')}, "
-            f"hash {summary['state_hash']}; docs/healing.md")
-
-
-def volume_line(summary):
-    left = summary["volume_final"] + summary["volume_outflow"] - summary["volume_initial"]
-    return (GOOD, "volume", "exact") if left == 0 else (BAD, "volume", f"{left:+d} units since the start")
-
-
-def journal_line(journal):
-    words = f"{journal['state'].replace('_', ' ')} ({journal['policy']})"
-    return (GOOD if journal["state"] in ("written", "off") else BAD, "journal", words)
-
-
-def lines_of(summary, out):
-    """Returns (mark, name, words) of each line of the report."""
-    found = [(GOOD, "wall", f"{summary['wall']}, {counted(summary['ranks'], 'render rank')}"),
-             (GOOD, "frames", f"{summary['frames']} with {counted(summary['steps'], 'step')}, {summary['fps']:.1f} frames/s for {summary['seconds']:.1f} s"),
-             frames_line(summary), latency_line(summary), *hand_lines(summary["haptic"]), sand_line(summary), volume_line(summary)]
-    if slowest := summary["slowest"]:
-        found.append((NOTE, "slowest", f"{slowest['name']}, last in {100 * slowest['share']:.0f} % of frames"))
-    recoveries = len(summary["recoveries"])
-    found.append((NOTE if recoveries else GOOD, "recoveries", str(recoveries) + ("; docs/recovery.md" if recoveries else "")))
-    found.append(journal_line(summary["journal"]))
-    return found
+NOT_GOOD = 1  # exit status of a session that ended in order and is not good
+BAD_INPUT = 2  # exit status if the summary is damaged
+COLOURS = {GOOD: 32, NOTE: 33, BAD: 31, UNMEASURED: 2}
+JSON_MARKS = {GOOD: "ok", NOTE: "note", BAD: "BAD", UNMEASURED: "not measured"}
 
 
 def replay_command(summary, out):
@@ -96,42 +31,60 @@ def launcher():
     return "sandwall" if layout.INSTALLED else os.path.relpath(layout.HERE / "sandwall")
 
 
-def text_of(summary, out, status, colours):
-    """Returns the report as text."""
-    lines = lines_of(summary, out)
+def final_status(lines, status):
+    """Returns the exit status of a session whose job ended with `status`: never 0 if a line is BAD."""
+    return NOT_GOOD if status == 0 and any(mark == BAD for mark, _, _ in lines) else status
+
+
+def verdict(lines, status):
+    """Returns the words after the scene's name. `status` is from final_status()."""
     notes = sum(mark == NOTE for mark, _, _ in lines)
-    verdict = f"NOT GOOD, exit status {status}" if not is_good(lines, status) else f"good, {counted(notes, 'note')}" if notes else "good"
-    text = [f"{checked_json.one_line(summary['scene'])}: {verdict}"]
+    if status != 0:
+        return f"NOT GOOD, exit status {status}"
+    return "good" if notes == 0 else "good, 1 note" if notes == 1 else f"good, {notes} notes"
+
+
+def text_of(title, lines, out, replay, status, colours):
+    """Returns the report as text. No name in it can begin a line."""
+    text = [f"{checked_json.one_line(title)}: {verdict(lines, status)}"]
     for mark, name, words in lines:
         shown = f"\033[{COLOURS[mark]}m{mark:<4}\033[0m" if colours else f"{mark:<4}"
-        text.append(f"  {shown}  {name:<10}  {checked_json.one_line(words)}")
-    text.append(f"        {'folder':<10}  {out}")
-    if command := replay_command(summary, out):
-        text.append(f"        {'replay':<10}  {shlex.join(command)}")
+        text.append(f"  {shown}  {name:<11}  {checked_json.one_line(words)}")
+    text.append(f"        {'folder':<11}  {printable(str(out))}")
+    if replay:
+        text.append(f"        {'replay':<11}  {printable(shlex.join(replay))}")
     return "\n".join(text)
 
 
-def is_good(lines, status):
-    return status == 0 and all(mark != BAD for mark, _, _ in lines)
+def printable(path):
+    """Returns a path in one line. Bytes that are not UTF-8 stay, because the path is for a command."""
+    return "".join(letter if "\udc80" <= letter <= "\udcff" else checked_json.one_line(letter) for letter in path)
 
 
-def json_of(summary, out, status):
-    """Returns the report for programs. `summary` is None if the session did not end in order."""
-    report = {"version": VERSION, "status": status, "good": False, "out": str(out), "notes": [], "session": None}
+def lines_of_no_summary():
+    """Returns the lines of a session that ended without a summary."""
+    return [(BAD, "end", "no summary was written: a process failed or was killed, or the disk had no room; docs/recovery.md"),
+            (UNMEASURED, "sand", "not compared at the end")]
+
+
+def json_of(lines, summary, out, status):
+    """Returns the report for programs. `summary` is None if the session wrote none that can be read."""
+    report = {"version": VERSION, "status": status, "good": status == 0 and summary is not None, "out": str(out),
+              "notes": [{"mark": mark, "name": name, "message": words} for mark, name, words in lines if mark in (NOTE, BAD)],
+              "lines": [{"mark": JSON_MARKS[mark], "name": name, "message": words} for mark, name, words in lines],
+              "session": None}
     if summary is None:
         return report
-    lines = lines_of(summary, out)
-    report["good"] = is_good(lines, status)
-    report["notes"] = [{"mark": mark, "name": name, "message": words} for mark, name, words in lines if mark != GOOD]
+    marks = {name: mark for mark, name, _ in lines}
     hand = summary["latency_ms"] if summary["latency_ms"]["mean"] else None
     report["session"] = {
         **{key: summary[key] for key in ("scene", "wall", "ranks", "frames", "steps", "seconds", "fps", "late_frames", "state_hash")},
         "measured_frames": summary["frame_ms"]["count"],
         "latency_ms": hand and {key: hand[key] for key in ("p50", "p99")},
         "differing_frames": summary["divergences"] + summary["server_divergences"],
-        "healed": summary["healed"] + summary["master_healed"],
+        "healed": summary["healed"],
         "recoveries": len(summary["recoveries"]),
-        "volume_exact": volume_line(summary)[0] == GOOD,
+        "volume_exact": marks["volume"] == GOOD,
         "journal": summary["journal"]["state"],
         "replay": replay_command(summary, out)}
     return report
@@ -143,7 +96,7 @@ class Report:
     With `as_json`, standard output gets one JSON object, and all that would go there meanwhile goes to standard error.
     """
 
-    def __init__(self, out, as_json):
+    def __init__(self, out, as_json=False):
         self.out, self.as_json = pathlib.Path(out), as_json
         self.before = self.identity()
         self.output = None
@@ -167,20 +120,31 @@ class Report:
         except OSError:
             return None
 
-    def after(self, status):
-        """Prints the report of a session that has ended with this exit status. Returns the status."""
+    def after(self, status, failures=()):
+        """Prints the report of a session whose job has ended with this exit status. Returns the exit status of the session.
+
+        `failures` are failed processes, as session_rules.lines_of() reads them.
+        """
         self.__exit__()
+        summary, lines, title, replay = None, [], str(self.out), None
         if self.identity() not in (None, self.before):
             try:
                 summary = session_results.summary_of(self.out)
-                text = text_of(summary, self.out, status, sys.stdout.isatty() and "NO_COLOR" not in os.environ)
-                report = json.dumps(json_of(summary, self.out, status), indent=1)
-                console.OUT.line(report if self.as_json else text)
-                return status
+                lines = session_rules.lines_of(summary, failures)
+                title, replay = summary["scene"], replay_command(summary, self.out)
+                status = final_status(lines, status)
             except BadInput as complaint:
                 console.say(complaint)
-            except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError):
-                console.say(f"{self.out}/summary.json: is not as docs/schemas/summary.schema.json says")
+                summary, lines, status = None, [], status or BAD_INPUT
+            except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError):  # fields that do not fit each other
+                console.say(f"{self.out}/summary.json: fields are missing, or do not fit each other; the file is damaged")
+                summary, lines, status = None, [], status or BAD_INPUT
+        elif status not in (0, BAD_INPUT):  # a master that ends in order writes a summary, and bad input was refused before there was a session
+            lines = lines_of_no_summary()
+        if summary is None and self.as_json:
+            status = status or NOT_GOOD
         if self.as_json:
-            console.OUT.line(json.dumps(json_of(None, self.out, status), indent=1))
+            console.OUT.line(json.dumps(json_of(lines, summary, self.out, status), indent=1))
+        elif lines:
+            console.OUT.line(text_of(title, lines, self.out, replay, status, console.colours()))
         return status

@@ -1,34 +1,46 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the summary.json of a session (docs/summary.md)."""
 
+import functools
 import pathlib
 import sys
 
 import checked_json
+import json_schema
+import layout
 from rank_hosts import BadInput
 
 VERSION = 1  # version of summary.json, as in docs/schemas/summary.schema.json
 BAD_INPUT = 2
 
 
+@functools.cache
+def schema():
+    """Returns docs/schemas/summary.schema.json."""
+    return checked_json.parse((layout.SCHEMAS / "summary.schema.json").read_text(encoding="utf-8"))
+
+
 def summary_of(path):
     """Returns the content of a summary file, or of the one in a session's folder or beside its journal.
 
-    Raises BadInput if the file cannot be read or has another version.
+    Raises BadInput if the file cannot be read, has another version, or is not as its schema says.
     """
     path = pathlib.Path(path)
     if path.is_dir() or path.name == "session.journal":
         path = (path if path.is_dir() else path.parent) / "summary.json"
+    named = checked_json.one_line(str(path))
     try:
         found = checked_json.parse(path.read_text(encoding="utf-8"))
     except OSError as error:
-        raise BadInput(f"{path}: cannot be read ({error.strerror}); the session has not ended in order") from None
+        raise BadInput(f"{named}: cannot be read ({error.strerror}); the session has not ended in order") from None
     except ValueError as error:
-        raise BadInput(f"{path}: is not JSON ({error}); name the summary.json of a session") from None
+        raise BadInput(f"{named}: is not JSON ({checked_json.one_line(str(error), 200)}); name the summary.json of a session") from None
     version = found.get("version", 0) if isinstance(found, dict) else 0
     if checked_json.whole(version) != VERSION:
-        raise BadInput(f"{path}: the summary has version {str(version)[:40]}, but these scripts read version {VERSION}; "
-                       "use the scripts of the build that wrote it")
+        raise BadInput(f"{named}: the summary has version {checked_json.one_line(str(version), 40)}, but these scripts read version "
+                       f"{VERSION}; use the scripts of the build that wrote it")
+    if wrong := json_schema.fault(found, schema()):
+        raise BadInput(f"{named}: {checked_json.one_line(wrong, 200)}; the file is damaged, or of another build than these scripts")
     return found
 
 

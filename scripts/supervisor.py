@@ -14,6 +14,7 @@ import time
 import checked_json
 import console
 import events
+import failed_processes
 import job_log
 import session_control
 import session_folder
@@ -139,6 +140,14 @@ def force_share(options):
     return 0 if options.force == "off" else options.force_scale if options.force_scale is not None else 1
 
 
+def failure_without_log(status, told, hosts):
+    """Returns the failure that ended a job whose output is not kept. `told` is the content of the master's failure.json."""
+    rank = told["rank"] if told.get("rank", -1) >= 0 else None
+    how = told.get("what") or ending_of(status)
+    text = told.get("message") or (f"{told_name(told, hosts)}: {how}" if rank is not None else f"mpirun {how_ended(status)}")
+    return Failure(text, rank, how)
+
+
 class Allowance:
     """The limit of restarts: at most `restarts` in `window` seconds, and at most `restarts` in a row without a frame."""
 
@@ -180,9 +189,11 @@ class Supervisor:
         self.force = force_share(options) if options.resume else None  # share of the force that an operator has set
         self.input = Input(stop)
         self.failures = []
+        self.failed = failed_processes.FailedProcesses(self.out, self.resume and (self.out / JOURNAL).exists())
         self.server = self.job = None
         self.server_due = None  # time at which the server is started again [s]
         self.server_hung = False
+        self.server_missed = False  # without restarts: whether the server has ended
         self.server_loads = False  # whether the server was restarted and does not listen yet
         self.server_failure = None  # the failure after which the server is not linked yet
         self.restarting = False  # whether the job has failed and has not shown a frame since then
@@ -231,6 +242,7 @@ class Supervisor:
             if log and log.force is not None:
                 self.force = log.force
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
+                self.note_last_failure(status, log)
                 return FAILED if self.gave_up else exit_status(status)
             if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
                 log.close()
@@ -246,6 +258,14 @@ class Supervisor:
             words += self.force_words()
             if not self.ready_again(failure):
                 return FAILED
+
+    def note_last_failure(self, status, log):
+        """Writes down the failure of a job that is not started again. A job that the user has killed has not failed."""
+        told = content_of(self.out / "failure.json")
+        if status in (0, BAD_INPUT) or self.stop.count > 1 or self.gave_up or told.get("what") == "sand":
+            return
+        failure = failure_of_job(status, log, self.hosts, told) if log else failure_without_log(status, told, self.hosts)
+        self.failed.add(failure, restarted=False)
 
     def force_words(self):
         """Returns the options that keep the operator's share of the force, even if the session has no journal."""
@@ -266,8 +286,8 @@ class Supervisor:
         while (status := self.job.look(self.stop)) is None:
             if log and log.frame is not None:
                 self.mark_restart(None)
-            if self.supervised and self.server and not self.job.asked:
-                self.look_after_server()
+            if self.server and not self.job.asked:
+                self.look_after_server() if self.supervised else self.miss_server()
         if self.supervised:
             self.input.job = None
             self.job.clear()
@@ -288,7 +308,7 @@ class Supervisor:
                 log.hand, log.refused, log.linked = None, False, None  # the values belong to the previous server
         else:
             hung = "was hung" if self.server_hung else how_ended(status)
-            failure = Failure(f"the haptic server {hung}", how="hung" if self.server_hung else ending_of(status))
+            failure = Failure(f"{failed_processes.SERVER} {hung}", how="hung" if self.server_hung else ending_of(status))
             failure.frame, failure.step = self.job.log.frame, self.job.log.step
             self.server_hung = False
             if self.may_go_on(failure, showed_a_frame=True):
@@ -297,6 +317,16 @@ class Supervisor:
             else:
                 self.gave_up = True
                 self.job.stop()
+
+    def miss_server(self):
+        """Prints and writes down once that the haptic server has ended, in a session without restarts."""
+        status = self.server.process.poll()
+        if status is None or self.server_missed:
+            return
+        self.server_missed = True
+        failure = Failure(f"{failed_processes.SERVER} {how_ended(status)}", how=ending_of(status))
+        say(f"{failure.text}; the session continues without it, because of --restarts 0")
+        self.failed.add(failure, restarted=False)
 
     def tell_linked_server(self):
         """Writes the recovery of a restarted server when its hand is linked. The master writes the recoveries of the job."""
@@ -342,7 +372,9 @@ class Supervisor:
     def may_go_on(self, failure, showed_a_frame):
         """Prints the failure and returns whether the process is started again. If not, prints the report."""
         self.failures.append(failure)
-        if self.allowance.take(showed_a_frame):
+        goes_on = self.allowance.take(showed_a_frame)
+        self.failed.add(failure, restarted=goes_on)
+        if goes_on:
             say(f"{failure.text}; starting again ({len(self.allowance.times)} of {self.limits})")
             events.emit("restart", what=failure.text, rank=failure.rank, how=failure.how,
                         count=len(self.allowance.times), limit=self.allowance.restarts)

@@ -44,8 +44,8 @@ void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t 
 
 std::vector<TimedStep> Client::drain(std::size_t most) { return session_->drain(most); }
 
-void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
-    session_->shown({stepNumber, frameIntervalNs});
+void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, Held held) {
+    session_->shown({stepNumber, frameIntervalNs, held});
 }
 
 void Client::request(const sand::Edit& edit) { session_->request({edit}); }
@@ -63,6 +63,8 @@ std::int64_t Client::clockOffsetNs() const { return session_->shelf.clockOffsetN
 std::optional<Report> Client::report() const { return session_->shelf.report(); }
 
 LinkCounters Client::counters() const { return session_->shelf.counters(); }
+
+std::string Client::lastFailure() const { return session_->shelf.failure(); }
 
 std::uint32_t Client::stepsPerSecond() const { return session_->shelf.stepsPerSecond(); }
 

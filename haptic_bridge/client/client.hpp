@@ -123,11 +123,11 @@ public:
     /// thread stops reading when kMaxQueued steps wait, until this is called. TCP then holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
     /// Tells the server that the wall has swapped and shows step `stepNumber`. The server may then send further steps.
-    /// `frameIntervalNs` is the time since the swap before [ns].
+    /// `frameIntervalNs` is the time since the swap before [ns]. `held` says why the wall takes no steps.
     ///
     /// Also answers the timing tests that came before the frame's steps were drained. Like a step, a test that comes
     /// while a frame is drawn belongs to the next frame.
-    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs);
+    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, Held held = Held::no);
     /// Asks the server to put an operator's edit into its next step. Ignored unless the link is `linked`.
     void request(const sand::Edit& edit);
     /// Sets the share of the server's force that the hand feels from now on, also in later links. At first it is the
@@ -143,9 +143,13 @@ public:
     [[nodiscard]] std::uint64_t floods() const;
     /// Returns server's clock − this host's clock [ns]; 0 before the first Pong.
     [[nodiscard]] std::int64_t clockOffsetNs() const;
-    /// Returns the server's latest report, also after the link is lost; nullopt before the first report.
+    /// Returns the server's latest report, also after the link is lost; nullopt before the first report. Its `audited`
+    /// is that of the latest link.
     [[nodiscard]] std::optional<Report> report() const;
     [[nodiscard]] LinkCounters counters() const;
+    /// Returns why the last attempt to link has failed: the text of a refusal, or "no answer" with the reason in
+    /// brackets. Returns an empty text if no attempt has failed since the last handshake that succeeded.
+    [[nodiscard]] std::string lastFailure() const;
     /// Returns the steps per second of the server's scene; 0 before the link was first `offered`.
     [[nodiscard]] std::uint32_t stepsPerSecond() const;
     /// Injects a fault into the connection. Ignored without a connection. `length` is for LinkDrill::silence.

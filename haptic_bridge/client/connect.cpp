@@ -34,7 +34,7 @@ void Client::Session::connect() {
         if (!error && !std::exchange(*done, true)) {
             error_code ignored;
             socket->close(ignored);
-            failed("no answer");
+            failed("no reply within 3 s");
         }
     });
     const auto settle = [this, done](error_code error) {
@@ -81,6 +81,7 @@ void Client::Session::connected(Connection::Socket socket) {
 }
 
 void Client::Session::failed(const std::string& why) {
+    shelf.fail(fmt::format("no answer ({})", why));
     shelf.tell(everWelcomed_ ? Link::lost : Link::connecting,
                fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
     retry();
@@ -110,6 +111,7 @@ void Client::Session::countRefusal(RefusalCode code) {
 }
 
 void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
+    shelf.fail(why);
     if (fault) {
         countRefusal(*fault);
     }

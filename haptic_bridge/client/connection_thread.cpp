@@ -224,6 +224,7 @@ void Client::Session::take(Link link, const Welcome& greeting) {
 }
 
 void Client::Session::countLink() {
+    shelf.linked();
     shelf.count([again = std::exchange(everWelcomed_, true)](LinkCounters& counters) {
         ++counters.links;
         counters.reconnects += again ? 1 : 0;

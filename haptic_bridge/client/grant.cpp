@@ -58,7 +58,7 @@ bool Grant::awaitsLoad() const {
 }
 
 Shown Grant::bounded(const Shown& frame) const {
-    return {std::clamp(frame.stepNumber, start_.stepNumber, lastStep_), frame.frameIntervalNs};
+    return {std::clamp(frame.stepNumber, start_.stepNumber, lastStep_), frame.frameIntervalNs, frame.held};
 }
 
 }  // namespace haptic_bridge

@@ -136,6 +136,24 @@ std::optional<Report> Shelf::report() const {
     return report_;
 }
 
+void Shelf::fail(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    failure_ = why;
+}
+
+std::string Shelf::failure() const {
+    const std::lock_guard lock(mutex_);
+    return failure_;
+}
+
+void Shelf::linked() {
+    const std::lock_guard lock(mutex_);
+    failure_.clear();
+    if (report_) {
+        report_->audited = Audited::no;
+    }
+}
+
 void Shelf::setClockOffset(std::int64_t ns) {
     const std::lock_guard lock(mutex_);
     clockOffsetNs_ = ns;

@@ -50,6 +50,11 @@ public:
 
     void keep(const Report& report);
     [[nodiscard]] std::optional<Report> report() const;
+    /// Keeps why the last attempt to link has failed.
+    void fail(const std::string& why);
+    [[nodiscard]] std::string failure() const;
+    /// Called when a handshake has succeeded. Forgets the failure before it, and the audit of the link before.
+    void linked();
     void setClockOffset(std::int64_t ns);
     [[nodiscard]] std::int64_t clockOffsetNs() const;
     void setStepsPerSecond(std::uint32_t steps);
@@ -77,6 +82,7 @@ private:
     std::vector<TimedPosition> positions_;
     std::uint64_t floods_ = 0;
     std::optional<Report> report_;
+    std::string failure_;
     LinkCounters counters_;
     std::int64_t clockOffsetNs_ = 0;
     std::uint32_t stepsPerSecond_ = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 namespace haptic_bridge {
@@ -78,6 +79,14 @@ Role getRole(base::ByteReader& reader) {
     }
     return static_cast<Role>(role);
 }
+/// Reads a byte that is at most `most`. `what` names it in the message.
+std::uint8_t getUpTo(std::uint8_t most, const char* what, base::ByteReader& reader) {
+    const auto value = reader.get<std::uint8_t>();
+    if (value > most) {
+        throw base::FormatError(fmt::format("{} of {}; at most {} is allowed", what, value, most));
+    }
+    return value;
+}
 void get(std::array<std::uint8_t, 32>& bytes, base::ByteReader& reader) {
     const auto read = reader.getBytes(bytes.size());
     std::copy(read.begin(), read.end(), bytes.begin());
@@ -139,6 +148,7 @@ void put(const TimingTest& test, base::ByteWriter& writer) {
 void put(const Shown& shown, base::ByteWriter& writer) {
     writer.put(shown.stepNumber);
     writer.put(shown.frameIntervalNs);
+    writer.put(static_cast<std::uint8_t>(shown.held));
 }
 void put(const TimingEcho& echo, base::ByteWriter& writer) {
     writer.put(echo.id);
@@ -158,9 +168,13 @@ void eachNumber(AnyReport& report, const Visit& visit) {
                          &report.toMaster.msP50, &report.toMaster.msP99, &report.stepBytesMean}) {
         visit(*number);
     }
-    for (auto* number : {&report.steps, &report.stepsWithheld, &report.samplesDropped, &report.ticks,
-                         &report.ticksMissed, &report.toWall.count, &report.toMaster.count}) {
+    for (auto* number :
+         {&report.steps, &report.samplesDropped, &report.ticks, &report.ticksMissed, &report.toWall.count,
+          &report.toMaster.count, &report.handTicks, &report.feltTicks, &report.faultedTicks}) {
         visit(*number);
+    }
+    for (auto& number : report.stepsWithheld) {
+        visit(number);
     }
     for (auto& number : report.guards) {
         visit(number);
@@ -171,6 +185,8 @@ void eachNumber(AnyReport& report, const Visit& visit) {
 }
 void put(const Report& report, base::ByteWriter& writer) {
     eachNumber(report, [&writer](auto number) { writer.put(number); });
+    writer.put(static_cast<std::uint8_t>(report.literal));
+    writer.put(static_cast<std::uint8_t>(report.audited));
 }
 void put(const Bye& bye, base::ByteWriter& writer) { writer.putText(bye.reason); }
 void put(const EditRequest& request, base::ByteWriter& writer) {
@@ -285,6 +301,8 @@ void get(TimingTest& test, base::ByteReader& reader) {
 void get(Shown& shown, base::ByteReader& reader) {
     shown.stepNumber = reader.get<std::uint64_t>();
     shown.frameIntervalNs = reader.get<std::int64_t>();
+    shown.held =
+        static_cast<Held>(getUpTo(static_cast<std::uint8_t>(Held::pause), "a reason to hold the sand", reader));
 }
 void get(TimingEcho& echo, base::ByteReader& reader) {
     echo.id = reader.get<std::uint32_t>();
@@ -306,6 +324,9 @@ void get(Report& report, base::ByteReader& reader) {
             throw base::FormatError("a report with a number that is not finite");
         }
     });
+    report.literal = getUpTo(1, "a mark of literal guards", reader) == 1;
+    report.audited =
+        static_cast<Audited>(getUpTo(static_cast<std::uint8_t>(Audited::differed), "the result of an audit", reader));
 }
 void get(Bye& bye, base::ByteReader& reader) { bye.reason = getReason(reader); }
 void get(EditRequest& request, base::ByteReader& reader) {
@@ -357,6 +378,10 @@ Message decodeType(std::uint8_t type, base::ByteReader& reader) {
 }
 
 }  // namespace
+
+std::uint64_t inAll(const WithheldCounts& counts) {
+    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
 
 std::string_view nameOf(Role role) { return role == Role::move ? "move" : "watch"; }
 

@@ -102,10 +102,17 @@ struct State {
     base::Bytes bytes;  // of sand::Replica::encodeState()
     friend bool operator==(const State&, const State&) = default;
 };
+/// Reason why the wall takes no steps, although it shows frames.
+enum class Held : std::uint8_t {
+    no,    // it takes steps
+    disk,  // the journal's disk has no room
+    pause  // an operator has paused the sand
+};
 /// Tells the server which step the wall shows. Sent after every frame of the wall.
 struct Shown {
     std::uint64_t stepNumber = 0;      // the last step that the wall shows
     std::int64_t frameIntervalNs = 0;  // from the swap of the frame before to the swap of this frame
+    Held held = Held::no;
     friend bool operator==(const Shown&, const Shown&) = default;
 };
 /// Point at which the master answers a timing test.
@@ -198,6 +205,24 @@ struct HalfRoundTrip {
     std::uint64_t count = 0;                                // timing tests that were answered
     friend bool operator==(const HalfRoundTrip&, const HalfRoundTrip&) = default;
 };
+/// Causes for which a server withholds a step that is due, because the wall is a whole window behind.
+enum class Withheld : std::uint8_t {
+    wall,   // the wall is slow
+    disk,   // Held::disk
+    pause,  // Held::pause
+    start   // no Shown has come on this link yet
+};
+inline constexpr std::array<std::string_view, 4> kWithheldNames{"wall", "disk", "pause", "start"};
+/// Number of withheld steps with each cause, in the order of kWithheldNames.
+using WithheldCounts = std::array<std::uint64_t, kWithheldNames.size()>;
+[[nodiscard]] std::uint64_t inAll(const WithheldCounts& counts);
+
+/// Result of the audit of the server's whole replica, which hashes its sand again from memory.
+enum class Audited : std::uint8_t {
+    no,      // not audited
+    agreed,  // the memory has the state hash that the server has sent
+    differed
+};
 /// Measurements of the server, sent once a second. A value that has not been measured yet is 0.
 ///
 /// Round trips, stepBytesMean and `steps` count since the link began. All other values count since the server started.
@@ -207,12 +232,17 @@ struct Report {
     HalfRoundTrip toWall, toMaster;                                              // of Leg::shown, of Leg::received
     double stepBytesMean = 0;                     // [byte], of a step message with its length prefix
     std::uint64_t steps = 0;                      // steps that were sent
-    std::uint64_t stepsWithheld = 0;              // steps that were due while the wall was a whole window behind
+    WithheldCounts stepsWithheld{};               // steps that were due while the wall was a whole window behind
     std::uint64_t samplesDropped = 0;             // hand samples in no step: thinned out, outdated, or queue full
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
     std::uint64_t ticksMissed = 0;                // ticks whose deadline the force loop missed
     std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, in the order of kGuardNames
     RefusalCounts refused{};                      // connections that the server refused
+    std::uint64_t handTicks = 0;                  // ticks while a master was linked, under both paces
+    std::uint64_t feltTicks = 0;                  // of these, ticks that pushed a force above 0
+    std::uint64_t faultedTicks = 0;               // of these, ticks in which a fault pushed 0 (kFaults)
+    bool literal = false;                         // the server runs with --guards literal
+    Audited audited = Audited::no;                // agreed or differed only in the last report of a link
     friend bool operator==(const Report&, const Report&) = default;
 };
 /// Piece of the tick track (haptic_bridge/loop/tick_track.hpp). The master writes it to its journal.

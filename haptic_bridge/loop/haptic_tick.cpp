@@ -159,6 +159,7 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     tick_.sent = forces.sent;
     tick_.guards = forces.acted;
     counts_.add(forces.acted);
+    ticks_.add(forces.acted, norm(forces.sent) > 0);
     if (sample.engaged) {
         forceCost_.add(host::monotonicNs() - begin);
     }

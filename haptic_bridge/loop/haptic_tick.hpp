@@ -93,6 +93,8 @@ public:
     [[nodiscard]] const base::LiveHistogram& forceCost() const { return forceCost_; }
     /// Returns the number of ticks in which each guard acted. Any thread.
     [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }
+    /// Returns the number of calls of tick(), and what the hand got in them. Any thread.
+    [[nodiscard]] const HandTicks& handTicks() const { return ticks_; }
 
 private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
@@ -117,6 +119,7 @@ private:
     Tick tick_;
     base::LiveHistogram forceCost_;
     GuardCounts counts_;
+    HandTicks ticks_;
 };
 
 }  // namespace haptic_bridge

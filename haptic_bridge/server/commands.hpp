@@ -27,6 +27,7 @@ struct Commands {
         Shown shown;
         std::int64_t nowNs = 0;
     };
+    struct Audit {};
     static constexpr std::size_t kMostFrames = 64;  // one second of a wall; of more, only the latest matter
     static constexpr std::size_t kMostCatchUps = StepRing::kSteps / kMaxCatchUp;
 
@@ -37,6 +38,7 @@ struct Commands {
     std::optional<State> state;
     std::deque<Frame> frames;
     std::optional<EditRequest> edit;
+    bool audits = false;
 
     /// Ends the epoch. All commands of its master are removed.
     void release() {
@@ -60,9 +62,10 @@ struct Commands {
     }
     /// Replaces an edit that still waits, as StepMaker::edit() does.
     void add(EditRequest request) { edit = std::move(request); }
+    void add(Audit) { audits = true; }
 
     [[nodiscard]] bool empty() const {
-        return !stops && !released && !grant && catchUps.empty() && !state && frames.empty() && !edit;
+        return !stops && !released && !grant && catchUps.empty() && !state && frames.empty() && !edit && !audits;
     }
 };
 

@@ -38,6 +38,9 @@ SandThread::Output Listener::output() {
         },
         [hand](std::uint32_t session, base::Bytes message) {
             hand(session, [message = std::move(message)](Peer& peer) mutable { peer.step(std::move(message)); });
+        },
+        [hand](std::uint32_t session, Audited result) {
+            hand(session, [result](Peer& peer) { peer.audited(result); });
         }};
 }
 

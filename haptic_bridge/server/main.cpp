@@ -65,6 +65,10 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     report.stepsWithheld = sandThread.withheld();
     report.samplesDropped = sandThread.dropped();
     report.guards = hand.guardCounts().all();
+    report.handTicks = hand.handTicks().all();
+    report.feltTicks = hand.handTicks().felt();
+    report.faultedTicks = hand.handTicks().faulted();
+    report.literal = hand.guards().mode() == Guards::Mode::literal;
     return report;
 }
 

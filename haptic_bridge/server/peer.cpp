@@ -82,7 +82,7 @@ void Peer::watch() {
 }
 
 void Peer::receive(Message&& message) {
-    if (phase_ == Phase::over) {
+    if (phase_ == Phase::over || phase_ == Phase::leaving) {
         return;
     }
     heardNs_ = phase_ <= Phase::proving ? heardNs_ : host::monotonicNs();
@@ -324,16 +324,39 @@ Report Peer::report() const {
 }
 
 void Peer::sayGoodbye(const std::string& reason) {
-    if (phase_ == Phase::over) {
+    if (phase_ == Phase::over || phase_ == Phase::leaving) {
         return;
     }
-    if (phase_ == Phase::linked) {
-        sendTicks(true);
+    goodbye_ = reason;
+    if (phase_ != Phase::linked) {
+        close(Audited::no);
+        return;
     }
-    connection_->send(report());
-    connection_->send(Bye{reason});
+    phase_ = Phase::leaving;
+    service_.shareForce(std::nullopt);  // the hand must not feel the sand of a wall that has left
+    service_.sandThread->audit();
+    testTimer_.expires_after(kAuditPatience);
+    testTimer_.async_wait([self = shared_from_this()](error_code error) {
+        if (!error) {
+            self->audited(Audited::no);
+        }
+    });
+}
+
+void Peer::audited(Audited result) {
+    if (phase_ == Phase::leaving) {
+        sendTicks(true);
+        close(result);
+    }
+}
+
+void Peer::close(Audited result) {
+    Report last = report();
+    last.audited = result;
+    connection_->send(last);
+    connection_->send(Bye{goodbye_});
     const auto kept = connection_;
-    end(reason);
+    end(goodbye_);
     kept->finish();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -25,15 +26,17 @@ public:
     void step(base::Bytes message);
     /// Closes an unauthenticated connection at once.
     void makeRoom();
-    /// Sends the last report and a goodbye, then closes.
+    /// Sends the last report and a goodbye, then closes. The end of a master's link waits for the audit of the sand, at
+    /// most kAuditPatience.
     void sayGoodbye(const std::string& reason);
+    void audited(Audited result);
 
     [[nodiscard]] std::uint32_t session() const { return session_; }
     [[nodiscard]] boost::asio::ip::address address() const { return connection_->address(); }
     [[nodiscard]] std::weak_ptr<Connection> connection() const { return connection_; }
 
 private:
-    enum class Phase { greeting, proving, waiting, granting, linked, watching, over };
+    enum class Phase { greeting, proving, waiting, granting, linked, leaving, watching, over };
 
     void receive(Message&& message);
     void take(const Hello& hello);
@@ -55,6 +58,7 @@ private:
     void watchStep(const base::Bytes& message);
     void refuse(const Refusal& refusal);
     void outOfTurn();
+    void close(Audited result);
     void end(const std::string& why, Connection::Fault fault = std::nullopt);
     void sendTicks(bool all);
     void tickReport();
@@ -62,6 +66,9 @@ private:
     void watch();
     void log(const std::string& what) const;
     [[nodiscard]] Report report() const;
+
+    // A master waits half a second for the last report (Client::stop()).
+    static constexpr std::chrono::milliseconds kAuditPatience{400};
 
     const Service& service_;
     Gate& gate_;
@@ -84,6 +91,7 @@ private:
         std::size_t lastBytes = 0;
     } sent_;  // counts of step messages
     RoundTrips roundTrips_;
+    std::string goodbye_;  // reason of the goodbye that is to be said
     std::int64_t heardNs_ = 0;
 };
 

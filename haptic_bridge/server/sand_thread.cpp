@@ -84,6 +84,9 @@ void SandThread::obey(Commands& commands) {
     if (commands.edit) {
         maker_.edit(std::move(*commands.edit));
     }
+    if (commands.audits) {
+        maker_.audit();
+    }
 }
 
 /// Sleeps until a command comes or a step is due. Returns whether a step is due.

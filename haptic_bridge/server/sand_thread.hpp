@@ -39,9 +39,10 @@ public:
     void catchUp(CatchUp steps) { post(std::move(steps)); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Commands::Frame{frame, nowNs}); }
     void edit(EditRequest request) { post(std::move(request)); }
+    void audit() { post(Commands::Audit{}); }
     void release();
 
-    [[nodiscard]] std::uint64_t withheld() const { return maker_.withheld(); }
+    [[nodiscard]] WithheldCounts withheld() const { return maker_.withheld(); }
     [[nodiscard]] std::uint64_t dropped() const { return maker_.dropped(); }
 
 private:

@@ -92,6 +92,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     }
     // The master's number is not trusted: shown_ never falls, and never passes the last step that was sent.
     shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
+    held_ = frame.held;
     clock_.frameShown(nowNs, frame.frameIntervalNs);
 }
 
@@ -109,6 +110,15 @@ void StepMaker::edit(EditRequest request) {
     edit_ = std::move(request.edit);
 }
 
+void StepMaker::audit() {
+    if (!running()) {
+        return;
+    }
+    const std::uint64_t sent = terrain_.stateHash();
+    terrain_.audit(terrain_.hashTiles().tileCount());
+    output_.audited(session_, terrain_.stateHash() == sent ? Audited::agreed : Audited::differed);
+}
+
 void StepMaker::release() {
     phase_ = Phase::idle;
     hand_.end();
@@ -119,6 +129,7 @@ void StepMaker::begin() {
     phase_ = Phase::running;
     edit_ = {};
     shown_ = start_.stepNumber;
+    held_.reset();
     // The process that numbered the steps before may have left the tool in the sand elsewhere. Lifting it avoids a
     // furrow from there to the hand.
     liftFirst_ = terrain_.engaged();
@@ -147,9 +158,22 @@ std::int64_t StepMaker::fill(sand::Step& step) {
     return hand_.onHostClock() ? readNs : 0;
 }
 
+Withheld StepMaker::cause() const {
+    if (!held_) {
+        return Withheld::start;
+    }
+    return *held_ == Held::disk ? Withheld::disk : *held_ == Held::pause ? Withheld::pause : Withheld::wall;
+}
+
+WithheldCounts StepMaker::withheld() const {
+    WithheldCounts counts{};
+    std::copy(withheld_.begin(), withheld_.end(), counts.begin());
+    return counts;
+}
+
 void StepMaker::makeStep() {
     if (blocked()) {  // only in real time, because the fast pace waits instead
-        ++withheld_;
+        ++withheld_[static_cast<std::size_t>(cause())];
         clock_.advance(now_());
         return;
     }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "haptic_bridge/link/protocol.hpp"
@@ -32,6 +34,7 @@ public:
         std::function<void(std::uint32_t session, NeedState need)> needState;      // NeedState
         std::function<void(std::uint32_t session, std::string why)> unusable;      // a Refusal: its sand does not fit
         std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;  // an encoded StepMessage
+        std::function<void(std::uint32_t session, Audited result)> audited = [](auto, auto) {};  // answers audit()
     };
 
     using Clock = std::function<std::int64_t()>;  // [ns], monotonic
@@ -55,6 +58,9 @@ public:
     /// Puts an edit into the next step. Replaces an edit that still waits. Reports `unusable` if the edit loads sand
     /// that does not fit the scene, or that this machine has no memory for. Ignored while no epoch runs.
     void edit(EditRequest request);
+    /// Hashes the whole sand again from memory, and reports `audited`: whether it still has the state hash that was
+    /// sent with its last step. Called when a link ends in an orderly way. Ignored while no epoch runs.
+    void audit();
     /// Ends the epoch, because the master has left. The hand rests, and samples that still wait are dropped.
     void release();
 
@@ -74,13 +80,14 @@ public:
     [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + kWindow; }
     /// Returns when the next step is due in real time [ns].
     [[nodiscard]] std::int64_t due() const { return clock_.due(); }
-    /// Returns how many steps were withheld since the program started. Any thread.
-    [[nodiscard]] std::uint64_t withheld() const { return withheld_; }
+    /// Returns how many steps were withheld since the program started, by cause. Any thread.
+    [[nodiscard]] WithheldCounts withheld() const;
     /// Returns how many hand samples of running epochs were dropped since the program started. Any thread.
     [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
 private:
     [[nodiscard]] bool asGranted();
+    [[nodiscard]] Withheld cause() const;
     void begin();
     [[nodiscard]] std::int64_t fill(sand::Step& step);
 
@@ -97,7 +104,9 @@ private:
     sand::Edit edit_;           // of the next step
     std::uint64_t shown_ = 0;   // number of the step that the wall shows
     bool liftFirst_ = false;    // the first step of an epoch lifts a tool that was left in the sand
-    std::atomic<std::uint64_t> withheld_{0}, dropped_{0};
+    std::optional<Held> held_;  // of the last Shown; nullopt before the first of this epoch
+    std::array<std::atomic<std::uint64_t>, kWithheldNames.size()> withheld_{};
+    std::atomic<std::uint64_t> dropped_{0};
 };
 
 }  // namespace haptic_bridge

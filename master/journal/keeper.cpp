@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -22,7 +23,14 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kPolicies{"required", "best-effort", "off"};
 constexpr double kRetrySeconds = 1;
+constexpr const char* kBeyond = ".beyond";   // behind the name of a checkpoint that was set aside
 constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
+
+bool hasSetAside(const std::filesystem::path& checkpoints) {
+    std::error_code none;
+    const std::filesystem::directory_iterator files(checkpoints, none);
+    return std::any_of(begin(files), end(files), [](const auto& file) { return file.path().extension() == kBeyond; });
+}
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -93,7 +101,7 @@ void JournalKeeper::refused(const std::string& why) {
 void JournalKeeper::setAside(std::uint64_t step) {
     for (const std::uint64_t later : checkpointsOf(journal_)) {
         const std::filesystem::path file = checkpointFile(journal_, later);
-        const std::filesystem::path aside = file.string() + ".beyond";
+        const std::filesystem::path aside = file.string() + kBeyond;
         std::error_code error;
         if (later > step) {
             // The session will make this step again, differently, and the checkpoint would be taken for its sand. It is
@@ -104,6 +112,7 @@ void JournalKeeper::setAside(std::uint64_t step) {
                             aside.filename().string(), step);
         }
     }
+    lostSteps_ = hasSetAside(checkpointFile(journal_, step).parent_path());
     forgetHalves(journal_);
     (void)host::syncFolderOf(
         checkpointFile(journal_, step));  // the checkpoint must not come back after a loss of power
@@ -271,6 +280,7 @@ void JournalKeeper::finish(const JournalEnd& end) {
             writer_->sync();
         } else if (writer_) {
             writer_->finish(end.step, end.hash);
+            ended_ = true;
         }
     } catch (const base::InputError& error) {
         host::printLine("{}; it holds every step, and no end", error.what());

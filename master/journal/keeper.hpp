@@ -93,6 +93,8 @@ public:
     /// Returns how many checkpoints were set aside at a resume. They are of later steps than the end of the journal,
     /// which has lost steps.
     [[nodiscard]] std::uint64_t checkpointsBeyond() const { return checkpointsBeyond_; }
+    /// Returns whether finish() has written an end, and the journal has lost no steps before it.
+    [[nodiscard]] bool whole() const { return ended_ && !lostSteps_; }
 
 private:
     [[nodiscard]] bool hasRoom(std::int64_t bytes, const JournalEnd& now);
@@ -119,6 +121,8 @@ private:
     std::uint64_t checkpointsFailed_ = 0, checkpointsBeyond_ = 0;
     bool ticksLeftOut_ = false;
     bool doubted_ = false;
+    bool ended_ = false;
+    bool lostSteps_ = false;  // checkpoints of later steps were set aside, at this resume or at an earlier one
     std::vector<double> copyMs_;
 };
 

@@ -17,10 +17,13 @@
 
 namespace master {
 
+using haptic_bridge::Audited;
 using haptic_bridge::Link;
 using haptic_bridge::TimedStep;
 
 namespace {
+
+constexpr const char* kOtherSand = "the hand felt other sand than the wall has shown";
 
 /// Returns the name of a state in the event `link`.
 const char* nameOf(Link link) {
@@ -116,6 +119,8 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
     followPositions(status, terrain);
     if (status.link == Link::linked) {
         source_ = Source::server;
+        earlierFailure_.clear();
+        serverUnhealed_ = false;  // the server has begun with the wall's sand
     } else if (status.link == Link::streaming) {
         if (source_ != Source::own) {
             takeOver();
@@ -126,6 +131,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
         if (secondsSince(waitingSinceNs_) > kGrantWait) {
             leaveServer();  // for kRetryWait, because each try stops the sand
             waitingSinceNs_ = now_();
+            earlierFailure_ = fmt::format("it does not begin within {:.0f} s", kGrantWait);
             takeOver("server_does_not_begin", fmt::format("{} does not begin", server_->text()));
         }
     } else if (source_ == Source::starting) {
@@ -135,8 +141,19 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
             takeOver("no_server", fmt::format("no answer from {} for {:.0f} s", server_->text(), kStartWait));
         }
     } else if (source_ != Source::own) {
+        noteLastReport();
         takeOver("lost", "lost");
     }
+}
+
+/// Judges the last report of a link that the server has ended.
+void LiveSteps::noteLastReport() {
+    const std::uint64_t link = counters().links;
+    const auto last = client_->report();
+    if (source_ == Source::server && link != linksNoted_ && last && last->audited == Audited::differed) {
+        memoryChanged_ = serverUnhealed_ = true;
+    }
+    linksNoted_ = link;
 }
 
 void LiveSteps::followPositions(const haptic_bridge::LinkStatus& status, const sand::Replica& terrain) {
@@ -258,9 +275,9 @@ void LiveSteps::pointed(std::span<const lockstep::PointerReport> reports, const 
     pointedNs_ = receivedNs;
 }
 
-void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) {
+void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, haptic_bridge::Held held) {
     if (client_) {
-        client_->shown(stepNumber, frameIntervalNs);
+        client_->shown(stepNumber, frameIntervalNs, held);
     }
 }
 
@@ -291,6 +308,7 @@ std::vector<base::Bytes> LiveSteps::ticks() {
 void LiveSteps::leaveServer() {
     ticks_ = ticks();
     earlierReport_ = report();
+    earlierFailure_ = client_->lastFailure();
     earlierLinks_ = counters();
     ++earlierLinks_.reconnects;
     client_->stop();
@@ -299,6 +317,10 @@ void LiveSteps::leaveServer() {
 }
 
 bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t stateHash) {
+    if (std::exchange(memoryChanged_, false)) {
+        host::printLine("haptic link: the server's memory had changed by the end of its link; {}", kOtherSand);
+        return false;
+    }
     // Meanwhile the link may have been lost. The steps may also be the master's own.
     const bool fromServer = linked() && !steps.empty() && steps.back().step.epoch == epoch_;
     if (!fromServer || steps.back().serverHash == stateHash) {
@@ -311,6 +333,7 @@ bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t s
 void LiveSteps::distrustServer() {
     leaveServer();
     recent_ = {};  // it holds hashes of this server
+    serverUnhealed_ = true;
     connect();
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }
@@ -331,6 +354,11 @@ std::optional<haptic_bridge::Report> LiveSteps::report() const {
     return latest ? latest : earlierReport_;
 }
 
+std::string LiveSteps::lastRefusal() const {
+    const std::string latest = client_ ? client_->lastFailure() : "";
+    return latest.empty() ? earlierFailure_ : latest;
+}
+
 haptic_bridge::LinkCounters LiveSteps::counters() const {
     haptic_bridge::LinkCounters sum = earlierLinks_;
     if (client_) {
@@ -342,6 +370,14 @@ haptic_bridge::LinkCounters LiveSteps::counters() const {
 void LiveSteps::stop() {
     if (client_) {
         client_->stop();
+        const auto last = client_->report();
+        if (linked() && last && last->audited != Audited::no) {
+            serverAtEnd_ = last->audited == Audited::agreed;
+        }
+    }
+    if (serverAtEnd_ == false) {
+        serverUnhealed_ = true;
+        host::printLine("haptic link: the server's memory had changed at the end of the session; {}", kOtherSand);
     }
     if (tickBudget_.refused() > 0) {
         host::printLine("haptic link: the journal has left out {} pieces of ticks", tickBudget_.refused());

@@ -49,9 +49,8 @@ public:
     void request(sand::Edit edit) override { edits_.push_back(std::move(edit)); }
     void shareForce(double share) override;
 
-    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs) override;
-    /// If the hashes differ, connects again, so that the server starts from the wall's state. Also returns true if no
-    /// linked server has numbered the steps.
+    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, haptic_bridge::Held held) override;
+    /// If the hashes differ, connects again, so that the server starts from the wall's state.
     [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
                                    std::uint64_t stateHash) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override;
@@ -64,12 +63,16 @@ public:
     [[nodiscard]] bool starting() const { return source_ == Source::starting; }
     [[nodiscard]] bool linked() const override { return source_ == Source::server; }
     [[nodiscard]] bool streaming() const override { return source_ == Source::own && positions_.streaming(); }
+    [[nodiscard]] bool handed() const override { return linked() || streaming() || (pointer_ && pointer_->pointed()); }
+    [[nodiscard]] std::string lastRefusal() const override;
     [[nodiscard]] const char* hand() const override;
     [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
     [[nodiscard]] std::int64_t clockOffsetNs() const override { return client_ ? client_->clockOffsetNs() : 0; }
     [[nodiscard]] std::optional<haptic_bridge::Report> report() const override;
     [[nodiscard]] haptic_bridge::LinkCounters counters() const override;
     void stop() override;
+    [[nodiscard]] std::optional<bool> serverAtEnd() const override { return serverAtEnd_; }
+    [[nodiscard]] bool serverUnhealed() const override { return serverUnhealed_; }
 
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };
@@ -81,6 +84,7 @@ private:
     /// Lets the master number the steps in a new epoch. `reason` is a name for programs, `why` a text for the user;
     /// both are empty if no link was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
+    void noteLastReport();
     void leaveServer();
     void distrustServer();
     void connect();
@@ -107,6 +111,11 @@ private:
     std::int64_t waitingSinceNs_;    // [ns], since when the master waits for the server
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;
+    std::string earlierFailure_;    // of a client that is gone, see Client::lastFailure()
+    std::uint64_t linksNoted_ = 0;  // number of the link whose last report noteLastReport() has judged
+    bool memoryChanged_ = false;    // a server has said so, and proveServer() has not told it yet
+    bool serverUnhealed_ = false;
+    std::optional<bool> serverAtEnd_;
     std::deque<sand::Edit> edits_;  // edits that are not in a step yet
     PositionSource positions_;
     std::optional<PointerHand> pointer_;   // nullopt before pointed()

@@ -34,6 +34,8 @@ public:
     std::int64_t fill(sand::Step& step);
 
     [[nodiscard]] double depth() const { return depth_; }  // [tool radius]
+    /// Returns whether a pointer has moved or touched.
+    [[nodiscard]] bool pointed() const { return hand_.has_value(); }
 
 private:
     void add(const lockstep::PointerSample& sample, const sand::Replica& sand);

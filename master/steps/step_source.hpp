@@ -66,10 +66,12 @@ public:
                          std::int64_t /* receivedNs */) {}
 
     /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since
-    /// the swap before [ns].
-    virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */) {}
+    /// the swap before [ns]. `held` says why the frame took no steps.
+    virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */,
+                       haptic_bridge::Held /* held */) {}
     /// Compares the wall's state hash `hash` with the haptic server's hash after the last of `steps`. The wall shows
-    /// this step now. If the server's sand differs, ends the link to this server and returns false.
+    /// this step now. If the server's sand differs, ends the link to this server and returns false. Also returns false,
+    /// once, if a server has said goodbye and has found that its memory had changed (haptic_bridge::Audited::differed).
     [[nodiscard]] virtual bool proveServer(const std::vector<haptic_bridge::TimedStep>& /* steps */,
                                            std::uint64_t /* hash */) {
         return true;
@@ -83,6 +85,10 @@ public:
     [[nodiscard]] virtual bool linked() const { return false; }
     /// Returns whether a server without sand streams positions of the hand, and the master numbers the steps.
     [[nodiscard]] virtual bool streaming() const { return false; }
+    /// Returns whether a hand moves the tool: one that is linked or streams, or a pointer that has moved or touched.
+    [[nodiscard]] virtual bool handed() const { return false; }
+    /// Returns why the last attempt to link has failed, as haptic_bridge::Client::lastFailure() does.
+    [[nodiscard]] virtual std::string lastRefusal() const { return {}; }
     /// Returns the state of the hand, such as "hand linked", as the event `progress` reports it (docs/events.md).
     [[nodiscard]] virtual const char* hand() const = 0;
     /// Returns the present epoch of live steps; 0 for a recording.
@@ -95,6 +101,11 @@ public:
     [[nodiscard]] virtual haptic_bridge::LinkCounters counters() const { return {}; }
     /// Says goodbye to the server and ends the link.
     virtual void stop() {}
+    /// Call it after stop(). Returns whether the memory of the server, which was linked until then, had the sand that
+    /// its hashes said. Returns nullopt if no server with sand was linked, or if it did not answer in time.
+    [[nodiscard]] virtual std::optional<bool> serverAtEnd() const { return std::nullopt; }
+    /// Returns whether a server's sand differed, and no server has been given the wall's sand since.
+    [[nodiscard]] virtual bool serverUnhealed() const { return false; }
 };
 
 /// Returns the next steps of `source`. While it has no step, asks again until source.patience() has passed or `stop`

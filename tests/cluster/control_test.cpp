@@ -243,6 +243,28 @@ TEST_F(Operator, IsToldAtOnceThatTheSandStandsForWantOfRoomAndNothingIsDoneLater
     });
 }
 
+TEST_F(Operator, SeesThatAFullDiskHasHeldTheHand) {
+    std::filesystem::create_directory(out());
+    support::testOnSmallDisk(out(), "size=700k", [this] {
+        begin("script:gis");
+        awaitStatus([](const nlohmann::json& now) { return now.value("step", 0) > 10; });
+        support::fill(out() + "/filler");
+        const nlohmann::json full =
+            awaitStatus([](const nlohmann::json& now) { return now.value("journal_state", "") == "no_room"; });
+        // The server's window of 8 steps is full after 8 frames. Later steps are withheld.
+        awaitStatus([&](const nlohmann::json& now) { return now.value("frame", 0) > full.value("frame", 0) + 40; });
+        std::filesystem::remove(out() + "/filler");  // the summary needs room, too
+        ask("stop");
+        EXPECT_TRUE(session_->wait(kLong).has_value()) << session_->output();
+        const nlohmann::json told = summary();
+        EXPECT_GT(told["held_seconds"]["disk"], 0);
+        EXPECT_EQ(told["held_seconds"]["pause"], 0);
+        EXPECT_GT(told["haptic"]["steps_withheld_by"]["disk"], 0) << told["haptic"];
+        EXPECT_EQ(told["haptic"]["steps_withheld_by"]["pause"], 0) << told["haptic"];
+        EXPECT_TRUE(told["journal"]["whole"]) << "no step was shown without the journal";
+    });
+}
+
 // The paused session keeps its link: after it resumes, the server and its sand are the same.
 TEST_F(Operator, PausesAHandAndTakesItUpAgain) {
     begin("script:gis");
@@ -261,6 +283,10 @@ TEST_F(Operator, PausesAHandAndTakesItUpAgain) {
         return now.value("step", 0) > paused.value("step", 0) + 30 && now.value("edits", 0) == 1;
     });
     endAndReplay(1);
+    EXPECT_GT(summary()["held_seconds"]["pause"], 0);
+    EXPECT_EQ(summary()["held_seconds"]["disk"], 0);
+    EXPECT_GT(summary()["haptic"]["steps_withheld_by"]["pause"], 0);
+    EXPECT_EQ(summary()["haptic"]["steps_withheld_by"]["disk"], 0);
 }
 
 TEST_F(Operator, IsToldWhatCannotBeDoneAndTheSessionGoesOn) {

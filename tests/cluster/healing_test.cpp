@@ -104,6 +104,24 @@ TEST_F(Healing, RedrawsTheFrameInWhichItHappens) {
     expectEqualPictures("undisturbed", "out");
 }
 
+// No step touches the sand, and each frame hashes one of 16 tiles again. Without a whole comparison at the end, the
+// fault's tile 12 would have its next turn in frame 29.
+TEST_F(Healing, FindsWhatIsWrongInTheLastFrames) {
+    const Ended ended = runToEnd({"--wall", wall(1, 2), "--scene", scene(), "--pace", "fast", "--frames", "20", "--out",
+                                  out(), "--no-pictures", "--inject", "diverge:rank=1,frame=19,column=5,row=120"});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    expectHealed(ended, {{"rank", 1}, {"times", 1}});
+    const nlohmann::json told = summary();
+    EXPECT_EQ(told["divergences"], 1);
+    EXPECT_EQ(told["healed"], 1);
+    EXPECT_EQ(told["unhealed"], 0);
+    EXPECT_TRUE(support::holds(told["compared"], {{"at_end", true}, {"last_whole", 20}, {"frames_since", 0}}))
+        << told["compared"];
+    EXPECT_GE(told["compared"]["first_difference"], 19);
+    EXPECT_TRUE(told["journal"]["whole"]);
+    EXPECT_EQ(replayedHash(), told["state_hash"]);
+}
+
 TEST_F(Healing, LetsTheJournalDecideATie) {
     // One render rank and the master disagree. First the rank is right, then the master, then neither.
     const Ended ended = dig(wall(1, 1),
@@ -188,6 +206,12 @@ TEST_F(Healing, GivesUpARankThatNeedsItAThirdTime) {
     EXPECT_TRUE(support::holds(failure, {{"what", "broken"}, {"rank", 2}, {"tile", "r1c2"}, {"host", host()}}))
         << failure;
     EXPECT_TRUE(ended.has("failure", {{"failure", failure}})) << ended.output;
+    EXPECT_EQ(summary()["unhealed"], 1);
+    EXPECT_EQ(summary()["journal"]["whole"], false) << "it has no end";
+    const nlohmann::json compared = summary()["compared"];
+    EXPECT_EQ(compared["at_end"], false);
+    EXPECT_GT(compared["frames_since"], 0);
+    EXPECT_LT(compared["first_difference"], 22) << "the first of the three faults";
     // Every step is in the journal, so a resumed session loses nothing.
     EXPECT_EQ(reproduced(ended).size(), 16U);
 }

@@ -75,8 +75,9 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(before[0]["cut_bytes"], 8);
     EXPECT_GT(before[0]["checkpoint_step"], 0);
     const std::uint64_t end = before[0]["step"].get<std::uint64_t>() + 400;
-    nlohmann::json incidents{{"divergences", 3}, {"healed", 2},     {"outvoted", 1}, {"server_divergences", 0},
-                             {"links", 5},       {"reconnects", 4}, {"stands", 1},   {"steps_left_out", 8}};
+    nlohmann::json incidents{
+        {"divergences", 3}, {"healed", 2}, {"outvoted", 1},       {"server_divergences", 0}, {"links", 5},
+        {"reconnects", 4},  {"stands", 1}, {"steps_left_out", 8}, {"first_difference", 17}};
     for (const std::string_view kind : haptic_bridge::kRefusalNames) {
         incidents["refused_by_server"][std::string(kind)] = 6;
         incidents["refused"][std::string(kind)] = 7;
@@ -91,6 +92,12 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(told["divergences"], 3) << "the divergences of the earlier runs must count, too";
     EXPECT_EQ(told["healed"], 2);
     EXPECT_EQ(told["outvoted"], 1);
+    EXPECT_EQ(told["compared"]["first_difference"], 17);
+    EXPECT_EQ(told["compared"]["frames_since"], 0);
+    EXPECT_GT(told["frames_before"], 0);
+    EXPECT_LT(told["frames_before"], told["frames"]);
+    EXPECT_GT(told["steps_before"], 0);
+    EXPECT_EQ(told["unhealed"], 0);
     EXPECT_EQ(told["haptic"]["reconnects"], 4);
     EXPECT_EQ(told["haptic"]["refused"]["servers"]["secret"], 7);
     EXPECT_EQ(told["journal"]["full_disk"]["times"], 1);

@@ -124,6 +124,23 @@ TEST_F(Lockstep, AHapticServerThatComesBackIsLinkedAgain) {
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["server_divergences"], 0) << "the server must continue from the wall's sand";
     EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
+    const nlohmann::json told = summary();
+    EXPECT_TRUE(support::holds(told["hand"],
+                               {{"asked", "server"}, {"links", 2}, {"linked_at_end", true}, {"last_refusal", nullptr}}))
+        << told["hand"];
+    EXPECT_GT(told["hand"]["frames_with_hand"], 0);
+    EXPECT_LT(told["hand"]["frames_with_hand"], told["frames"]) << "the server was away for a while";
+    EXPECT_EQ(told["compared"], (nlohmann::json{{"at_end", true},
+                                                {"server_at_end", true},
+                                                {"last_whole", told["frames"]},
+                                                {"frames_since", 0},
+                                                {"first_difference", nullptr}}));
+    EXPECT_EQ(told["unhealed"], 0);
+    EXPECT_TRUE(told["journal"]["whole"]);
+    EXPECT_EQ(told["pace"], "realtime");
+    EXPECT_EQ(told["refresh_hz"], 60);
+    EXPECT_GT(told["haptic"]["hand_ticks"], 0);
+    EXPECT_EQ(told["haptic"]["literal"], false);
 }
 
 TEST_F(Lockstep, AnAbsentServerIsNamedAndTheWallGoesOn) {
@@ -133,6 +150,11 @@ TEST_F(Lockstep, AnAbsentServerIsNamedAndTheWallGoesOn) {
     EXPECT_TRUE(ended.has("link", {{"state", "connecting"}, {"server", "127.0.0.1:1"}})) << ended.output;
     EXPECT_TRUE(ended.has("without_hand", {{"reason", "no_server"}})) << ended.output;
     EXPECT_EQ(summary()["steps"], 30);
+    const nlohmann::json told = summary();
+    const nlohmann::json never{{"asked", "server"}, {"links", 0}, {"frames_with_hand", 0}, {"linked_at_end", false}};
+    EXPECT_TRUE(support::holds(told["hand"], never)) << told["hand"];
+    EXPECT_TRUE(told["hand"]["last_refusal"].get<std::string>().starts_with("no answer (")) << told["hand"];
+    EXPECT_TRUE(told["compared"]["server_at_end"].is_null()) << told["compared"];
 }
 
 TEST_F(Lockstep, AServerWithAnotherMaterialIsRefusedAndTheWallGoesOn) {
@@ -148,6 +170,8 @@ TEST_F(Lockstep, AServerWithAnotherMaterialIsRefusedAndTheWallGoesOn) {
     EXPECT_EQ(ended.status, 0) << ended.output;
     EXPECT_TRUE(ended.has("without_hand", {{"reason", "refused"}})) << ended.output;
     EXPECT_EQ(summary()["steps"], 30);
+    EXPECT_EQ(summary()["hand"]["links"], 0);
+    EXPECT_TRUE(summary()["hand"]["last_refusal"].is_string()) << summary()["hand"];
 }
 
 }  // namespace

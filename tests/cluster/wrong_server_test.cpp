@@ -43,6 +43,23 @@ TEST_F(WrongServer, WithOtherSandIsCountedAndStartsAgainFromTheWalls) {
     EXPECT_EQ(json("out/incidents.json")["server_divergences"], 1) << "a resumed session counts from this value";
 }
 
+TEST_F(WrongServer, WhoseMemoryHasChangedAtTheEndIsCountedAndNotHealed) {
+    test::SandServer server(scene::loadScene(scene()));
+    server.answerByeWith(haptic_bridge::Audited::differed);
+    const auto session = startAt(server);
+    ASSERT_FALSE(session->waitForEvent("link", {{"state", "linked"}}).is_null()) << session->output();
+    awaitStatus([](const nlohmann::json& status) { return status.value("step", 0) > 10; });
+    session->type("stop");
+    EXPECT_TRUE(session->wait(kLong).has_value()) << session->output();
+    const nlohmann::json told = summary();
+    EXPECT_EQ(told["compared"]["at_end"], true) << "the wall's own sand was right";
+    EXPECT_EQ(told["compared"]["server_at_end"], false);
+    EXPECT_EQ(told["compared"]["first_difference"], told["frames"]);
+    EXPECT_EQ(told["server_divergences"], 1);
+    EXPECT_EQ(told["unhealed"], 1);
+    EXPECT_EQ(json("out/incidents.json")["first_difference"], told["frames"]);
+}
+
 // The master sends the server the number of the last step that the wall shows. A shown step must be on disk.
 TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
     constexpr std::size_t kFails = 40;  // calls of fdatasync before the one that fails; the first is the header's

@@ -56,7 +56,7 @@ void writeWire(Folder folder) {
                                    StepMessage{1, 2, tuned},
                                    StepMessage{1, 2, loaded},
                                    TimingTest{1, 20},
-                                   Shown{7, 16000000},
+                                   Shown{7, 16000000, Held::pause},
                                    TimingEcho{1},
                                    Ping{5},
                                    Pong{5, 6},

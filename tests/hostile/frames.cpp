@@ -24,7 +24,7 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
                                                        StepMessage{1, 2, step},
                                                        StepMessage{1, 2, loaded},
                                                        TimingTest{1, 20},
-                                                       Shown{7, 16'000'000},
+                                                       Shown{7, 16'000'000, Held::disk},
                                                        TimingEcho{1},
                                                        Ping{5},
                                                        Pong{5, 6},

@@ -289,6 +289,7 @@ TEST_F(AgreementTest, MemoryThatNeedsHelpAThirdTimeIsGivenUp) {
     EXPECT_EQ(failure()["tile"], "r1c2");
     EXPECT_EQ(agreement_.divergences(), 3U);
     EXPECT_EQ(agreement_.healed(), 2U);
+    EXPECT_EQ(agreement_.unhealed(), 1U);
 }
 
 TEST_F(AgreementTest, ARankThatHealingDoesNotHelpIsGivenUpAtOnce) {
@@ -297,6 +298,7 @@ TEST_F(AgreementTest, ARankThatHealingDoesNotHelpIsGivenUpAtOnce) {
     EXPECT_FALSE(reach());
     EXPECT_EQ(failure()["rank"], 1);
     EXPECT_EQ(agreement_.divergences(), 1U) << "one frame";
+    EXPECT_EQ(agreement_.unhealed(), 1U);
 }
 
 TEST_F(AgreementTest, AnotherViewEndsTheSession) {
@@ -307,6 +309,7 @@ TEST_F(AgreementTest, AnotherViewEndsTheSession) {
     EXPECT_EQ(agreement_.divergences(), 1U);
     EXPECT_EQ(agreement_.healed(), 0U);
     EXPECT_EQ(statistics_.ranks()[2].differed, 1U);
+    EXPECT_EQ(agreement_.unhealed(), 1U);
 }
 
 TEST_F(AgreementTest, NonsenseEndsTheSession) {

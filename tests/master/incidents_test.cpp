@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -27,7 +28,8 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
                            .links = 6,
                            .reconnects = 4,
                            .stands = 1,
-                           .stepsLeftOut = 9};
+                           .stepsLeftOut = 9,
+                           .firstDifference = 250};
     some.refusedHere[1] = 8;
     some.refused[0] = 7;
     some.refused.back() = 5;
@@ -67,6 +69,30 @@ TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
     file.keep({.stands = 2}, 2 * kSecond + 1);
     file.keepLast({.stands = 2});
     EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 2U);
+}
+
+TEST_F(IncidentFileTest, BelievesNoNumberThatIsNoCount) {
+    master::IncidentFile(folder_, false).keep({.healed = 2, .links = 6}, kSecond);
+    std::string text;
+    std::getline(std::ifstream(folder_ / "incidents.json"), text);
+    const auto counts = [&](const std::string& links) {
+        std::string changed = text;
+        changed.replace(changed.find("\"links\":6"), 9, "\"links\":" + links);
+        std::ofstream(folder_ / "incidents.json") << changed;
+        testing::internal::CaptureStderr();
+        const master::IncidentFile file(folder_, true);
+        const std::string said = testing::internal::GetCapturedStderr();
+        const bool refused = said.find("incidents.json: links must be a whole number from 0 to 1000000000000, got " +
+                                       links.substr(0, 40)) != std::string::npos;
+        EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), refused ? 1 : 0) << said;
+        EXPECT_EQ(file.before(), refused ? master::Incidents{} : (master::Incidents{.healed = 2, .links = 6})) << links;
+        return !refused;
+    };
+    EXPECT_TRUE(counts("6"));
+    for (const char* links : {"-3", "2.5", "1000000000001", "18446744073709551615", "\"6\"", "null", "[1]"}) {
+        EXPECT_FALSE(counts(links)) << links;
+    }
+    EXPECT_FALSE(counts("\"" + std::string(5000, 'x') + "\"")) << "a long value is cut off";
 }
 
 TEST_F(IncidentFileTest, CountsFromHereOnWhenItIsDamaged) {

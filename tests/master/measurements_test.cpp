@@ -27,9 +27,10 @@ public:
             arrivals[rank].arrived = now_ - 3 * kMs;
             arrivals[rank].lastSwap = lastSwap_ == 0 ? 0 : lastSwap_ + static_cast<std::int64_t>(rank) * 100'000;
         }
-        measurements_.add({frame_, 80, now_ - 5 * kMs, clock_.swapped(now_)}, steps, arrivals, clockOffset);
+        measurements_.add({frame_, 80, now_ - 5 * kMs, clock_.swapped(now_), held_}, steps, arrivals, clockOffset);
         lastSwap_ = now_;
     }
+    void hold(haptic_bridge::Held held) { held_ = held; }
     [[nodiscard]] std::int64_t now() const { return now_; }
     [[nodiscard]] master::Summary summary() const {
         master::Summary summary;
@@ -41,6 +42,7 @@ private:
     Measurements& measurements_;
     master::FrameClock clock_{100};
     std::uint64_t frame_ = 0;
+    haptic_bridge::Held held_ = haptic_bridge::Held::no;
     std::int64_t now_ = 50'000 * kMs, lastSwap_ = 0;
 };
 
@@ -70,6 +72,18 @@ TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
     EXPECT_EQ(wall.summary().frameMs.count(), 2U) << "frames 5 and 6: 4 is the first that counts, and has none before";
     EXPECT_NEAR(wall.summary().frameMs.largest(), 10, 1e-9);
     EXPECT_EQ(wall.summary().lateFrames, 0U);
+}
+
+TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
+    using haptic_bridge::Held;
+    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Wall wall(measurements);
+    for (const Held held : {Held::pause, Held::no, Held::pause, Held::disk, Held::disk, Held::disk, Held::no}) {
+        wall.hold(held);
+        wall.show(250 * kMs);
+    }
+    EXPECT_NEAR(wall.summary().pausedSeconds, 0.25, 1e-9) << "the first frame has no frame before it";
+    EXPECT_NEAR(wall.summary().fullDiskSeconds, 0.75, 1e-9);
 }
 
 TEST(Measurements, OfAFastSessionKnowNoLateFrame) {

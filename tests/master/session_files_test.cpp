@@ -2,6 +2,7 @@
 // The small files in a session's folder. A pipe of such a name must not stop the frames of a session.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "base/input_error.hpp"
@@ -46,6 +47,35 @@ TEST_F(SessionFiles, APipeIsNotWrittenToWhileFramesWait) {
         EXPECT_THROW(master::writeSummary(master::Summary(), folder_ / "summary.json"), base::InputError);
         (void)master::beginDrills(drills_, 5, folder_);
     }));
+}
+
+using Recoveries = test::FolderTest;
+
+TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
+    master::tellRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = 7, .frame = 8}, folder_);
+    std::string good;
+    std::getline(std::ifstream(folder_ / "recoveries.jsonl"), good);
+    const auto with = [&good](const std::string& key, const std::string& value) {
+        const std::size_t begin = good.find("\"" + key + "\":") + key.size() + 3;
+        return std::string(good).replace(begin, good.find_first_of(",}", begin) - begin, value);
+    };
+    std::ofstream(folder_ / "recoveries.jsonl") << good << "\n"
+                                                << with("seconds_to_next_frame", "-2.5") << "\n"
+                                                << with("frame", "-1") << "\n"
+                                                << good.substr(0, 30) << "\n"  // cut off by a crash
+                                                << with("cut_bytes", "3e19") << "\n"
+                                                << with("failed_how", "17") << "\n"
+                                                << with("failed_rank", "null") << "\n";
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(master::recoveriesOf(folder_), (std::vector<std::string>{good, with("failed_rank", "null")}));
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 4) << said;
+    EXPECT_NE(said.find("recoveries.jsonl:2: seconds_to_next_frame must be a number from 0 to 1000000000000, or null, "
+                        "got -2.5; "),
+              std::string::npos)
+        << said;
+    EXPECT_NE(said.find("recoveries.jsonl:3: frame must be "), std::string::npos) << said;
+    EXPECT_EQ(master::RecoveryCount(folder_).count(), 2U);
 }
 
 }  // namespace

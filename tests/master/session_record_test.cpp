@@ -8,6 +8,7 @@
 #include <random>
 
 #include "master/journal/journal.hpp"
+#include "master/recovery.hpp"
 #include "tests/master/no_steps.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -62,7 +63,8 @@ TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
                                       {"journal_state", "written"},
                                       {"checkpoints_failed", 0},
                                       {"restarts", 0}}));
-    std::ofstream(folder_ / "recoveries.jsonl") << "{\"failure\": \"rank 1\"}\n{\"failure\": \"the haptic server\"}\n";
+    master::tellRecovery({}, folder_);
+    master::tellRecovery({}, folder_);
     record.describe(status);
     EXPECT_EQ(status["restarts"], 2);
     EXPECT_EQ(record.summary().parts, 1U);

@@ -77,7 +77,8 @@ TEST(Summary, SaysThatTheWallWasTooSlowForTheHand) {
     master::Summary summary = draggedWall(false);
     summary.haptic.emplace();
     EXPECT_EQ(master::describe(summary).find("  hand "), std::string::npos) << "no step was missing";
-    summary.haptic->stepsWithheld = 3185;
+    summary.haptic->stepsWithheld = {3185, 0, 40, 8};
+    EXPECT_EQ(master::describe(summary).find("disk"), std::string::npos) << "a pause and the start are no fault";
     EXPECT_NE(master::describe(summary).find("\n  hand      the wall was too slow for 3185 steps of the hand"),
               std::string::npos)
         << master::describe(summary);
@@ -109,6 +110,61 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     summary.link.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
     summary.haptic->refused[index(haptic_bridge::RefusalCode::secret)] = 7;
     saysHaptics(summary, "beside links: refused 1 time (busy); the server refused connections 7 times (secret)");
+}
+
+TEST(Summary, TellsTheCausesOfWithheldStepsApart) {
+    master::Summary summary = draggedWall(false);
+    summary.haptic.emplace();
+    summary.haptic->stepsWithheld = {1, 20, 300, 4000};
+    const nlohmann::json haptic = written(summary)["haptic"];
+    EXPECT_EQ(haptic["steps_withheld"], 4321);
+    const nlohmann::json causes = {{"wall", 1}, {"disk", 20}, {"pause", 300}, {"start", 4000}};
+    EXPECT_EQ(haptic["steps_withheld_by"], causes);
+    EXPECT_NE(master::describe(summary).find("\n  hand      the full disk has held 20 steps"), std::string::npos)
+        << master::describe(summary);
+}
+
+TEST(Summary, SaysHowFarTheSandWasCompared) {
+    master::Summary summary = draggedWall(false);
+    summary.compared.lastWhole = 140;
+    const nlohmann::json lost = {{"at_end", false},
+                                 {"server_at_end", nullptr},
+                                 {"last_whole", 140},
+                                 {"frames_since", 60},
+                                 {"first_difference", nullptr}};
+    EXPECT_EQ(written(summary)["compared"], lost);
+    summary.compared = {true, false, 200, 17};
+    const nlohmann::json toTheEnd = {
+        {"at_end", true}, {"server_at_end", false}, {"last_whole", 200}, {"frames_since", 0}, {"first_difference", 17}};
+    EXPECT_EQ(written(summary)["compared"], toTheEnd);
+}
+
+TEST(Summary, SaysWhichHandWasAskedForAndWhetherItCame) {
+    master::Summary summary = draggedWall(false);
+    const nlohmann::json none = {
+        {"asked", "none"}, {"links", 0}, {"frames_with_hand", 0}, {"linked_at_end", false}, {"last_refusal", nullptr}};
+    EXPECT_EQ(written(summary)["hand"], none);
+    summary.hand = {"server", 12, true, "refuses: \xff not UTF-8"};
+    summary.link.links = 2;
+    const nlohmann::json hand = written(summary)["hand"];
+    EXPECT_EQ(hand["links"], 2);
+    EXPECT_EQ(hand["frames_with_hand"], 12);
+    EXPECT_EQ(hand["linked_at_end"], true);
+    EXPECT_EQ(hand["last_refusal"], "refuses: \xef\xbf\xbd not UTF-8") << "U+FFFD in its place";
+}
+
+TEST(Summary, SaysWhatTheDeviceGot) {
+    master::Summary summary = draggedWall(false);
+    summary.haptic.emplace();
+    summary.haptic->handTicks = 900;
+    summary.haptic->feltTicks = 300;
+    summary.haptic->faultedTicks = 5;
+    summary.haptic->literal = true;
+    const nlohmann::json haptic = written(summary)["haptic"];
+    EXPECT_EQ(haptic["hand_ticks"], 900);
+    EXPECT_EQ(haptic["felt_ticks"], 300);
+    EXPECT_EQ(haptic["faulted_ticks"], 5);
+    EXPECT_EQ(haptic["literal"], true);
 }
 
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {

@@ -47,7 +47,7 @@ class Film(LauncherTest):
         self.assertEqual((status, error), (0, ""))
         master, node = printed.split("\n")[0].split(" : ")
         self.assertTrue(master.endswith("-n 1 sandwall-master --replay s.journal --film --fps 25 --wall wall --out out %d "
-                                        "--track none --control-stdin --frame-timeout 60 --stereo side_by_side"), master)
+                                        "--track none --no-report --control-stdin --frame-timeout 60 --stereo side_by_side"), master)
         self.assertEqual(node, "-n 2 sandwall-render-node --gl osmesa")
 
     def test_without_ffmpeg_the_pictures_are_the_film(self):

@@ -39,6 +39,7 @@ import session_results  # noqa: E402
 import spare_hosts  # noqa: E402
 import supervisor  # noqa: E402
 from json_mutator import changed_bytes, changed_json, changed_value  # noqa: E402
+from sample_summary import SUMMARY  # noqa: E402
 
 SEED = 20261125
 INPUTS = 1000  # for each reader
@@ -53,12 +54,6 @@ EVENTS = (
 )
 MPIRUN = (b"mpirun noticed that process rank 2 with PID 0 on node node02 exited on signal 9 (Killed).",
           b"  Process name: [[5156,1],2]\n  Exit code:    3", b"-" * 74, b"[node02:12345] *** Process received signal ***")
-SUMMARY = {
-    "version": 1, "scene": "dunes", "wall": "desk", "ranks": 1, "frames": 240, "steps": 240, "seconds": 4.0, "fps": 60.0, "frame_ms": {"count": 239},
-    "late_frames": 1, "latency_ms": {"mean": 30.0, "p50": 30.0, "p99": 44.0}, "state_hash": "0123456789abcdef", "divergences": 0,
-    "server_divergences": 0, "healed": 0, "master_healed": 0, "volume_initial": 9, "volume_final": 9, "volume_outflow": 0,
-    "slowest": {"name": "rank 1", "share": 0.9}, "recoveries": [], "journal": {"state": "written", "policy": "required"},
-    "haptic": {"refused_by_server": {"limit": 0}, "refused": {"servers": {"limit": 0}, "guests": {"limit": 0}}, "steps_withheld": 1}}
 STATUS = {"ok": True, "step": 12, "material": {"talus": 34.0}}
 VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 7}
 PROBE = {"backend": "egl", "renderer": "llvmpipe", "shortcomings": ["the screen has 60 Hz"], "version": "4.5"}

@@ -46,6 +46,10 @@ public:
     [[nodiscard]] bool crowded() const { return crowded_; }
     /// Makes the server claim this step from its second link on, with the hash that it sent for this step.
     void claimStep(std::uint64_t step) { claimed_ = step; }
+    /// Makes the server answer a goodbye with a last report that says `audited`. Without this call it does not answer.
+    void answerByeWith(haptic_bridge::Audited audited) { answer_ = audited; }
+    /// Makes the server say goodbye, with such a report, when the next frame is shown. Its sand counts as wrong then.
+    void leave(haptic_bridge::Audited audited) { leaving_ = audited; }
 
 private:
     static constexpr std::uint64_t kWindow = 8;  // [step], as docs/protocol.md has it
@@ -77,7 +81,20 @@ private:
                 shown_ = shown;
             }
             obey(guest, *message);
+            if (const auto leaving = leaving_.exchange(haptic_bridge::Audited::no);
+                leaving != haptic_bridge::Audited::no) {
+                sayGoodbye(guest, leaving);
+                lied_ = true;
+                return;
+            }
         }
+    }
+
+    static void sayGoodbye(const FakeServer::Guest& guest, haptic_bridge::Audited audited) {
+        haptic_bridge::Report last;
+        last.audited = audited;
+        guest.send(last);
+        guest.send(haptic_bridge::Bye{"enough"});
     }
 
     void obey(const FakeServer::Guest& guest, const haptic_bridge::Message& message) {
@@ -89,6 +106,8 @@ private:
             edit_ = request->edit;
         } else if (const auto* share = std::get_if<haptic_bridge::ForceShare>(&message)) {
             keepShare(*share);
+        } else if (std::holds_alternative<haptic_bridge::Bye>(message) && answer_) {
+            sayGoodbye(guest, *answer_);
         }
     }
 
@@ -151,6 +170,8 @@ private:
     std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0};
     std::atomic<std::uint64_t> shown_{0};
     std::atomic<bool> crowded_{false};
+    std::optional<haptic_bridge::Audited> answer_;
+    std::atomic<haptic_bridge::Audited> leaving_{haptic_bridge::Audited::no};
     mutable std::mutex mutex_;
     std::vector<haptic_bridge::ForceShare> shares_;  // guarded by mutex_
     std::optional<std::uint64_t> claimed_;

@@ -137,6 +137,8 @@ TEST(Grant, JudgesStepsByEpochAndNumber) {
     EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::stale) << "a step that came twice";
     EXPECT_EQ(grant.lastStep(), 11U);
     EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "a frame drawn before the grant";
+    EXPECT_EQ(grant.bounded({10, 1, haptic_bridge::Held::disk}),
+              (haptic_bridge::Shown{10, 1, haptic_bridge::Held::disk}));
     EXPECT_EQ(grant.bounded({15, 1}).stepNumber, 11U) << "steps that the master has numbered since";
 }
 

@@ -29,11 +29,16 @@ std::vector<Message> oneOfEach() {
     report.toMaster = {0.2, 0.1, 0.15, 1, 71};
     report.stepBytesMean = 84;
     report.steps = 9;
-    report.stepsWithheld = 4;
+    report.stepsWithheld = {4, 3, 2, 1};
     report.samplesDropped = 1;
     report.ticksMissed = 3;
     report.guards.back() = 7;
     report.refused.back() = 6;
+    report.handTicks = 5;
+    report.feltTicks = 4;
+    report.faultedTicks = 2;
+    report.literal = true;
+    report.audited = Audited::differed;
     return {Hello{identity, Role::watch, true, true, {1, 2}},
             Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
@@ -43,7 +48,7 @@ std::vector<Message> oneOfEach() {
             State{{1, 2, 3}},
             StepMessage{-5, 17, someStep()},
             TimingTest{7, 50},
-            Shown{41, 16'666'667},
+            Shown{41, 16'666'667, Held::pause},
             TimingEcho{7, Leg::shown},
             Ping{123},
             Pong{123, -9},
@@ -75,7 +80,8 @@ TEST(Protocol, EveryMessageComesBackAsItWent) {
 }
 
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
-    EXPECT_EQ(encode(Shown{0x0102, 3}), (base::Bytes{17, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(encode(Shown{0x0102, 3, Held::disk}),
+              (base::Bytes{18, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1}));
     base::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
                       0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
     for (std::uint8_t i = 0; i < 32; ++i) {
@@ -86,33 +92,40 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
-// Each of 43 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
+// Each of 52 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
 TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
     Report report{.hapticPeriodUsP50 = 1,
                   .hapticPeriodUsP99 = 2,
                   .hapticPeriodUsMax = 3,
                   .forceUsP50 = 4,
                   .forceUsP99 = 5,
-                  .toWall = {6, 7, 8, 9, 20},
-                  .toMaster = {10, 11, 12, 13, 21},
+                  .toWall = {6, 7, 8, 9, 19},
+                  .toMaster = {10, 11, 12, 13, 20},
                   .stepBytesMean = 14,
                   .steps = 15,
-                  .stepsWithheld = 16,
-                  .samplesDropped = 17,
-                  .ticks = 18,
-                  .ticksMissed = 19,
+                  .stepsWithheld = {24, 25, 26, 27},
+                  .samplesDropped = 16,
+                  .ticks = 17,
+                  .ticksMissed = 18,
                   .guards = {},
-                  .refused = {}};
-    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{22});
-    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{37});
+                  .refused = {},
+                  .handTicks = 21,
+                  .feltTicks = 22,
+                  .faultedTicks = 23,
+                  .literal = true,
+                  .audited = Audited::differed};
+    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{28});
+    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{43});
     const base::Bytes framed = encode(report);
     base::ByteReader reader(withoutLength(framed).subspan(1));
     for (int number = 1; number <= 14; ++number) {
         EXPECT_EQ(reader.get<double>(), number);
     }
-    for (std::uint64_t number = 15; number <= 46; ++number) {
+    for (std::uint64_t number = 15; number <= 52; ++number) {
         EXPECT_EQ(reader.get<std::uint64_t>(), number);
     }
+    EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "literal guards";
+    EXPECT_EQ(reader.get<std::uint8_t>(), 2) << "the audit: differed";
     EXPECT_TRUE(reader.atEnd());
     EXPECT_EQ(decode(withoutLength(framed)), Message(report));
 }
@@ -141,6 +154,25 @@ TEST(Protocol, RefusesAnEchoOfNoLeg) {
         framed.back() = static_cast<std::uint8_t>(leg);
         EXPECT_THROW((void)decode(withoutLength(framed)), base::FormatError) << leg;
     }
+}
+
+TEST(Protocol, RefusesACauseOrAResultThatHasNoName) {
+    const auto refuses = [](const Message& message, std::size_t fromTheEnd, std::uint8_t value) {
+        base::Bytes framed = encode(message);
+        framed[framed.size() - fromTheEnd] = value;
+        try {
+            (void)decode(withoutLength(framed));
+            return false;
+        } catch (const base::FormatError&) {
+            return true;
+        }
+    };
+    EXPECT_FALSE(refuses(Shown{}, 1, 2));
+    EXPECT_TRUE(refuses(Shown{}, 1, 3)) << "a reason to hold the sand";
+    EXPECT_FALSE(refuses(Report{}, 2, 1));
+    EXPECT_TRUE(refuses(Report{}, 2, 2)) << "a mark of literal guards";
+    EXPECT_FALSE(refuses(Report{}, 1, 2));
+    EXPECT_TRUE(refuses(Report{}, 1, 3)) << "the result of an audit";
 }
 
 TEST(Protocol, RefusesAShareOfTheForceThatNoOperatorCanSet) {

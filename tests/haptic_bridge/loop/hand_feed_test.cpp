@@ -6,6 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "haptic_bridge/devices/mapped_device.hpp"
+#include "haptic_bridge/loop/felt_sand.hpp"
+#include "tests/haptic_bridge/devices/fake_arm.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -96,6 +99,36 @@ TEST_F(FeedTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
     channel_->overflow = 3;
     EXPECT_EQ(feed.overflow(), 3U);
     EXPECT_TRUE(times_.empty()) << "only the force thread reads the hand";
+}
+
+TEST(HandTicks, CountTicksWithAForceAndTicksOfAFault) {
+    const scene::Scene scene = samples::flatScene(60, 60);
+    test::FakeArm::State arm;
+    HapticTick hand(scene, std::make_unique<MappedDevice>(std::make_unique<test::FakeArm>(arm), HandSettings{}, scene),
+                    HandSettings::Datum::level);
+    std::int64_t now = 0;  // [ns]
+    FeltSand felt;
+    takeSurface(sand::Replica(scene), hand.where(), felt);
+    const auto ticks = [&](int count) {
+        for (; count > 0; --count) {
+            felt.timeNs = felt.stepNs = now += 1'000'000;
+            (void)hand.tick(static_cast<double>(now) * 1e-9, now, felt);
+        }
+    };
+    arm.reading.place.z = -0.09;  // [m], in the sand
+    ticks(100);
+    const std::uint64_t pushed = hand.handTicks().felt();
+    EXPECT_GT(pushed, 90U) << "the ramp begins with 0";
+    EXPECT_GT(norm(arm.pushed), 0);
+    EXPECT_EQ(hand.handTicks().faulted(), 0U);
+    arm.reading.present = false;
+    ticks(20);
+    EXPECT_EQ(norm(arm.pushed), 0);
+    EXPECT_EQ(hand.handTicks().all(), 120U);
+    EXPECT_EQ(hand.handTicks().felt(), pushed);
+    EXPECT_EQ(hand.handTicks().faulted(), 20U);
+    hand.rest(1);
+    EXPECT_EQ(hand.handTicks().all(), 120U) << "no master is linked";
 }
 
 }  // namespace

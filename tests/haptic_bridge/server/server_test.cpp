@@ -110,6 +110,12 @@ TEST_F(HapticServer, RunsInRealTimeAndReports) {
     EXPECT_GT(report.toWall.msP50, 0);
     EXPECT_GT(report.toMaster.msP50, 0);
     EXPECT_GT(report.ticks, 0U);
+    EXPECT_GT(report.handTicks, 0U);
+    EXPECT_LE(report.handTicks, report.ticks) << "the loop also ticks before a master is linked";
+    EXPECT_GT(report.feltTicks, 0U) << "the recorded hand digs";
+    EXPECT_LE(report.feltTicks + report.faultedTicks, report.handTicks);
+    EXPECT_FALSE(report.literal);
+    EXPECT_EQ(report.audited, haptic_bridge::Audited::agreed) << "the last report of the link";
     EXPECT_GT(report.guards[static_cast<std::size_t>(haptic_bridge::Guard::stiffness)], 0U) << "the scene's constants";
     EXPECT_EQ(server.stop(SIGTERM), 0);
     for (const char* line : {"k_s 1000 → 18: ", "force loop: ", " per mille", "guards acted in ticks: stiffness "}) {
@@ -141,7 +147,7 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     EXPECT_LE(wall.longest, 64U) << "docs/protocol.md";
     client.stop();
     ASSERT_TRUE(client.report().has_value());
-    EXPECT_GT(client.report()->stepsWithheld, 0U);
+    EXPECT_GT(client.report()->stepsWithheld[static_cast<std::size_t>(haptic_bridge::Withheld::wall)], 0U);
 }
 
 TEST_F(HapticServer, ComesBackAfterAKillInANewEpoch) {

@@ -69,6 +69,7 @@ protected:
     std::vector<NeedState> needs_;
     std::vector<std::string> unusable_;
     std::vector<StepMessage> steps_;
+    std::vector<Audited> audits_;
     StepMaker maker_{scene_,
                      hand_,
                      {[this](std::uint32_t session) { ready_.push_back(session); },
@@ -77,7 +78,8 @@ protected:
                       [this](std::uint32_t, const base::Bytes& message) {
                           constexpr std::size_t kLength = sizeof(std::uint32_t);
                           steps_.push_back(std::get<StepMessage>(decode(std::span(message).subspan(kLength))));
-                      }},
+                      },
+                      [this](std::uint32_t, Audited result) { audits_.push_back(result); }},
                      {},
                      [this] { return now_; }};
 };
@@ -157,7 +159,7 @@ TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
     maker_.start(1, grantOf(sand::Replica(scene_)));
     step(StepMaker::kWindow + 3);
     EXPECT_EQ(steps_.size(), StepMaker::kWindow);
-    EXPECT_EQ(maker_.withheld(), 3U);
+    EXPECT_EQ(inAll(maker_.withheld()), 3U);
     EXPECT_EQ(hand_.felt.size(), StepMaker::kWindow) << "a withheld step gives no newer sand";
     maker_.refresh();
     EXPECT_EQ(hand_.refreshes, 1) << "the hand continues to feel the sand while the wall waits";
@@ -167,6 +169,54 @@ TEST_F(StepMakerTest, IsAWindowAheadOfTheWallAndKeepsTheHandsSandFresh) {
     maker_.shown({3, 16'666'667}, now_);
     step();
     EXPECT_EQ(steps_.size(), 2 * StepMaker::kWindow) << "a wall cannot go back either";
+}
+
+TEST_F(StepMakerTest, CountsTheStepsThatItWithholdsByTheirCause) {
+    const auto withholds = [this](std::size_t steps) {
+        step(steps);
+        return maker_.withheld();
+    };
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    step(StepMaker::kWindow);
+    EXPECT_EQ(withholds(2), (WithheldCounts{0, 0, 0, 2})) << "the wall has not shown a frame on this link";
+    maker_.shown({0, 16'666'667, Held::no}, now_);
+    EXPECT_EQ(withholds(3), (WithheldCounts{3, 0, 0, 2}));
+    maker_.shown({0, 16'666'667, Held::disk}, now_);
+    EXPECT_EQ(withholds(4), (WithheldCounts{3, 4, 0, 2}));
+    maker_.shown({0, 16'666'667, Held::pause}, now_);
+    EXPECT_EQ(withholds(5), (WithheldCounts{3, 4, 5, 2}));
+    maker_.shown({0, 16'666'667, Held::no}, now_);
+    EXPECT_EQ(withholds(1), (WithheldCounts{4, 4, 5, 2})) << "the pause is over";
+    maker_.shown({0, 16'666'667, Held::pause}, now_);
+    maker_.release();
+    maker_.start(2, grantOf(maker_.sand(), 2));
+    step(StepMaker::kWindow);
+    EXPECT_EQ(withholds(1), (WithheldCounts{4, 4, 5, 3})) << "the pause was that of the wall before";
+}
+
+TEST_F(StepMakerTest, FindsInAnAuditThatItsMemoryHasChanged) {
+    maker_.audit();
+    EXPECT_TRUE(audits_.empty()) << "no master is linked";
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    hand_.samples = {{now_ - 7, {30 * 256, 30 * 256, 0}, true}};
+    step(3);
+    maker_.audit();
+    EXPECT_EQ(audits_, std::vector<Audited>{Audited::agreed});
+    const std::uint64_t sent = steps_.back().stateHash;
+    // As a bit flips in memory. The hand is in another tile, so no step hashes this one again.
+    const_cast<sand::Replica&>(maker_.sand()).corrupt(5, 50, 3);  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+    hand_.samples = {{now_ - 7, {30 * 256, 30 * 256, 0}, false}};
+    EXPECT_EQ(const_cast<sand::Replica&>(maker_.sand()).stateHash(), sent) << "its hash does not tell";
+    maker_.audit();
+    EXPECT_EQ(audits_, (std::vector<Audited>{Audited::agreed, Audited::differed}));
+    maker_.release();
+    needs_.clear();
+    sand::Replica wall(scene_);
+    for (const StepMessage& made : steps_) {
+        wall.apply(made.step);
+    }
+    maker_.start(2, grantOf(wall, 2));
+    EXPECT_EQ(needs_.size(), 1U) << "it asks for the wall's sand, because its own hash is another now";
 }
 
 TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {

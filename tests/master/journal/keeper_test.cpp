@@ -86,6 +86,30 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
     expectWhole(30);
 }
 
+TEST_F(Keeper, IsWholeOnlyWithAnEndAndEveryStep) {
+    const auto end = [this] { keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()}); };
+    begin({});
+    ASSERT_TRUE(showFrame());
+    EXPECT_FALSE(keeper_->whole()) << "it has no end";
+    keeper_->doubt({});
+    end();
+    EXPECT_FALSE(keeper_->whole()) << "a majority was not compared with it";
+    keeper_->checked({});
+    end();
+    EXPECT_TRUE(keeper_->whole());
+    keeper_.reset();
+    std::filesystem::create_directories(master::checkpointFile(journal(), 7).parent_path());
+    // A checkpoint after the end of the journal: the journal has lost its step.
+    std::ofstream(master::checkpointFile(journal(), 7)) << "later";
+    for (const char* resume : {"the first", "the second"}) {
+        const master::ResumedSession resumed = master::readSession(journal(), "").value();
+        keeper_.emplace(folder_, master::JournalOptions{}, scene_, &resumed, "a test", "test");
+        end();
+        EXPECT_FALSE(keeper_->whole()) << resume;
+        keeper_.reset();
+    }
+}
+
 TEST_F(Keeper, TheShareOfTheForceIsOnDiskBeforeAnyFurtherStep) {
     begin({});
     ASSERT_TRUE(showFrame());

@@ -39,7 +39,7 @@ protected:
             edits_ += timed.step.edit.any() ? 1 : 0;
             lastEdit_ = timed.step.edit.any() ? timed.step.edit : lastEdit_;
         }
-        live.shown(wall_.stepNumber(), kFrameNs);
+        live.shown(wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no);
         differed_ += live.proveServer(steps, wall_.stateHash()) ? 0 : 1;
         return steps;
     }
@@ -108,6 +108,57 @@ TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) 
     EXPECT_EQ(differed_, 1) << "it has the wall's sand now";
     EXPECT_EQ(server.states(), 1) << "the wall's whole sand";
     EXPECT_EQ(live.counters().reconnects, 1U);
+}
+
+TEST_F(LiveStepsTest, AServerWhoseMemoryHasChangedSaysSoAtTheEnd) {
+    using haptic_bridge::Audited;
+    for (const Audited audited : {Audited::no, Audited::agreed, Audited::differed}) {
+        SandServer server(scene_);
+        server.answerByeWith(audited);
+        master::LiveSteps live = stepsFrom(server.address());
+        ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
+        EXPECT_TRUE(live.handed());
+        EXPECT_EQ(live.serverAtEnd(), std::nullopt) << "it is still linked";
+        live.stop();
+        const std::optional<bool> wanted =
+            audited == Audited::no ? std::nullopt : std::optional(audited == Audited::agreed);
+        EXPECT_EQ(live.serverAtEnd(), wanted);
+        EXPECT_EQ(live.serverUnhealed(), audited == Audited::differed);
+    }
+}
+
+TEST_F(LiveStepsTest, AServerThatLeavesWithChangedMemoryCountsOnceAndIsHealedWhenItComesBack) {
+    SandServer server(scene_);
+    server.answerByeWith(haptic_bridge::Audited::agreed);
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 10; }));
+    server.leave(haptic_bridge::Audited::differed);
+    ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
+    EXPECT_TRUE(live.serverUnhealed());
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && live.linked(); }));
+    EXPECT_FALSE(live.serverUnhealed()) << "it has begun with the wall's sand";
+    ASSERT_TRUE(showUntil(live, [&, then = wall_.stepNumber()] { return wall_.stepNumber() > then + 10; }));
+    EXPECT_EQ(differed_, 1);
+    live.stop();
+    EXPECT_EQ(live.serverAtEnd(), true) << "of the last link";
+}
+
+TEST_F(LiveStepsTest, WhyALinkDoesNotComeIsKeptUntilOneComes) {
+    master::LiveSteps nobody = stepsFrom({"127.0.0.1", 9});
+    EXPECT_FALSE(nobody.handed());
+    ASSERT_TRUE(showUntil(nobody, [&] { return !nobody.lastRefusal().empty(); }));
+    EXPECT_TRUE(nobody.lastRefusal().starts_with("no answer (")) << nobody.lastRefusal();
+    EXPECT_EQ(nobody.counters().links, 0U);
+
+    SandServer server(scene_);
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
+    EXPECT_EQ(live.lastRefusal(), "");
+    const scene::Scene other = samples::flatScene(40, 24);
+    SandServer foreign(other);
+    master::LiveSteps refused = stepsFrom(foreign.address());
+    ASSERT_TRUE(showUntil(refused, [&] { return !refused.lastRefusal().empty(); }));
+    EXPECT_NE(refused.lastRefusal().find("scene"), std::string::npos) << refused.lastRefusal();
 }
 
 // When a wrong server comes back, its earlier hashes of the sand do not count.

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The end of a session: its last words to the haptic server and to the journal, and its results.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "host/print_line.hpp"
+#include "lockstep/session_message.hpp"
+#include "master/recovery.hpp"
+#include "master/session.hpp"
+
+namespace master {
+
+/// Ends the link and the journal, and returns the results. `agreed`: the ranks agreed to the end.
+Summary Session::finish(bool agreed) {
+    const lockstep::Watched watched(barrier_.watchdog());
+    steps_->stop();
+    if (steps_->serverAtEnd() == false) {
+        ++serverDivergences_;
+        compared_.differed(frame_);
+    }
+    try {
+        record_.keepTicks(steps_->ticks());  // the last ticks arrive at the end of the link
+    } catch (const DiskFailure& failure) {   // the ranks still have reports and pictures to send
+        host::printLine("{}", failure.what());
+    }
+    if (agreed) {
+        // A third, because the ranks wait for the master meanwhile, and their own limit must not end the job. A person
+        // who has stopped the session waits, too.
+        constexpr double kMostPatience = 20e3;  // [ms]
+        const double patience = std::min(kMostPatience, options_.frameTimeout * 1e3 / 3);
+        check_.finish(frame_, shownSand(), std::chrono::milliseconds(static_cast<std::int64_t>(patience)));
+    }
+    record_.keepLastIncidents(incidents());
+    record_.finish(sand_, agreed);
+    return summary();
+}
+
+Summary Session::summary() {
+    const sand::Replica& sand = sand_.replica();
+    const Incidents all = incidents();
+    Summary summary;
+    summary.scene = scene_.name;
+    summary.wall = wall_.name;
+    summary.frames = frame_;
+    summary.steps = sand.stepNumber();
+    summary.edits = sand_.edits();
+    summary.ranks = wall_.ranks();
+    summary.stateHash = sand_.hash();
+    summary.divergences = all.divergences;
+    summary.healed = all.healed;
+    summary.outvoted = all.outvoted;
+    summary.serverDivergences = all.serverDivergences;
+    summary.stepsLeftOut = all.stepsLeftOut;
+    // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
+    summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
+    summary.volumeFinal = sand.volume();
+    summary.volumeOutflow = sand.outflow();
+    summary.seconds = clock_.seconds();
+    measure_.fill(summary);
+    summary.haptic = steps_->report();
+    summary.link = steps_->counters();
+    summary.link.links = all.links;
+    summary.link.reconnects = all.reconnects;
+    summary.link.refusedHere = all.refusedHere;
+    summary.link.refused = all.refused;
+    if (const ResumedSession* resumed = options_.record.resumed.get()) {
+        summary.framesBefore = resumed->frame;
+        summary.stepsBefore = resumed->step;
+    }
+    summary.pace = options_.recording ? "replay" : options_.pace == Pace::fast ? "fast" : "realtime";
+    summary.refreshHz = 1 / clock_.period();
+    tellComparison(summary);
+    tellHand(summary);
+    if (const tracking::TrackedViewer& viewer = desk_.views().viewer(); viewer.tracked()) {
+        summary.tracking = viewer.counters();
+    }
+    summary.ranksReports = lockstep::gatherReports(barrier_, {});
+    for (const walls::Tile& tile : wall_.tiles) {
+        summary.tileNames.push_back(tile.name);
+    }
+    summary.rankNames = labels_.names;
+    summary.masterResidentBytes = lockstep::residentBytes();
+    summary.journal = record_.summary();
+    summary.recoveries = recoveriesOf(options_.out);
+    return summary;
+}
+
+void Session::tellComparison(Summary& summary) const {
+    summary.unhealed = agreement_.unhealed() + (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);
+    summary.compared.atEnd = agreedToEnd_;
+    summary.compared.serverAtEnd = steps_->serverAtEnd();
+    summary.compared.lastWhole = compared_.lastWhole();
+    if (const std::uint64_t frame = compared_.firstDifference(); frame != 0) {
+        summary.compared.firstDifference = frame;
+    }
+}
+
+void Session::tellHand(Summary& summary) const {
+    summary.hand.asked = options_.recording ? "none"
+                         : options_.server  ? "server"
+                         : options_.pointer ? "pointer"
+                                            : "none";
+    summary.hand.frames = framesWithHand_;
+    summary.hand.atEnd = handed_;
+    if (const std::string why = steps_->lastRefusal(); !why.empty()) {
+        summary.hand.lastRefusal = why;
+    }
+}
+
+std::string Session::doubtAbout(const Summary& told) const {
+    if (check_.failed()) {
+        return fmt::format(
+            "the session ends with sand that its journal does not confirm, because {}; sandwall-replay {} computes the "
+            "right sand, and --resume continues with it",
+            check_.doubt(), record_.journalFile().string());
+    }
+    return told.exact()
+               ? std::string()
+               : fmt::format("the session ends with a wrong volume: {} + outflow {} is not {}, as at the start",
+                             told.volumeFinal, told.volumeOutflow, told.volumeInitial);
+}
+
+}  // namespace master

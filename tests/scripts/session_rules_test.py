@@ -1,0 +1,348 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests which figures of the report are ok, a note or BAD. Every field of summary.json must have a line or a reason."""
+
+import json
+import re
+import unittest
+
+import jsonschema
+
+from launcher_fixture import ROOT
+from sample_summary import HEAD, RECOVERY, REFUSALS, SUMMARY, changed, film, without_hand
+
+import session_lines
+import session_rules
+from session_lines import BAD, GOOD, NOTE, UNMEASURED
+
+SCHEMA = json.loads((ROOT / "docs" / "schemas" / "summary.schema.json").read_text())
+SERVER_DIED = {"what": "the haptic server was killed by SIGKILL", "restarted": False, "server": True, "now": True}
+
+
+class Traced(dict):
+    """A part of a summary that writes down which fields are read."""
+
+    def __init__(self, value, read, path=""):
+        super().__init__({key: traced(inner, read, f"{path}.{key}".lstrip(".")) for key, inner in value.items()})
+        self.read, self.path = read, path
+
+    def note(self, key):
+        self.read.add(f"{self.path}.{key}".lstrip("."))
+
+    def __getitem__(self, key):
+        self.note(key)
+        return super().__getitem__(key)
+
+    def get(self, key, default=None):
+        self.note(key)
+        return super().get(key, default)
+
+    def items(self):
+        for key in self:
+            self.note(key)
+        return super().items()
+
+    def values(self):
+        return [value for _, value in self.items()]
+
+
+def traced(value, read, path):
+    if isinstance(value, dict):
+        return Traced(value, read, path)
+    return [traced(item, read, path + "[]") for item in value] if isinstance(value, list) else value
+
+
+def fields_of(schema, path=""):
+    """Yields the path of each field of summary.json that holds no other fields, and of each array."""
+    if "$ref" in schema:
+        schema = SCHEMA["definitions"][schema["$ref"].rpartition("/")[2]]
+    inner = dict(schema.get("properties", {}))
+    inner.update({name: {} for name in schema.get("propertyNames", {}).get("enum", ())})
+    for name, part in inner.items():
+        yield from fields_of(part, f"{path}.{name}".lstrip("."))
+    if "items" in schema:
+        yield from fields_of(schema["items"], path + "[]")
+    if not inner and "items" not in schema:
+        yield path
+
+
+FIELDS = sorted(fields_of(SCHEMA))
+
+
+def covers(path, field):
+    return field == path or field.startswith(path + ".")
+
+
+class EveryField(unittest.TestCase):
+    def test_each_field_is_read_by_a_line_or_has_a_reason(self):
+        for field in FIELDS:
+            readers = [rule.name for rule in session_rules.RULES if any(covers(path, field) for path in rule.fields)]
+            reasons = [path for path in session_rules.UNREAD if covers(path, field)]
+            self.assertTrue(readers or reasons, f"{field}: no line of the report reads it; add it to a Rule or to UNREAD in scripts/session_rules.py")
+            self.assertFalse(readers and reasons, f"{field}: read by {readers}, and called unread in scripts/session_rules.py")
+
+    def test_each_path_in_the_list_is_a_field(self):
+        for path in [*session_rules.UNREAD, *(path for rule in session_rules.RULES for path in rule.fields)]:
+            found = any(covers(path, field) or field.startswith(path + "[]") for field in FIELDS)
+            self.assertTrue(found, f"{path}: summary.schema.json has no such field")
+
+    def test_a_line_reads_the_fields_that_the_list_names_and_no_others(self):
+        read = {}
+        for summary in SAMPLES:
+            for rule in session_rules.RULES:
+                for failures in ((), (SERVER_DIED,)):
+                    rule.line(Traced(summary, read.setdefault(rule.name, set())), failures)
+        for rule in session_rules.RULES:
+            for path in read[rule.name]:
+                inside = any(covers(given, path) or covers(path, given) or given.startswith(path + "[]") for given in rule.fields)
+                self.assertTrue(inside, f"the line {rule.name} reads {path}, which its list does not name")
+            for field in FIELDS:
+                if any(covers(given, field) for given in rule.fields):
+                    self.assertIn(field, read[rule.name], f"the line {rule.name} never reads {field}, which its list names")
+
+    def test_a_field_that_nobody_has_thought_of_is_noticed(self):
+        self.assertFalse(any(covers(path, "unheard_of") for path in session_rules.UNREAD))
+        self.assertFalse(any(covers(path, "haptic.unheard_of") for path in session_rules.UNREAD))
+
+    def test_the_samples_are_as_the_schema_says(self):
+        for summary in SAMPLES:
+            jsonschema.Draft7Validator(SCHEMA).validate(summary)
+
+
+class Page(unittest.TestCase):
+    def test_the_table_of_the_page_is_the_list(self):
+        page = (ROOT / "docs" / "summary.md").read_text()
+        self.assertIn("\n" + session_rules.table() + "\n", page,
+                      "docs/summary.md has another table; put the output of scripts/session_rules.py there")
+
+    def test_the_page_to_read_next_exists(self):
+        for rule in session_rules.RULES:
+            self.assertTrue((ROOT / "docs" / rule.page).is_file(), rule.name)
+
+    def test_slow_is_never_bad(self):
+        for rule in session_rules.RULES:
+            if rule.name in ("frames", "latency", "strokes", "skew", "slowest", "disk", "recoveries"):
+                self.assertEqual(rule.bad, "", rule.name)
+
+
+class Lines(unittest.TestCase):
+    def line(self, name, summary=SUMMARY, failures=()):
+        """Returns mark and words of a line; (None, "") if it is left out."""
+        return next(((mark, words) for mark, found, words in session_rules.lines_of(summary, failures) if found == name), (None, ""))
+
+    def check(self, name, mark, *words, failures=(), summary=None, **fields):
+        """Checks mark and words of a line. All other lines must be as in the good session, so that one fault has one line."""
+        summary = summary or changed(**fields)
+        found, said = self.line(name, summary, failures)
+        self.assertEqual(found, mark, said)
+        for word in words:
+            self.assertIn(word, said)
+        return said
+
+    def only(self, name, mark, *words, failures=(), **fields):
+        """Checks a line, and that no other line of the session is marked."""
+        self.check(name, mark, *words, failures=failures, **fields)
+        marked = [line[:2] for line in session_rules.lines_of(changed(**fields), failures) if line[0] in (NOTE, BAD)]
+        self.assertEqual(marked, [(mark, name)])
+
+
+class GoodSessions(Lines):
+    def test_a_good_session_has_no_mark(self):
+        for summary in (SUMMARY, without_hand(), film(), changed(head_tracking=HEAD), changed(ranks=1, per_rank=SUMMARY["per_rank"][:1])):
+            marks = {mark for mark, _, _ in session_rules.lines_of(summary)}
+            self.assertLessEqual(marks, {GOOD, UNMEASURED}, session_rules.lines_of(summary))
+
+    def test_each_figure_names_its_span(self):
+        spans = (session_lines.SESSION, session_lines.START, session_lines.SERVER_START)
+        for summary in SAMPLES:
+            for _, name, words in session_rules.lines_of(summary, (SERVER_DIED,)):
+                if re.search(r"\d", words) and name not in ("wall",):
+                    self.assertTrue(any(span in words for span in spans), f"{name}: {words}")
+
+    def test_what_was_not_measured_is_not_called_ok(self):
+        nothing = {"mean": 0.0, "stddev": 0.0, "p50": 0.0, "p99": 0.0}
+        without_report = {key: value for key, value in SUMMARY["haptic"].items() if key in ("reconnects", "hand_overs", "refused_by_server", "refused")}
+        for name, fields in (("latency", {"latency_ms": nothing}), ("force", {"haptic": without_report}), ("force", {"haptic__hand_ticks": 0}),
+                             ("strokes", {"haptic": without_report}), ("frames", {"frames": 1, "seconds": 0.0}),
+                             ("checkpoints", {"journal__checkpoints": 0}), ("wall", {"per_rank": SUMMARY["per_rank"][:1]}),
+                             ("head", {"head_tracking": {**HEAD, "packets": 0}}),
+                             ("sand", {"compared__at_end": False, "compared__last_whole": 540, "compared__frames_since": 60})):
+            self.check(name, UNMEASURED, "not ", **fields)
+        self.check("journal", UNMEASURED, "none (off)", journal={**SUMMARY["journal"], "policy": "off", "state": "off", "whole": False})
+        self.check("frames", UNMEASURED, "not measured", summary=film())
+
+    def test_where_no_hand_was_asked_for_its_lines_are_left_out(self):
+        names = {name for _, name, _ in session_rules.lines_of(without_hand())}
+        self.assertFalse(names & {"latency", "hand", "force", "strokes", "refusals"}, names)
+        pointer = changed(hand={**SUMMARY["hand"], "asked": "pointer"})
+        names = {name for _, name, _ in session_rules.lines_of(pointer)}
+        self.assertTrue({"latency", "hand"} <= names and not names & {"force", "strokes"}, names)
+
+
+class SlowWalls(Lines):
+    def test_a_slow_session_at_the_fast_pace_is_noted(self):
+        # The demo on a busy machine: 600 frames at 17.6 frames/s take 34.03 s, 599 periods of 1/60 s take 9.98 s: 70.7 % lost.
+        slow = {"pace": "fast", "late_frames": 0, "seconds": 34.03, "fps": 17.6}
+        self.only("frames", NOTE, "17.6 of 60 frames/s", "70.7 % of the time lost", **slow)
+        self.assertNotIn("frames late", self.line("frames", changed(**slow))[1], "with --pace fast nothing is measured as late")
+        self.only("latency", NOTE, "85.0 ms", "2593.8 ms", pace="fast", late_frames=0, latency_ms__p50=85.0, latency_ms__p99=2593.8)
+
+    def test_a_wall_that_stands_still_for_eight_seconds_has_lost_them(self):
+        # 1171 frames: 1170 periods are 19.5 s of 27.5 s, so 29.1 % are lost.
+        self.check("frames", NOTE, "29.1 % of the time lost", "longest 8017 ms", frames=1171, seconds=27.5, fps=42.5, late_frames=12,
+                   frame_ms__max=8016.7, frame_ms__count=1170)
+
+    def test_a_wall_that_misses_a_third_of_the_refreshes_has_lost_a_third(self):
+        # (24.4 - 16.67) / 24.4 = 31.7 %; no frame is half a period late.
+        self.only("frames", NOTE, "41.0 of 60 frames/s", "31.7 % of the time lost", seconds=599 * 0.0244, fps=41.0, late_frames=0)
+
+    def test_a_hundredth_of_the_time_may_be_lost(self):
+        asked = 599 / 60
+        self.check("frames", GOOD, seconds=asked / 0.9901)
+        self.check("frames", NOTE, seconds=asked / 0.9899)
+        self.check("frames", GOOD, "0.0 % of the time lost", pace="fast", seconds=asked / 2, fps=120.0)
+
+    def test_the_limit_of_the_median_depends_on_the_refresh(self):
+        # Two periods and 50 ms: 83.3 ms at 60 Hz, 66.7 ms at 120 Hz.
+        self.check("latency", GOOD, latency_ms__p50=83.3)
+        self.check("latency", NOTE, latency_ms__p50=83.4)
+        self.check("latency", NOTE, latency_ms__p50=66.7, refresh_hz=120.0)
+        self.check("latency", GOOD, latency_ms__p99=500.0)
+        self.check("latency", NOTE, latency_ms__p99=500.1)
+
+    def test_ranks_that_swap_a_period_apart_are_noted(self):
+        self.only("skew", NOTE, "200.0 ms", skew_us={"p50": 200.0, "p99": 200000.0, "max": 200000.0})
+        self.check("skew", GOOD, skew_us__p99=16666.0)
+        self.check("skew", NOTE, skew_us__p99=16667.0)
+
+    def test_a_restart_is_told_apart_from_the_session(self):
+        # 453 frames with 900 steps: 302 frames in 10 s since the restart.
+        fields = {"frames": 453, "frames_before": 151, "steps": 900, "steps_before": 600, "seconds": 10.04, "fps": 29.98, "refresh_hz": 30.0,
+                  "hand__frames_with_hand": 302, "recoveries": [RECOVERY, {**RECOVERY, "seconds_to_next_frame": 4.5}]}
+        self.only("recoveries", NOTE, "2 in the session, the wall stood still for 7.0 s", **fields)
+        self.check("frames", GOOD, "453 in the session; 30.0 of 30 frames/s for 10.0 s since the last start", **fields)
+        self.check("steps", GOOD, "900 in the session, 300 since the last start", **fields)
+
+    def test_the_slowest_rank_is_noted(self):
+        self.only("slowest", NOTE, "rank 2, last in 90 % of frames", slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0})
+
+
+class Hands(Lines):
+    def test_a_hand_that_never_came_is_bad(self):
+        never = {"asked": "server", "links": 0, "frames_with_hand": 0, "linked_at_end": False}
+        self.check("hand", BAD, "never linked in the session: no answer", summary=without_hand(hand={**never, "last_refusal": "no answer"}))
+        refused = without_hand(hand={**never, "last_refusal": "another scene"})
+        self.check("hand", BAD, "never linked in the session: another scene", summary=refused)
+        self.assertNotIn((GOOD, "latency"), [line[:2] for line in session_rules.lines_of(refused)])
+
+    def test_a_hand_that_never_came_after_a_restart_is_bad(self):
+        gone = {"hand": {**SUMMARY["hand"], "frames_with_hand": 0, "linked_at_end": False, "last_refusal": "no answer"}}
+        self.check("hand", BAD, "never linked since the last start", **gone)
+        self.check("hand", NOTE, "not linked at the end", seconds=1.0, frames=60, **gone)
+
+    def test_a_device_that_answers_in_no_tick_is_bad(self):
+        self.only("force", BAD, "the device answered in no tick", haptic__hand_ticks=2561, haptic__felt_ticks=0, haptic__faulted_ticks=2561,
+                  haptic__guarded_ticks__lost=2561)
+
+    def test_a_device_that_was_off_before_the_session_is_not_bad(self):
+        self.check("force", GOOD, haptic__guarded_ticks__lost=100000)
+
+    def test_faults_are_a_note_and_more_than_half_are_bad(self):
+        for faulted, mark in ((100, GOOD), (101, NOTE), (5000, NOTE), (5001, BAD)):
+            self.check("force", mark, f"a fault sent 0 in {faulted}", haptic__faulted_ticks=faulted, haptic__guarded_ticks__missed=faulted)
+        self.only("force", NOTE, "not_a_number 1", haptic__guarded_ticks__not_a_number=1)
+        self.only("force", NOTE, "guards literal", haptic__literal=True)
+        self.check("force", GOOD, "frozen in 9000", "guards that acted: ramp 500", haptic__guarded_ticks__frozen=9000)
+
+    def test_a_server_that_died_for_good_is_bad(self):
+        half = {"hand": {**SUMMARY["hand"], "frames_with_hand": 300, "linked_at_end": False}}
+        self.check("hand", BAD, "the haptic server was killed by SIGKILL and was not started again", "in 300 of 600 frames", failures=(SERVER_DIED,), **half)
+        self.check("recoveries", NOTE, "0 in the session; 1 failure without a restart", failures=(SERVER_DIED,), **half)
+        self.check("hand", NOTE, failures=({**SERVER_DIED, "restarted": True},), **half)
+        self.check("hand", GOOD, failures=({**SERVER_DIED, "now": False},))
+
+    def test_links_made_again_are_noted(self):
+        self.only("hand", NOTE, "links made again: 500 in the session", haptic__reconnects=500, hand__links=501)
+
+    def test_steps_withheld_have_their_cause(self):
+        by = {"wall": 0, "disk": 0, "pause": 0, "start": 0}
+        for cause, words, mark in (("wall", "because the wall was behind", NOTE), ("disk", "because the disk had no room", NOTE),
+                                   ("start", "at the start", GOOD), ("pause", "in a pause", GOOD)):
+            self.check("strokes", mark, f"70 steps withheld {words}", haptic__steps_withheld=70, haptic__steps_withheld_by={**by, cause: 70})
+        self.check("strokes", NOTE, "for an unknown cause", haptic__steps_withheld=70)
+        self.only("strokes", NOTE, "2 samples of the hand left out", haptic__samples_dropped=2)
+
+    def test_refusals_are_noted(self):
+        self.only("refusals", NOTE, "1 by the server in the session (secret 1)", haptic__refused_by_server={**REFUSALS, "secret": 1})
+
+
+class Sand(Lines):
+    def test_a_difference_of_the_last_second_is_not_called_equal(self):
+        unhealed = {"divergences": 1, "unhealed": 1, "compared__at_end": False, "compared__first_difference": 600, "compared__last_whole": 540,
+                    "compared__frames_since": 60}
+        self.only("sand", BAD, "1 not healed", "first in frame 600", "not compared at the end: whole until frame 540, 60 frames since then", **unhealed)
+        self.only("sand", NOTE, "first in frame 600", divergences=1, healed=1, compared__first_difference=600)
+
+    def test_sand_that_differs_in_four_hundred_frames_and_was_healed_once_is_bad(self):
+        self.only("sand", BAD, "399 not healed", "differed in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
+        self.only("sand", BAD, "2 not healed", divergences=1, healed=1, unhealed=2, compared__first_difference=20)
+
+    def test_a_difference_that_ended_an_earlier_job_is_no_fault_of_the_sand_now(self):
+        fields = {"divergences": 3, "healed": 2, "compared__first_difference": 20, "frames_before": 100, "hand__frames_with_hand": 500}
+        self.check("sand", NOTE, recoveries=[RECOVERY], **fields)
+        self.check("sand", BAD, "1 not healed", recoveries=[RECOVERY], **{**fields, "divergences": 5})
+
+    def test_wrong_sand_of_the_server_is_bad(self):
+        self.only("sand", BAD, "the haptic server's sand was wrong at the end", compared__server_at_end=False)
+        self.only("sand", NOTE, "in 1 on the haptic server", server_divergences=1, compared__first_difference=20)
+
+    def test_a_server_that_was_not_compared_is_not_called_equal(self):
+        self.check("sand", UNMEASURED, "the haptic server was not compared at the end", compared__server_at_end=None)
+
+    def test_a_majority_that_was_outvoted_is_noted(self):
+        self.only("sand", NOTE, "outvoted a majority 3 times", outvoted=3)
+
+    def test_steps_left_out_are_noted(self):
+        self.only("steps", NOTE, "70 of 590 in the session", steps_left_out=70)
+
+    def test_an_inexact_volume_is_bad(self):
+        self.only("volume", BAD, "+1 units", volume_final=891)
+
+
+class Disks(Lines):
+    def test_a_full_disk_is_the_cause_and_a_required_journal_is_bad(self):
+        fields = {"steps": 0, "journal": {**SUMMARY["journal"], "state": "no_room", "whole": False, "checkpoints": 0,
+                                          "full_disk": {"times": 1, "seconds": 3.9}},
+                  "held_seconds": {"pause": 0.0, "disk": 3.9}, "haptic__steps_withheld": 240,
+                  "haptic__steps_withheld_by": {"wall": 0, "disk": 240, "pause": 0, "start": 0}}
+        self.check("journal", BAD, "no room (required), not whole", **fields)
+        self.check("disk", NOTE, "waited 1 time for room", "3.9 s", **fields)
+        said = self.check("strokes", NOTE, "240 steps withheld because the disk had no room", **fields)
+        self.assertNotIn("wall", said)
+
+    def test_a_required_journal_without_its_end_is_bad(self):
+        self.only("journal", BAD, "not whole", journal__whole=False)
+        self.only("journal", NOTE, "failed (best-effort), not whole", journal__whole=False, journal__state="failed", journal__policy="best-effort")
+
+    def test_checkpoints_that_failed_are_noted(self):
+        self.only("checkpoints", NOTE, "3 not written", journal__checkpoints=3, journal__checkpoints_failed=3)
+        self.only("checkpoints", NOTE, "2 after the end", journal__checkpoints_beyond=2)
+
+    def test_a_head_that_was_lost_is_noted(self):
+        self.only("head", NOTE, "lost 40 times", head_tracking={**HEAD, "lost": 40})
+        self.only("head", NOTE, "of strangers 2", head_tracking={**HEAD, "strangers": 2})
+
+
+SAMPLES = (SUMMARY, without_hand(), film(),
+           changed(head_tracking={**HEAD, "lost": 2}, slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0}),
+           changed(recoveries=[RECOVERY, {**RECOVERY, "seconds_to_next_frame": None, "seconds_to_link": 1.5}], held_seconds__pause=2.0, edits=2),
+           changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),
+           changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "last_refusal": "no answer"},
+                   compared__server_at_end=None),
+           changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
+           changed(hand={**SUMMARY["hand"], "asked": "pointer"}),
+           changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))
+
+
+if __name__ == "__main__":
+    unittest.main()
