@@ -118,7 +118,7 @@ private:
         const double scale = MappedDevice::scaleFor(physics_, settings_, scene_);
         return scene_.toolRadius() / (scale * settings_.verticalScale);
     }
-    /// What the others do in this tick.
+    /// Lets master, operator and wall do something in this tick.
     void happen() {
         if (!server_.linked()) {
             if (dice_.chance(0.02)) {

@@ -44,7 +44,7 @@ public:
         PushCheck::Asked asked = oracle_.next(readingOf(tick, server));
         const std::uint32_t faults = tick.guards & kFaults;
         if (asked.fault != (faults != 0) && tick.engaged) {
-            return asked.fault ? "no guard has acted at a fault" : "a guard has found a fault where there is none";
+            return asked.fault ? "no guard has acted at a fault" : "a guard has acted without a fault";
         }
         asked.fault = asked.fault || faults != 0;
         return push_.wrong(tick.sent, asked);
