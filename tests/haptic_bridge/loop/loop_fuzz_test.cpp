@@ -35,10 +35,7 @@ public:
             endPiece();
         }
     }
-    void keepStep(const base::Bytes& message) {
-        constexpr std::size_t kLength = 4;  // [byte], of the length of a message
-        steps_.push_back(std::get<StepMessage>(decode(std::span(message).subspan(kLength))).step);
-    }
+    void keepStep(const sand::Step& step) { steps_.push_back(step); }
     void compareWithReplay(const scene::Scene& scene) {
         endPiece();
         TickReplay replay(scene, pieces_);
@@ -84,9 +81,16 @@ public:
           trouble_(dice.oneOf({0.0, 0.3, 1.0})),
           recorded_(dice.chance(0.3)) {
         EXPECT_EQ(complaintAbout(physics_, "the test"), std::nullopt);
-        if (recorded_) {
-            server_.onStep = [this](const base::Bytes& message) { journal_.keepStep(message); };
-        }
+        server_.onStep = [this](const base::Bytes& message) {
+            constexpr std::size_t kLength = 4;  // [byte], of the length of a message
+            const auto step = std::get<StepMessage>(decode(std::span(message).subspan(kLength))).step;
+            if (step.edit.any()) {
+                check_.expectEdit(step.number);
+            }
+            if (recorded_) {
+                journal_.keepStep(step);
+            }
+        };
     }
 
     void run(double seconds, test::ActedCounts& counts) {
@@ -118,7 +122,7 @@ private:
         const double scale = MappedDevice::scaleFor(physics_, settings_, scene_);
         return scene_.toolRadius() / (scale * settings_.verticalScale);
     }
-    /// What the others do in this tick.
+    /// Lets master, operator and wall do something in this tick.
     void happen() {
         if (!server_.linked()) {
             if (dice_.chance(0.02)) {

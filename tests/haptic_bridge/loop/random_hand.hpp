@@ -95,7 +95,7 @@ class RandomHand {
 public:
     /// `trouble` is a factor on how often the device fails.
     RandomHand(Dice& dice, const haptic_bridge::HandSettings& settings, const haptic_bridge::ArmPhysics& arm,
-               double toolInArm /* [m], its radius */, double trouble)
+               double toolInArm /* [m], radius of the tool */, double trouble)
         : dice_(dice), settings_(settings), reach_(arm.reach), tool_(toolInArm), trouble_(trouble) {
         first_ = dice.chance(0.7);
     }

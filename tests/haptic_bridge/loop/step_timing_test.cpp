@@ -53,7 +53,7 @@ TEST(StepTiming, ALateStepLowersWhatTheArmBears) {
     EXPECT_NEAR(timed(Between::hold, 100).shareForStepOf(0.06), 0.6451613, 1e-6);
     for (const double age : {kNever, std::numeric_limits<double>::quiet_NaN()}) {
         EXPECT_EQ(held.shareForStepOf(age), 0);
-        EXPECT_EQ(timed(Between::local).shareForStepOf(age), 1) << "computed anew at every tick";
+        EXPECT_EQ(timed(Between::local).shareForStepOf(age), 1) << "computed again at every tick";
     }
 }
 

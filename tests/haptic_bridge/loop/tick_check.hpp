@@ -40,15 +40,23 @@ public:
             model_ = sand::force::ForceModel(scene_.force);
             oracle_.forget();
             push_.start(tick.time);
+            edit_ = 0;
         }
+        if (tick.edited != (edit_ != 0 && tick.surfaceStep >= edit_)) {
+            return "another tick than the first one after an edit feels it";
+        }
+        edit_ = tick.edited ? 0 : edit_;
         PushCheck::Asked asked = oracle_.next(readingOf(tick, server));
         const std::uint32_t faults = tick.guards & kFaults;
         if (asked.fault != (faults != 0) && tick.engaged) {
-            return asked.fault ? "no guard has acted at a fault" : "a guard has found a fault where there is none";
+            return asked.fault ? "no guard has acted at a fault" : "a guard has acted without a fault";
         }
         asked.fault = asked.fault || faults != 0;
         return push_.wrong(tick.sent, asked);
     }
+
+    /// Tells that the step of this number has an edit.
+    void expectEdit(std::uint64_t step) { edit_ = step; }
 
     ActedCounts counts;
 
@@ -97,6 +105,7 @@ private:
     sand::force::ForceModel model_{scene_.force};
     std::size_t ticks_ = 1;  // the server has read its hand once
     std::uint32_t sitting_ = 0;
+    std::uint64_t edit_ = 0;  // number of a step with an edit that no tick has felt yet, or 0
 };
 
 }  // namespace test
