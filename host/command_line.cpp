@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 #include "host/worker_pool.hpp"
 
 namespace host {
@@ -78,6 +79,7 @@ Option Option::excludes(const Option& other) const {
 
 CommandLine::CommandLine(const std::string& what, const std::string& name)
     : owned_(std::make_unique<CLI::App>(what, name)), app_(owned_.get()) {
+    keepOthersFromWriting();  // here, because every program makes its command line before it starts anything
     // Only for --help, because host::answersVersion() answers --version before the program starts anything.
     app_->add_flag_callback(
         "--version", [] {}, "print version and build, with --json as JSON, and end");

@@ -2,6 +2,7 @@
 #include "host/command_line.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <stdexcept>
 
@@ -140,6 +141,12 @@ TEST(CommandLineCommands, OneOfThemMustBeGiven) {
     EXPECT_TRUE(first.given());
     EXPECT_FALSE(second.given());
     EXPECT_EQ(rate, 3);
+}
+
+TEST(CommandLine, MakesTheProcessWriteNoFileThatOthersMayWriteTo) {
+    const mode_t before = umask(0);
+    const host::CommandLine line("Does something.", "tool");
+    EXPECT_EQ(umask(before), 022U);
 }
 
 int exitStatus(const std::function<int()>& run) {
