@@ -167,6 +167,43 @@ class Umasks(Supervised):
         self.assertEqual((self.folder / "out" / "log" / "try_1.out").read_text(), "")
 
 
+class Others(unittest.TestCase):
+    MARK = "1-1-0123456789abcdef"
+
+    def begin(self, mark, **options):
+        process = subprocess.Popen(["sleep", "100"], env={"PATH": os.environ["PATH"], processes.MARK: mark}, **options)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_only_processes_of_this_session_are_ended(self):
+        ours, longer = self.begin(self.MARK), self.begin(self.MARK + "0")
+        self.wait_for_environment(ours, longer)
+        self.assertEqual(processes.marked(f"{processes.MARK}={self.MARK}".encode()), [ours.pid])
+        self.end_all()
+        self.assertEqual((ours.wait(60), longer.poll()), (-signal.SIGKILL, None))
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
+    def test_a_process_of_another_user_with_the_mark_of_the_session_is_not_ended(self):
+        ours, theirs = self.begin(self.MARK), self.begin(self.MARK, user=NOBODY, group=NOBODY, extra_groups=[])
+        self.wait_for_environment(ours, theirs)
+        self.end_all()
+        self.assertEqual((ours.wait(60), theirs.poll()), (-signal.SIGKILL, None))
+
+    def wait_for_environment(self, *begun):
+        """Waits until the processes have their own environment, which they get with exec."""
+        for process in begun:
+            while b"sleep" not in pathlib.Path(f"/proc/{process.pid}/cmdline").read_bytes():
+                pass
+
+    def end_all(self):
+        """Ends what is left of a job with the mark, at once."""
+        job = object.__new__(processes.Job)
+        job.mark = self.MARK
+        with mock.patch.object(processes, "KILL_SECONDS", 0):
+            job.clear()  # the environment of an ended process is empty
+
+
 class Orphans(Supervised):
     def test_a_child_whose_parent_ended_before_it_could_ask_for_the_signal_ends(self):
         read, write = os.pipe()
