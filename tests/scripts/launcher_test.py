@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pty
+import shlex
 import signal
 import socket
 import subprocess
@@ -15,6 +16,7 @@ from unittest import mock
 
 from launcher_fixture import LauncherTest
 
+import pointer
 import session_folder
 
 MPIRUN = """#!/bin/sh
@@ -136,6 +138,16 @@ class PrintedCommands(DisplayTest):
         self.script("mpirun", "#!/bin/sh\ntouch " + str(self.folder / "started"))
         self.printed(["away1"])
         self.assertFalse((self.folder / "started").exists())
+
+
+class ShownCommands(unittest.TestCase):
+    def test_the_command_of_try_can_be_pasted_whatever_its_files_are_called(self):
+        for out, wall in (("out/try", "desktop.toml"), ("my out; echo x", "a wall's.toml"), ("$(touch x)", "w`x`.toml")):
+            with mock.patch("pointer.say") as said:
+                pointer.tell_journal(out, wall)
+            command = said.call_args[0][0].partition("session.journal; `")[2]
+            self.assertEqual(shlex.split(command.removesuffix("` makes a film of it"))[1:],
+                             ["film", f"{out}/session.journal", "--wall", wall, "--out", "film"])
 
 
 class LargeWall(DisplayTest):
