@@ -12,6 +12,7 @@
 #include <type_traits>
 
 #include "base/input_error.hpp"
+#include "host/event.hpp"
 #include "host/regular_file.hpp"
 #include "host/worker_pool.hpp"
 
@@ -166,6 +167,10 @@ bool CommandLine::answersHelp(int argc, char** argv) const {
 std::optional<int> CommandLine::parse(int argc, char** argv) {
     try {
         app_->parse(argc, argv);
+        if (const std::string why = whyBadEventsVariable(); !why.empty()) {
+            std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), base::InputError(why).what());
+            return base::kExitBadInput;
+        }
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {

@@ -86,7 +86,7 @@ public:
     /// Prints the help text and returns true if the arguments contain --help or -h. For programs that start something
     /// slow before parse(), which answers --help too.
     [[nodiscard]] bool answersHelp(int argc, char** argv) const;
-    /// Reads the arguments. Returns nullopt if the program can
+    /// Reads the arguments, and checks the environment variable SANDWALL_EVENTS. Returns nullopt if the program can
     /// start. After --help, or after a line on stderr that says what is wrong, returns the exit status with which the
     /// program has to end.
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);
