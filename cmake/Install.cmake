@@ -17,7 +17,8 @@ install(SCRIPT cmake/check_prefix.cmake)
 install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DESTINATION ${private})
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
-    scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/events.py
+    scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/environment.py
+    scripts/events.py
     scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py
     scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/screens.py
     scripts/session_control.py scripts/session_folder.py scripts/session_lines.py scripts/session_report.py

@@ -12,6 +12,8 @@
 #include <type_traits>
 
 #include "base/input_error.hpp"
+#include "host/event.hpp"
+#include "host/regular_file.hpp"
 #include "host/worker_pool.hpp"
 
 namespace host {
@@ -78,6 +80,7 @@ Option Option::excludes(const Option& other) const {
 
 CommandLine::CommandLine(const std::string& what, const std::string& name)
     : owned_(std::make_unique<CLI::App>(what, name)), app_(owned_.get()) {
+    keepOthersFromWriting();  // here, because every program makes its command line before it starts anything
     // Only for --help, because host::answersVersion() answers --version before the program starts anything.
     app_->add_flag_callback(
         "--version", [] {}, "print version and build, with --json as JSON, and end");
@@ -164,6 +167,10 @@ bool CommandLine::answersHelp(int argc, char** argv) const {
 std::optional<int> CommandLine::parse(int argc, char** argv) {
     try {
         app_->parse(argc, argv);
+        if (const std::string why = whyBadEventsVariable(); !why.empty()) {
+            std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), base::InputError(why).what());
+            return base::kExitBadInput;
+        }
         return std::nullopt;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) {

@@ -49,7 +49,8 @@ private:
 /// Not thread-safe.
 class CommandLine {
 public:
-    /// `what` is the first line of --help and describes the program.
+    /// `what` is the first line of --help and describes the program. Also calls keepOthersFromWriting()
+    /// (host/regular_file.hpp), so that no program makes a file to which other users may write.
     CommandLine(const std::string& what, const std::string& name);
     ~CommandLine();
     CommandLine(CommandLine&&) noexcept;
@@ -85,8 +86,9 @@ public:
     /// Prints the help text and returns true if the arguments contain --help or -h. For programs that start something
     /// slow before parse(), which answers --help too.
     [[nodiscard]] bool answersHelp(int argc, char** argv) const;
-    /// Reads the arguments. Returns nullopt if the program can start. After --help, or after a line on stderr that
-    /// says what is wrong, returns the exit status with which the program has to end.
+    /// Reads the arguments, and checks the environment variable SANDWALL_EVENTS. Returns nullopt if the program can
+    /// start. After --help, or after a line on stderr that says what is wrong, returns the exit status with which the
+    /// program has to end.
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);
 
 private:

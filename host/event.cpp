@@ -29,15 +29,26 @@ ordered_json jsonOf(const EventValue& value) {
         value.get());
 }
 
+constexpr const char* kVariable = "SANDWALL_EVENTS";
+
+std::string_view given() {
+    const char* const variable = std::getenv(kVariable);
+    return variable == nullptr ? "" : variable;
+}
+
 bool wanted() {
-    static const bool on = [] {
-        const char* const variable = std::getenv("SANDWALL_EVENTS");
-        return variable != nullptr && std::string_view(variable) == "1";
-    }();
+    static const bool on = given() == "1";
     return on;
 }
 
 }  // namespace
+
+std::string whyBadEventsVariable() {
+    const std::string_view value = given();
+    return value.empty() || value == "0" || value == "1"
+               ? ""
+               : std::string(kVariable) + ": must be 0 or 1, got '" + std::string(value) + "'";
+}
 
 std::string eventLine(std::string_view name, const EventFields& fields) {
     ordered_json json{{"event", name}};

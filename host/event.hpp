@@ -39,6 +39,10 @@ using EventFields = std::vector<std::pair<std::string_view, EventValue>>;
 /// Replaces bytes that are not UTF-8. Throws std::invalid_argument if a Json value is not JSON.
 [[nodiscard]] std::string eventLine(std::string_view name, const EventFields& fields);
 
+/// Returns why the value of the environment variable SANDWALL_EVENTS cannot be used: it is not 0, 1 or empty. Returns
+/// an empty text if it can.
+[[nodiscard]] std::string whyBadEventsVariable();
+
 /// Writes an event to standard error as one line, when the environment variable SANDWALL_EVENTS is 1.
 ///
 /// Messages are for people, and their wording may change. Events are for programs, and keep their names and fields

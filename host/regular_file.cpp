@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -23,13 +24,40 @@ bool refused(int descriptor, int error) {
     return false;
 }
 
+bool isFileOrLink(const std::filesystem::path& path) {
+    struct stat about {};
+    return lstat(path.c_str(), &about) == 0 && (S_ISREG(about.st_mode) || S_ISLNK(about.st_mode));
+}
+
+/// Returns why a session must not use an entry of its folder, and what to do.
+std::string whyUnsafeEntry(const std::filesystem::path& entry) {
+    struct stat about {};
+    if (lstat(entry.c_str(), &about) != 0) {
+        return "";
+    }
+    // scripts/session_folder.py has the same messages.
+    if (S_ISLNK(about.st_mode)) {
+        return entry.string() +
+               ": is a link, and a session follows none in its folder; remove it, or choose another --out";
+    }
+    if (about.st_uid != geteuid()) {
+        return entry.string() + ": belongs to another user; remove it, or choose another --out";
+    }
+    return (about.st_mode & kOthersMayWrite) == 0
+               ? ""
+               : entry.string() +
+                     ": other users may write to it; run chmod -R go-w on the session's folder, or "
+                     "choose another --out";
+}
+
 }  // namespace
 
-RegularFile::RegularFile(const std::filesystem::path& path) {
+RegularFile::RegularFile(const std::filesystem::path& path, Links links) {
     // Without O_NONBLOCK, open() would wait until a process opens the other end of a pipe.
-    descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    const int follow = links == Links::followed ? 0 : O_NOFOLLOW;
+    descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | follow);
     if (descriptor_ < 0 || fstat(descriptor_, &about_) != 0) {
-        error_ = std::strerror(errno);
+        error_ = errno == ELOOP && follow != 0 ? "is a link, which is not followed" : std::strerror(errno);
     } else if (!S_ISREG(about_.st_mode)) {
         error_ = "is not a regular file";
     }
@@ -67,13 +95,29 @@ std::optional<std::vector<std::uint8_t>> RegularFile::read(std::size_t most) con
     return bytes;
 }
 
+void keepOthersFromWriting() { umask(umask(kOthersMayWrite) | kOthersMayWrite); }
+
+std::string whyNotReplaceable(const std::filesystem::path& path) {
+    struct stat about {};
+    if (lstat(path.c_str(), &about) != 0 || S_ISREG(about.st_mode)) {
+        return "";
+    }
+    return S_ISLNK(about.st_mode) ? "is a link, which is not followed" : "is not a regular file";
+}
+
 int makeFile(const std::filesystem::path& path, mode_t mode) {
     constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-    const int made = open(path.c_str(), kFlags, mode);
+    const int made = open(path.c_str(), kFlags, mode & ~kOthersMayWrite);
     if (made >= 0 || errno != EEXIST || unlink(path.c_str()) != 0) {
         return made;
     }
-    return open(path.c_str(), kFlags, mode);
+    return open(path.c_str(), kFlags, mode & ~kOthersMayWrite);
+}
+
+void forgetFile(const std::filesystem::path& path) {
+    if (isFileOrLink(path)) {
+        unlink(path.c_str());
+    }
 }
 
 bool appendText(const std::filesystem::path& path, std::string_view text) {
@@ -119,6 +163,27 @@ std::string whyUnsafeFolder(const std::filesystem::path& path) {
         return "leads to a folder of another user";
     }
     return (folder.st_mode & kOthersMayWrite) != 0 ? "other users may write to it" : "";
+}
+
+std::string whyUnsafeContent(const std::filesystem::path& out) {
+    const std::array<std::string_view, 3> folders{"log", "checkpoints", "saves"};
+    std::error_code none;  // ignored, because the folders need not exist
+    for (const auto& entry : std::filesystem::directory_iterator(out, none)) {
+        const std::string name = entry.path().filename().string();
+        const bool folder = std::find(folders.begin(), folders.end(), name) != folders.end();
+        if (!folder && !name.starts_with("session.journal")) {
+            continue;
+        }
+        if (std::string why = whyUnsafeEntry(entry.path()); !why.empty()) {
+            return why;
+        }
+        for (const auto& inside : std::filesystem::directory_iterator(folder ? entry.path() : "", none)) {
+            if (std::string why = whyUnsafeEntry(inside.path()); !why.empty()) {
+                return why;
+            }
+        }
+    }
+    return "";
 }
 
 void makeFolders(const std::filesystem::path& path) {

@@ -17,8 +17,10 @@ namespace host {
 /// writer, and also a device, a socket and a folder. Used by one thread.
 class RegularFile {
 public:
-    /// Opens `path`, and follows symbolic links. If that fails, error() is the reason.
-    explicit RegularFile(const std::filesystem::path& path);
+    /// Whether a symbolic link is followed. It is refused where the path is inside a session's folder.
+    enum class Links { followed, refused };
+    /// Opens `path`. If that fails, error() is the reason.
+    explicit RegularFile(const std::filesystem::path& path, Links links = Links::followed);
     ~RegularFile();
     RegularFile(const RegularFile&) = delete;
     RegularFile& operator=(const RegularFile&) = delete;
@@ -37,10 +39,20 @@ private:
     std::string error_;
 };
 
-/// Makes a file for writing at `path`, with access `mode` minus the umask. Removes any other file of this name,
-/// which can be left by a process that was killed. Never follows a symbolic link and never waits. Returns the
+/// Makes every later file and folder of this process unwritable for its group and for other users: adds 022 to the
+/// umask. Child processes and libraries inherit it. Call it before any thread starts.
+void keepOthersFromWriting();
+
+/// Returns why a new file must not take the place of what `path` names: a symbolic link, or anything but a regular
+/// file. Returns an empty text for a regular file, and if nothing has this name.
+[[nodiscard]] std::string whyNotReplaceable(const std::filesystem::path& path);
+/// Makes a file for writing at `path`, with access `mode` minus the umask. Never lets its group or other users write.
+/// Removes any other file of this name, which can be left by a process that was killed. For a name that a user chose or
+/// may have used, call whyNotReplaceable() before. Never follows a symbolic link and never waits. Returns the
 /// descriptor, or -1 with errno.
 [[nodiscard]] int makeFile(const std::filesystem::path& path, mode_t mode = 0644);
+/// Removes a regular file or a symbolic link. Leaves everything else, such as a pipe, and reports no error.
+void forgetFile(const std::filesystem::path& path);
 /// Appends `text` to a file, which it makes if it does not exist. The text is on disk when the function returns, and so
 /// is the name of a new file. Refuses everything but a regular file, without waiting; also a symbolic link to one.
 /// Returns false with errno if it fails.
@@ -50,6 +62,11 @@ private:
 /// The path may also be a link of another user. Such a user could replace files while a session runs. Returns an empty
 /// text if the folder is safe or does not exist. A slash at the end of the path makes no difference.
 [[nodiscard]] std::string whyUnsafeFolder(const std::filesystem::path& path);
+
+/// Returns why a session must not use what earlier sessions left in its folder `out`, and what to do, as one line. That
+/// is the journal, and the folders `log`, `checkpoints` and `saves` with everything in them. Each must belong to this
+/// user, be writable for this user alone, and be no symbolic link. Returns an empty text if nothing is wrong.
+[[nodiscard]] std::string whyUnsafeContent(const std::filesystem::path& out);
 
 /// Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss.
 /// Throws std::filesystem::filesystem_error, also if the disk fails.

@@ -3,41 +3,72 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "host/regular_file.hpp"
 
 namespace host {
+namespace {
 
-WholeFile::WholeFile(const std::filesystem::path& path, Other other) : path_(path), target_(path) {
-    std::error_code none;
-    const bool there = std::filesystem::exists(path, none);
+constexpr mode_t kOthersWrite = S_IWGRP | S_IWOTH;
+constexpr mode_t kAccess = S_IRWXU | S_IRWXG | S_IRWXO;
+
+/// Returns the number of an open file of this process that `path` names, such as 1 for /dev/stdout, or -1. These names
+/// are links to files that the process has opened already.
+int ownDescriptor(const std::filesystem::path& path) {
+    const std::string& name = path.native();
+    constexpr std::string_view kFolder = "/dev/fd/";
+    if (name == "/dev/stdout" || name == "/dev/stderr") {
+        return name == "/dev/stdout" ? STDOUT_FILENO : STDERR_FILENO;
+    }
+    int number = -1;
+    if (name.starts_with(kFolder)) {
+        (void)std::from_chars(name.data() + kFolder.size(), name.data() + name.size(), number);
+    }
+    return number;
+}
+
+}  // namespace
+
+WholeFile::WholeFile(const std::filesystem::path& path, Other other) : path_(path) {
+    const std::string special = whyNotReplaceable(path);
+    struct stat about {};
+    const bool there = lstat(path.c_str(), &about) == 0;
+    const int own = ownDescriptor(path);
+    if (own < 0 && there && S_ISLNK(about.st_mode)) {
+        throw base::InputError(fmt::format("{}: {}; remove it, or name the file itself", path_.string(), special));
+    }
     // Renaming would replace a file that must not be written to.
-    if (there && (std::filesystem::is_directory(path, none) || ::access(path.c_str(), W_OK) != 0)) {
+    if (own < 0 && there && (S_ISDIR(about.st_mode) || ::access(path.c_str(), W_OK) != 0)) {
         fail();
     }
-    if (there && !std::filesystem::is_regular_file(path, none)) {
-        if (other == Other::refused) {
-            throw base::InputError(fmt::format("{}: is not a regular file; remove it", path_.string()));
-        }
-        stream_.open(target_, std::ios::binary);
-    } else {
-        if (there) {
-            target_ = std::filesystem::canonical(path, none);  // keeps a link a link
-        }
-        beside_ = target_.string() + fmt::format(".{}.part", ::getpid());
-        // A pipe or link of this name is removed, because opening a pipe would wait for a reader.
-        if (const int made = makeFile(beside_, 0666); made >= 0) {
-            ::close(made);
-            stream_.open(beside_, std::ios::binary | std::ios::trunc);
-        } else {
-            stream_.setstate(std::ios::failbit);
-        }
+    if (!special.empty() && other == Other::refused) {
+        throw base::InputError(fmt::format("{}: {}; remove it", path_.string(), special));
     }
-    if (!stream_) {
+    if (own >= 0) {
+        descriptor_ = ::fcntl(own, F_DUPFD_CLOEXEC, 0);
+    } else if (special.empty()) {
+        const std::filesystem::path beside = path.string() + fmt::format(".{}.part", ::getpid());
+        descriptor_ = makeFile(beside);
+        if (descriptor_ >= 0) {
+            beside_ = beside;
+        }
+    } else {
+        descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY | O_NOFOLLOW);  // a pipe waits for a reader
+    }
+    if (descriptor_ >= 0) {
+        // By its descriptor, because another file could have the name by now.
+        stream_.open(fmt::format("/proc/self/fd/{}", descriptor_), std::ios::binary);
+    }
+    if (descriptor_ < 0 || !stream_) {
         fail();
     }
 }
@@ -46,19 +77,11 @@ WholeFile::~WholeFile() { removePart(); }
 
 void WholeFile::keepSynced() {
     stream_.flush();
-    bool synced = stream_.good();
-    if (!beside_.empty()) {
-        const int descriptor = ::open(beside_.c_str(), O_WRONLY | O_CLOEXEC);
-        synced = synced && descriptor >= 0 && ::fsync(descriptor) == 0;
-        if (descriptor >= 0) {
-            ::close(descriptor);
-        }
-    }
-    if (!synced) {
+    if (!stream_.good() || (!beside_.empty() && ::fsync(descriptor_) != 0)) {
         fail();
     }
     keep();
-    if (!syncFolderOf(target_)) {
+    if (!syncFolderOf(path_)) {
         fail();
     }
 }
@@ -69,12 +92,12 @@ void WholeFile::keep() {
         fail();
     }
     if (!beside_.empty()) {
-        std::error_code error;
-        if (const auto status = std::filesystem::status(target_, error); std::filesystem::exists(status)) {
-            std::filesystem::permissions(beside_, status.permissions(), error);
+        // Gives the file the access that the previous one has, except that others may not write to it.
+        if (struct stat previous{}; lstat(path_.c_str(), &previous) == 0 && S_ISREG(previous.st_mode)) {
+            (void)::fchmod(descriptor_, previous.st_mode & kAccess & ~kOthersWrite);
         }
-        std::filesystem::rename(beside_, target_, error);
-        if (error) {
+        // Replaces a regular file and nothing else, also if another program has made something there meanwhile.
+        if (!whyNotReplaceable(path_).empty() || ::rename(beside_.c_str(), path_.c_str()) != 0) {
             fail();
         }
         beside_.clear();
@@ -101,9 +124,11 @@ void WholeFile::fail() {
 
 void WholeFile::removePart() {
     if (!beside_.empty()) {
-        std::error_code none;
-        std::filesystem::remove(beside_, none);
+        ::unlink(beside_.c_str());
         beside_.clear();
+    }
+    if (descriptor_ >= 0) {
+        ::close(std::exchange(descriptor_, -1));
     }
 }
 

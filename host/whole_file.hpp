@@ -11,8 +11,9 @@ namespace host {
 ///
 /// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it,
 /// and a failure removes it at once.
-/// Throws base::InputError in one line if the path cannot be written. To test whether a path can be written, create a
-/// WholeFile and destroy it.
+/// Never follows a symbolic link, except /dev/stdout, /dev/stderr and /dev/fd/N, and never lets group or other users
+/// write to the file. Throws base::InputError in one line if the path cannot be written. To test whether a path can be
+/// written, create a WholeFile and destroy it.
 class WholeFile {
 public:
     /// What to do with a path that is not a regular file, such as a pipe.
@@ -35,8 +36,8 @@ private:
     void removePart();
 
     std::filesystem::path path_;    // as the user gave it
-    std::filesystem::path target_;  // `path_` with links resolved
-    std::filesystem::path beside_;  // temporary file; empty if target_ is written to directly
+    std::filesystem::path beside_;  // temporary file; empty if path_ is written to directly
+    int descriptor_ = -1;           // of the temporary file, or of the pipe or device
     std::ofstream stream_;
 };
 

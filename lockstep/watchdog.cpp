@@ -4,10 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
+#include <string_view>
 
+#include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
@@ -24,12 +28,25 @@ constexpr double kLongestLook = 0.5;
 constexpr double kRankAfterMaster = 3;  // [s] by which a render rank acts later than the master
 constexpr double kOthersAfterRank = 1;  // [s] by which the other render ranks end later than the first
 
-/// Returns the limit of a wait before the end of the first frame [s].
-double startUpLimit() {
-    const char* const given = std::getenv("SANDWALL_START_TIMEOUT");
-    const double seconds = given == nullptr ? 0 : std::strtod(given, nullptr);
-    return seconds >= 1 && seconds <= kPatientLimit ? seconds : kStartUpLimit;
+constexpr const char* kVariable = "SANDWALL_START_TIMEOUT";
+
+/// Returns the value of kVariable; an empty text if it is not set.
+std::string_view givenLimit() {
+    const char* const given = std::getenv(kVariable);
+    return given == nullptr ? "" : given;
 }
+
+/// Returns the number of seconds in `text`, or nullopt if it is not a number from 1 to kPatientLimit.
+std::optional<double> readLimit(std::string_view text) {
+    double seconds = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
+    const bool good =
+        error == std::errc() && end == text.data() + text.size() && seconds >= 1 && seconds <= kPatientLimit;
+    return good ? std::optional(seconds) : std::nullopt;
+}
+
+/// Returns the limit of a wait before the end of the first frame [s].
+double startUpLimit() { return readLimit(givenLimit()).value_or(kStartUpLimit); }
 
 void emitWait(const Wait& wait, double seconds, double limit, bool endsJob) {
     host::emitEvent("waiting", {{"by", wait.by},
@@ -42,6 +59,14 @@ void emitWait(const Wait& wait, double seconds, double limit, bool endsJob) {
 }
 
 }  // namespace
+
+void requireStartUpLimit() {
+    const std::string_view given = givenLimit();
+    if (!given.empty() && !readLimit(given)) {
+        throw base::InputError(fmt::format("{}: must be a number from 1 to {} [s], got '{}'; unset it for {} s",
+                                           kVariable, kPatientLimit, given, kStartUpLimit));
+    }
+}
 
 Watchdog::Watchdog(std::function<Wait()> describe, double limitSeconds, Role role,
                    std::function<void(const std::string&)> lastWords)

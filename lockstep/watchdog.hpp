@@ -21,6 +21,10 @@ struct Wait {
     std::string names;       // names of these ranks, separated by commas; the master's own work if the list is empty
 };
 
+/// Throws base::InputError if the environment variable SANDWALL_START_TIMEOUT is set, but is not a number of seconds
+/// from 1 to 3600. A watchdog takes 120 s instead.
+void requireStartUpLimit();
+
 /// Thread that reports every long wait, and ends the job if a wait reaches its limit.
 ///
 /// The thread watches while the main thread is inside a call that may block. All functions may be called by any thread.

@@ -2,7 +2,9 @@
 #include "master/captures.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
+#include <cerrno>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -13,10 +15,10 @@
 
 namespace master {
 CaptureFolder::CaptureFolder(const std::filesystem::path& out) {
-    std::error_code error;
-    for (int number = 1; !made_ && !error; ++number) {
+    errno = EEXIST;
+    for (int number = 1; !made_ && errno == EEXIST; ++number) {
         path_ = out / fmt::format("capture_{:03}", number);
-        made_ = std::filesystem::create_directory(path_, error);
+        made_ = mkdir(path_.c_str(), 0755) == 0;
     }
 }
 

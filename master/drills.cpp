@@ -31,12 +31,11 @@ void keep(const std::string& text, const std::filesystem::path& file) {
 
 std::vector<Drill> withoutDone(std::vector<Drill> drills, const std::filesystem::path& folder, bool resumed) {
     if (!resumed) {
-        std::error_code none;  // ignored, because the file usually does not exist
-        std::filesystem::remove(folder / kDone, none);
+        host::forgetFile(folder / kDone);
         return drills;
     }
     std::set<std::string> done;
-    const host::RegularFile opened(folder / kDone);
+    const host::RegularFile opened(folder / kDone, host::RegularFile::Links::refused);
     const std::optional<base::Bytes> text = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
     std::istringstream stream(text ? std::string(text->begin(), text->end()) : "");
     for (std::string line; std::getline(stream, line);) {

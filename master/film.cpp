@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 #include "master/wall_pictures.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
@@ -80,7 +81,7 @@ void Film::forget(const std::filesystem::path& folder) {
         }
     }
     for (const std::filesystem::path& file : old) {
-        std::filesystem::remove(file, none);
+        host::forgetFile(file);
     }
 }
 

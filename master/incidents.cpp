@@ -42,7 +42,7 @@ ordered_json jsonOf(const Incidents& incidents) {
 }
 
 Incidents incidentsOf(const std::filesystem::path& file) {
-    const host::RegularFile opened(file);
+    const host::RegularFile opened(file, host::RegularFile::Links::refused);
     const std::optional<base::Bytes> text = opened.error().empty() ? opened.read(kMostBytes) : std::nullopt;
     if (!text) {
         return {};
@@ -81,10 +81,7 @@ IncidentFile::IncidentFile(const std::filesystem::path& folder, bool resumed) : 
     }
 }
 
-void IncidentFile::forget() const {
-    std::error_code none;
-    std::filesystem::remove(file_, none);
-}
+void IncidentFile::forget() const { host::forgetFile(file_); }
 
 void IncidentFile::keep(const Incidents& sinceTheBeginning, std::int64_t nowNs) {
     if (sinceTheBeginning == kept_ || (triedNs_ != 0 && nowNs - triedNs_ < kSeldomNs)) {

@@ -17,6 +17,7 @@
 #include "host/worker_pool.hpp"
 #include "lockstep/clock_sync.hpp"
 #include "lockstep/session_message.hpp"
+#include "lockstep/watchdog.hpp"
 #include "master/injection.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
@@ -124,6 +125,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
 }
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
+    lockstep::requireStartUpLimit();
     cluster.mayTakeLong(true);  // until broadcastSession()
     master::requireFolder(options.out);
     World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};

@@ -29,7 +29,7 @@ std::filesystem::path fileIn(const std::filesystem::path& folder) { return folde
 
 /// Returns the text of the file, or an empty text if it cannot be read.
 std::string textOf(const std::filesystem::path& file) {
-    const host::RegularFile opened(file);
+    const host::RegularFile opened(file, host::RegularFile::Links::refused);
     const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
     return bytes ? std::string(bytes->begin(), bytes->end()) : "";
 }
@@ -144,9 +144,6 @@ std::size_t RecoveryCount::count() {
     return count_;
 }
 
-void forgetRecoveries(const std::filesystem::path& folder) {
-    std::error_code none;
-    std::filesystem::remove(fileIn(folder), none);
-}
+void forgetRecoveries(const std::filesystem::path& folder) { host::forgetFile(fileIn(folder)); }
 
 }  // namespace master

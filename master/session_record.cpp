@@ -8,6 +8,7 @@
 
 #include "host/build_id.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 #include "master/film.hpp"
 
 namespace master {
@@ -17,16 +18,16 @@ constexpr std::int64_t kFrameBytes = 1 << 16;  // [byte], more than the steps of
 
 /// Removes the results of an earlier session, so that they are never taken for results of this one.
 void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
-    std::error_code none;  // ignored, because usually no such file exists
     if (!resumed) {
-        std::filesystem::remove(folder / "divergence.txt", none);
+        host::forgetFile(folder / "divergence.txt");
         forgetRecoveries(folder);
     }
     for (const char* name :
          {"summary.json", "failure.json", "wall.png", "wall_left.png", "wall_right.png", "wall_anaglyph.png"}) {
-        std::filesystem::remove(folder / name, none);
+        host::forgetFile(folder / name);
     }
     std::vector<std::filesystem::path> tiles;
+    std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with("tile_") && name.ends_with(".png")) {
@@ -34,7 +35,7 @@ void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
         }
     }
     for (const std::filesystem::path& tile : tiles) {
-        std::filesystem::remove(tile, none);
+        host::forgetFile(tile);
     }
     Film::forget(folder);
 }

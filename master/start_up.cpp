@@ -70,6 +70,9 @@ void requireFolder(const std::filesystem::path& out) {
         throw base::InputError(fmt::format("{}: {}; {}choose another --out", out.string(), why,
                                            why.starts_with("other users") ? "run chmod go-w on it, or " : ""));
     }
+    if (std::string why = host::whyUnsafeContent(out); !why.empty()) {
+        throw base::InputError(std::move(why));
+    }
 }
 
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names) {

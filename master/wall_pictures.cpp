@@ -24,9 +24,6 @@ public:
 
     void write(const std::string& name, const pictures::Image& image) {
         try {
-            // Opening a pipe of this name would wait until a process reads it.
-            std::error_code none;
-            std::filesystem::remove(folder_ / name, none);
             pictures::writePng(folder_ / name, image);
         } catch (const base::InputError& error) {
             failure_ = failure_ ? failure_ : error;

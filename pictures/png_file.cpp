@@ -4,9 +4,13 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <string>
 
 #include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 
 namespace pictures {
 namespace {
@@ -65,8 +69,22 @@ void writePng(const std::filesystem::path& file, const Image& image) {
     png.image.width = static_cast<png_uint_32>(image.width);
     png.image.height = static_cast<png_uint_32>(image.height);
     png.image.format = PNG_FORMAT_RGB;
-    if (png_image_write_to_file(&png.image, file.c_str(), 0, image.rgb.data(), 0, nullptr) == 0) {
-        throw base::InputError(fmt::format("{}: picture cannot be written: {}", file.string(), png.image.message));
+    const auto refuse = [&file](const char* why) {
+        throw base::InputError(fmt::format("{}: picture cannot be written: {}", file.string(), why));
+    };
+    if (const std::string special = host::whyNotReplaceable(file); !special.empty()) {
+        refuse(special.c_str());
+    }
+    const int made = host::makeFile(file);
+    std::FILE* const stream = made < 0 ? nullptr : fdopen(made, "wb");
+    if (stream == nullptr) {
+        refuse(std::strerror(errno));
+    }
+    const bool written = png_image_write_to_stdio(&png.image, stream, 0, image.rgb.data(), 0, nullptr) != 0;
+    if (std::fclose(stream) != 0 || !written) {
+        std::error_code none;
+        std::filesystem::remove(file, none);
+        refuse(written ? std::strerror(errno) : png.image.message);
     }
 }
 

@@ -20,6 +20,7 @@
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
 #include "lockstep/view_agreement.hpp"
+#include "lockstep/watchdog.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/pointer/next_key.hpp"
 #include "render_node/pointer/pointer_reader.hpp"
@@ -258,6 +259,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
     lockstep::Readiness readiness{lockstep::hostName(), host::buildId(), "", "", {}, 0};
     std::unique_ptr<TileSession> session;
     try {
+        lockstep::requireStartUpLimit();
         session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();

@@ -3,12 +3,28 @@
 
 import argparse
 import math
+import os
+
+import environment
 
 BAD_INPUT = 2
 
 
 class Parser(argparse.ArgumentParser):
-    """Reports an error in one line, as all our programs do."""
+    """Reports an error in one line, as all our programs do. Checks the environment variables of Sandwall too.
+
+    Adds 022 to the umask: no file of this process and of those that it starts is writable for its group or for others.
+    """
+
+    def __init__(self, **options):
+        super().__init__(**options)
+        os.umask(os.umask(0o022) | 0o022)
+
+    def parse_args(self, *args, **options):
+        parsed = super().parse_args(*args, **options)
+        if why := environment.why_bad(os.environ):
+            self.exit(BAD_INPUT, f"{self.prog}: {why}\n")
+        return parsed
 
     def error(self, message):
         self.exit(BAD_INPUT, f"{self.prog}: {message}; try --help\n")

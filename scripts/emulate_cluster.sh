@@ -74,6 +74,7 @@ while [[ $# -gt 0 ]]; do
     esac
 done
 [[ -n $out ]] || usage
+[[ -d $bin ]] || { echo "emulate_cluster.sh: SANDWALL_BIN: $bin is not a folder; unset it, or set it to the folder of the programs" >&2; exit 2; }
 need ip; need tc; need unshare
 if ! can_make_hosts; then
     if [[ -n ${SANDWALL_IN_USER_NAMESPACE:-} ]] || ! "${in_user_namespace[@]}" "$0" --check 2>/dev/null; then

@@ -10,8 +10,9 @@ import time
 import checked_json
 import command_line
 import console
+import environment
 
-VARIABLE = "SANDWALL_EVENTS"
+VARIABLE = environment.EVENTS
 TAG = "@sandwall "
 FAILURES = ("hung", "broken", "disk", "sand")  # `what` of failure.json
 MOST_RANKS = 1_000_000

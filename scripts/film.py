@@ -22,13 +22,16 @@ def encode(folder, frames_per_second):
     if shutil.which("ffmpeg") is None:
         console.OUT.line(f"{frames} pictures in {folder}; for film.mp4 run apt-get install ffmpeg, then this command again")
         return
+    film = folder / "film.mp4"
+    if film.is_symlink() or (film.exists() and not film.is_file()):
+        raise BadInput(f"{film}: is not a regular file; remove it; the {frames} pictures are whole")
     # Every player reads H.264 with colours at half the resolution, which needs even sizes. ffmpeg runs in the folder,
     # because a per cent sign in its path would be read as a number.
     command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(frames_per_second), "-i", PATTERN,
                "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-crf", "18", "-pix_fmt", "yuv420p", "film.mp4"]
     made = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     if made.returncode != 0:
-        (folder / "film.mp4").unlink(missing_ok=True)
+        film.unlink(missing_ok=True)
         said = (made.stderr.strip().split("\n")[-1]) or f"exit status {made.returncode}"
         raise BadInput(f"{folder}/film.mp4: ffmpeg failed: {said}; the {frames} pictures are whole")
     console.OUT.line(f"{folder}/film.mp4: {frames} frames")

@@ -23,6 +23,7 @@ seed=${2:-$(date +%s)}
 wall=walls/configs/desktop.toml
 scene=scenes/writing.toml
 bin=${SANDWALL_BIN:-build/release/bin}
+[[ -d $bin ]] || { echo "hostile.sh: SANDWALL_BIN: $bin is not a folder; unset it, or set it to the folder of the programs" >&2; exit 2; }
 folder=$(mktemp -d)
 if [[ -n $tls && -z $secret ]]; then
     secret=$folder/secret

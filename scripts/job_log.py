@@ -15,6 +15,7 @@ import time
 import checked_json
 import console
 import events
+import session_folder
 from console import say
 
 KEPT_TRIES = 8
@@ -37,8 +38,7 @@ def new_file(path):
     """Makes a file for the output of a job and returns its descriptor. If the disk takes no file, the file is in memory."""
     path = pathlib.Path(path)
     try:
-        path.unlink(missing_ok=True)  # a pipe or link of this name must not be opened
-        return os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_APPEND | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+        return session_folder.new_file(path, os.O_RDWR | os.O_APPEND)
     except OSError as error:
         say(f"{path}: cannot be made ({error.strerror}); the output of this try is shown and not kept")
         return os.memfd_create(path.name)

@@ -22,11 +22,12 @@ from dataclasses import dataclass
 sys.dont_write_bytecode = True
 import command_line
 import events
+import layout
 import session_results
 from command_line import within
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
+BIN = layout.bin_folder()
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
             "sandwall-latency-floor")
 SCENE = ROOT / "scenes" / "sandbox.toml"

@@ -15,6 +15,7 @@ import re
 import subprocess
 
 import checked_json
+import environment
 from rank_hosts import BadInput
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -35,13 +36,13 @@ BUILT_IN_STROKES = "gis"  # in the haptic server itself
 
 def bin_folder():
     """Returns the folder of the programs: $SANDWALL_BIN, or that of the installed tree or of the release build."""
-    return pathlib.Path(os.environ.get("SANDWALL_BIN", HERE.parent if INSTALLED else ROOT / "build" / "release" / "bin"))
+    return pathlib.Path(os.environ.get(environment.BIN) or (HERE.parent if INSTALLED else ROOT / "build" / "release" / "bin"))
 
 
 def program(name):
     """Returns the path of one of our programs. Throws BadInput if it does not exist."""
     path = bin_folder() / name
-    if not path.is_file() and "SANDWALL_BIN" in os.environ:
+    if not path.is_file() and os.environ.get(environment.BIN):
         raise BadInput(f"{path}: does not exist; unset SANDWALL_BIN, or set it to the folder of the programs")
     if not path.is_file():
         raise BadInput(f"{path}: not installed; {MEND}" if INSTALLED else

@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import shlex
 import subprocess
 
 import layout
@@ -44,7 +45,8 @@ def session_of(args):
 
 def tell_journal(out, wall):
     journal = pathlib.Path(out) / "session.journal"
-    say(f"all that you did is in {journal}; `{layout.PROGRAM} film {journal} --wall {wall} --out film` makes a film of it")
+    command = [layout.PROGRAM, "film", str(journal), "--wall", wall, "--out", "film"]
+    say(f"all that you did is in {journal}; `{shlex.join(command)}` makes a film of it")
 
 
 def add_parser(commands, run):

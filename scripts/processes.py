@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import secrets
 import signal
 import subprocess
 import threading
@@ -111,7 +112,7 @@ class Job:
 
     def __init__(self, command, environment, log=None):
         Job.started += 1
-        self.mark = f"{os.getpid()}-{Job.started}"
+        self.mark = f"{os.getpid()}-{Job.started}-{secrets.token_hex(8)}"  # no other session has it, also in another container
         self.log = log
         output = {"stdout": log.out.file, "stderr": log.err.file} if log else {}
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, env={**environment, MARK: self.mark},
@@ -196,12 +197,16 @@ def exit_status(status):
 
 
 def marked(mark):
-    """Returns the ids of the processes that have `mark` in their environment."""
+    """Returns the ids of the processes of this user that have `mark`, a whole entry NAME=VALUE, in their environment.
+
+    Root can read every process's environment, and any user can write any mark into that of a process.
+    """
     found = []
     for entry in os.listdir("/proc"):
         if entry.isdigit():
             try:
-                if mark in pathlib.Path("/proc", entry, "environ").read_bytes().split(b"\0"):
+                ours = os.stat(f"/proc/{entry}").st_uid == os.geteuid()
+                if ours and mark in pathlib.Path("/proc", entry, "environ").read_bytes().split(b"\0"):
                     found.append(int(entry))
             except OSError:
                 pass  # it has ended, or belongs to another user

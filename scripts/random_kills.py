@@ -20,6 +20,7 @@ import time
 
 sys.dont_write_bytecode = True
 import events
+import layout
 import processes
 import session_control
 import session_results
@@ -146,8 +147,7 @@ def check_end(session, status):
     if status != 0:
         raise Violation(f"the session ended with status {status}; see {session.log.name}")
     summary = session_results.read_summary(session.out)
-    folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
-    replayed = subprocess.run([folder / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
+    replayed = subprocess.run([layout.bin_folder() / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
     found = (replayed.stdout.split() or [""])[-1]
     if replayed.returncode != 0 or found != summary["state_hash"]:
         raise Violation(f"the wall ended with {summary['state_hash']}, an undisturbed replay with '{found}' "

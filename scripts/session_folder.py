@@ -12,6 +12,9 @@ import time
 from rank_hosts import BadInput
 
 PATIENCE = 5  # seconds to wait for a session that is ending
+OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
+FOLDERS = ("log", "checkpoints", "saves")
+JOURNAL = "session.journal"  # first part of the names of all parts
 
 
 class InUse(Exception):
@@ -55,7 +58,33 @@ def why_unsafe(path):
         return "is a link of another user" if stat.S_ISLNK(link.st_mode) else "belongs to another user"
     if folder.st_uid != os.geteuid():
         return "leads to a folder of another user"
-    return "other users may write to it" if folder.st_mode & (stat.S_IWGRP | stat.S_IWOTH) else None
+    return "other users may write to it" if folder.st_mode & OTHERS_WRITE else None
+
+
+def require_safe_content(out):
+    """Throws BadInput for a file or folder of an earlier session in `out` that another user owns or may write to, and for a link.
+
+    The programs have the same check, host::whyUnsafeContent().
+    """
+    out = pathlib.Path(out)
+    for entry in [path for path in out.iterdir() if path.name in FOLDERS or path.name.startswith(JOURNAL)]:
+        require_safe_entry(entry)
+        if entry.name in FOLDERS and entry.is_dir():
+            for inside in entry.iterdir():
+                require_safe_entry(inside)
+
+
+def require_safe_entry(path):
+    try:
+        about = os.lstat(path)
+    except FileNotFoundError:
+        return  # the session that still ends has removed it
+    if stat.S_ISLNK(about.st_mode):
+        raise BadInput(f"{path}: is a link, and a session follows none in its folder; remove it, or choose another --out")
+    if about.st_uid != os.geteuid():
+        raise BadInput(f"{path}: belongs to another user; remove it, or choose another --out")
+    if about.st_mode & OTHERS_WRITE:
+        raise BadInput(f"{path}: other users may write to it; run chmod -R go-w on the session's folder, or choose another --out")
 
 
 def require_folder(path, named):
@@ -72,8 +101,8 @@ def require_safe(path):
 
 
 def open_regular(path, flags, mode=0o644):
-    """Returns the descriptor of a regular file. Throws OSError for all else, and never waits, for example for a pipe's reader."""
-    descriptor = os.open(path, flags | os.O_CLOEXEC | os.O_NONBLOCK | os.O_NOCTTY, mode)
+    """Returns the descriptor of a regular file. Throws OSError for all else, also for a link, and never waits, for example for a pipe's reader."""
+    descriptor = os.open(path, flags | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY, mode)
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
         raise OSError(errno.EINVAL, "is not a regular file", str(path))
@@ -86,9 +115,25 @@ def read_text(path):
         return file.read()
 
 
+def new_file(path, flags):
+    """Makes a file to which only this user may write, and returns its descriptor. Replaces a regular file of this name.
+
+    Throws OSError for a link, a pipe and all else that has this name. A new file has no second name in another folder.
+    """
+    try:
+        about = os.lstat(path)
+    except FileNotFoundError:
+        about = None
+    if about is not None:
+        if not stat.S_ISREG(about.st_mode):
+            raise OSError(errno.EINVAL, "is a link" if stat.S_ISLNK(about.st_mode) else "is not a regular file", str(path))
+        os.unlink(path)
+    return os.open(path, flags | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+
+
 def write_text(path, text):
-    """Writes a regular file. Throws OSError for all else. Names of files in `text` need not be UTF-8."""
-    with open(open_regular(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), "w", encoding="utf-8", errors="surrogateescape") as file:
+    """Writes a new file as new_file() makes it. Throws OSError. Names of files in `text` need not be UTF-8."""
+    with open(new_file(path, os.O_WRONLY), "w", encoding="utf-8", errors="surrogateescape") as file:
         file.write(text)
 
 
@@ -96,8 +141,8 @@ def write_text(path, text):
 def held(out, resume=False):
     """Holds a lock on the folder `out`. The kernel releases the lock when the process ends for any reason.
 
-    Throws BadInput if the folder cannot be made or written, or if other users may write to it, and InUse if another
-    launcher holds the lock.
+    Throws BadInput if the folder cannot be made or written, or if other users may write to it. The same holds for what
+    earlier sessions left in it. Throws InUse if another launcher holds the lock.
     """
     path = pathlib.Path(out)
     try:
@@ -107,6 +152,7 @@ def held(out, resume=False):
     try:
         require_folder(path, out)
         require_safe(path)
+        require_safe_content(path)
         descriptor = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
     except OSError:
         yield
@@ -135,7 +181,7 @@ def is_held(path):
 
 def append_line(path, line):
     """Appends a line to a regular file, which must not be a link. Begins on a line of its own if a crash has cut the last line off. Throws OSError."""
-    with open(open_regular(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW), "ab", buffering=0) as file:
+    with open(open_regular(path, os.O_RDWR | os.O_CREAT | os.O_APPEND), "ab", buffering=0) as file:
         size = os.fstat(file.fileno()).st_size
         torn = size > 0 and os.pread(file.fileno(), 1, size - 1) != b"\n"
         file.write((b"\n" if torn else b"") + line.encode() + b"\n")

@@ -17,6 +17,7 @@ import sys
 import time
 
 sys.dont_write_bytecode = True
+import layout
 import processes
 import session_results
 from command_line import Parser, above, at_least
@@ -114,8 +115,7 @@ def follow(launcher, minutes, period, warm_up):
 
 
 def replayed(out):
-    folder = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
-    ran = subprocess.run([folder / "sandwall-replay", out / "session.journal", "--hash"], capture_output=True, text=True)
+    ran = subprocess.run([layout.bin_folder() / "sandwall-replay", out / "session.journal", "--hash"], capture_output=True, text=True)
     return (ran.stdout.split() or [ran.stderr.strip() or "nothing"])[-1]
 
 

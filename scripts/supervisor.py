@@ -220,7 +220,7 @@ class Supervisor:
         try:
             if not self.resume:
                 shutil.rmtree(folder, ignore_errors=True)
-            folder.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(mode=0o755, parents=True, exist_ok=True)
         except OSError:
             return pathlib.Path(otherwise)
         return folder if os.access(folder, os.W_OK | os.X_OK) else pathlib.Path(otherwise)

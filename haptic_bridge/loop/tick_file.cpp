@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/loop/tick_file.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,21 +10,18 @@
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
+#include "host/regular_file.hpp"
 
 namespace haptic_bridge {
 
 TickFile::TickFile(std::string file, std::function<void(const std::string&)> log)
-    : file_(std::move(file)),
-      log_(std::move(log)),
-      // Without O_NONBLOCK, open() would wait until a process reads from a pipe.
-      descriptor_(open(file_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644)),
-      rows_(tickTitles()) {
-    struct stat about {};
-    if (descriptor_ >= 0 && fstat(descriptor_, &about) == 0 && !S_ISREG(about.st_mode)) {
-        close(descriptor_);
-        throw base::InputError(fmt::format("--record {}: is not a regular file; give the name of a new file", file_));
+    : file_(std::move(file)), log_(std::move(log)), rows_(tickTitles()) {
+    if (const std::string special = host::whyNotReplaceable(file_); !special.empty()) {
+        throw base::InputError(fmt::format("--record {}: {}; give the name of a new file", file_, special));
     }
-    if (descriptor_ < 0 || ftruncate(descriptor_, 0) != 0) {
+    // A new file, because the previous one of this name could have a second name, or another user could write to it.
+    descriptor_ = host::makeFile(file_);
+    if (descriptor_ < 0) {
         throw base::InputError(fmt::format("--record {}: cannot be created ({}); give a file in a folder that exists",
                                            file_, std::strerror(errno)));
     }

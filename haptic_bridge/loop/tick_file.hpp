@@ -13,8 +13,8 @@ namespace haptic_bridge {
 /// Used by one thread.
 class TickFile {
 public:
-    /// `log` gets one line for the user. Throws base::InputError if the file cannot be created, or if it is
-    /// not a regular file.
+    /// `log` gets one line for the user. Replaces a regular file of this name. Throws base::InputError if
+    /// the file cannot be created, or if the name is that of a symbolic link or of no regular file.
     TickFile(std::string file, std::function<void(const std::string&)> log);
     ~TickFile();
     TickFile(const TickFile&) = delete;

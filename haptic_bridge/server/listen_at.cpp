@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/server/listen_at.hpp"
 
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "base/input_error.hpp"
 #include "haptic_bridge/link/connection.hpp"
 #include "haptic_bridge/link/link_options.hpp"
+#include "host/whole_file.hpp"
 
 namespace haptic_bridge {
 
@@ -51,16 +47,12 @@ void writePortFile(const std::string& file, std::uint16_t port) {
     if (file.empty()) {
         return;
     }
-    const std::string beside = file + "." + std::to_string(getpid());
-    std::ofstream stream(beside);
-    stream << port << '\n';
-    stream.close();
-    std::error_code error;
-    if (stream) {
-        std::filesystem::rename(beside, file, error);
-    }
-    if (!stream || error) {
-        throw base::InputError("--port-file " + file + ": cannot be written");
+    try {
+        host::WholeFile whole(file);
+        whole.stream() << port << '\n';
+        whole.keep();
+    } catch (const base::InputError& error) {
+        throw base::InputError(std::string("--port-file ") + error.what());
     }
 }
 

@@ -121,7 +121,7 @@ void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std:
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {
-    const host::RegularFile opened(file);
+    const host::RegularFile opened(file, host::RegularFile::Links::refused);
     const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
     if (!bytes || bytes->empty()) {
         throw base::FormatError(opened.error().empty() ? "cannot be read" : opened.error());

@@ -42,7 +42,7 @@ void lockOrThrow(int descriptor, const std::filesystem::path& path, const Pause&
 bool isAsSeen(int descriptor, const std::filesystem::path& path, std::int64_t seen) {
     struct stat mine {};
     struct stat named {};
-    return fstat(descriptor, &mine) == 0 && stat(path.c_str(), &named) == 0 && mine.st_dev == named.st_dev &&
+    return fstat(descriptor, &mine) == 0 && lstat(path.c_str(), &named) == 0 && mine.st_dev == named.st_dev &&
            mine.st_ino == named.st_ino && mine.st_size == seen;
 }
 
@@ -56,9 +56,8 @@ PartFile::PartFile(std::filesystem::path path, int descriptor, std::int64_t size
 PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::uint8_t> begin) {
     // The file has another name until its beginning is whole. So after a crash a file with the journal's name is always
     // a journal.
-    std::error_code none;
-    if (std::filesystem::exists(path, none) && !std::filesystem::is_regular_file(path, none)) {
-        throw base::InputError(fmt::format("{}: is not a regular file; choose another --out", path.string()));
+    if (const std::string special = host::whyNotReplaceable(path); !special.empty()) {
+        throw base::InputError(fmt::format("{}: {}; choose another --out", path.string(), special));
     }
     const std::string beside = path.string() + ".part";
     const auto refuse = [&path] {
@@ -83,7 +82,8 @@ PartFile PartFile::make(const std::filesystem::path& path, std::span<const std::
 }
 
 PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, std::int64_t seen, const Pause& pause) {
-    PartFile file(path, ::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK), size);  // does not wait for a pipe
+    constexpr int kFlags = O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK;  // does not wait for a pipe
+    PartFile file(path, ::open(path.c_str(), O_WRONLY | kFlags), size);
     if (file.descriptor_ >= 0) {
         lockOrThrow(file.descriptor_, path, pause);
         // Otherwise records that another session has written since then would be cut off silently.
@@ -100,7 +100,7 @@ PartFile PartFile::open(const std::filesystem::path& path, std::int64_t size, st
 }
 
 void PartFile::requireNoWriter(const std::filesystem::path& path, const Pause& pause) {
-    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK), 0);
+    const PartFile file(path, ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK), 0);
     if (file.descriptor_ >= 0) {
         lockOrThrow(file.descriptor_, path, pause);
     }

@@ -71,7 +71,7 @@ public:
                 "{}: holds no tick track; a session keeps one whose haptic server was started with --record",
                 options.file));
         }
-        stream_.open(options.forces, std::ios::binary);
+        file_.emplace(options.forces);
         rows_ = haptic_bridge::tickTitles();
     }
     void feel(const sand::Replica& terrain) {
@@ -79,17 +79,14 @@ public:
             return;
         }
         replay_.feel(terrain, rows_);
-        stream_ << rows_;
+        file_->stream() << rows_;
         rows_.clear();
     }
     void finish() {
         if (options_.forces.empty()) {
             return;
         }
-        stream_.close();
-        if (!stream_) {
-            throw base::InputError(fmt::format("{}: cannot be written", options_.forces));
-        }
+        file_->keep();
         if (replay_.left() > 0) {
             host::printLine("{}: the last {} ticks belong to steps that the session did not show, and were left out",
                             options_.file, replay_.left());
@@ -99,7 +96,7 @@ public:
 private:
     const Options& options_;
     haptic_bridge::TickReplay replay_;
-    std::ofstream stream_;
+    std::optional<host::WholeFile> file_;
     std::string rows_;
 };
 

@@ -116,6 +116,10 @@ public:
     }
     /// Gives the file its name. The name survives a loss of power when the function returns.
     void name() {
+        const std::string special = host::whyNotReplaceable(target_);
+        if (!special.empty()) {
+            throw base::InputError(fmt::format("{}: {}; nothing was saved", target_.string(), special));
+        }
         require(rename(beside_.c_str(), target_.c_str()) == 0);
         close(std::exchange(descriptor_, -1));
         require(host::syncFolderOf(target_));
@@ -166,7 +170,7 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
 }
 
 SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place, const sand::SurfaceReader& read) {
-    const host::RegularFile opened(file);
+    const host::RegularFile opened(file, host::RegularFile::Links::refused);
     if (!opened.error().empty()) {
         throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), opened.error()));
     }

@@ -2,7 +2,9 @@
 #include "host/command_line.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cstdlib>
 #include <stdexcept>
 
 #include "base/input_error.hpp"
@@ -140,6 +142,29 @@ TEST(CommandLineCommands, OneOfThemMustBeGiven) {
     EXPECT_TRUE(first.given());
     EXPECT_FALSE(second.given());
     EXPECT_EQ(rate, 3);
+}
+
+TEST(CommandLine, MakesTheProcessWriteNoFileThatOthersMayWriteTo) {
+    const mode_t before = umask(0);
+    const host::CommandLine line("Does something.", "tool");
+    EXPECT_EQ(umask(before), 022U);
+}
+
+TEST(CommandLine, RefusesAValueOfTheEventsVariableThatIsNeither0Nor1) {
+    const char* const before = std::getenv("SANDWALL_EVENTS");
+    const std::optional<std::string> kept = before == nullptr ? std::nullopt : std::optional<std::string>(before);
+    for (const auto& [value, error] : {std::pair{"0", ""},
+                                       {"1", ""},
+                                       {"", ""},
+                                       {"yes", "tool: SANDWALL_EVENTS: must be 0 or 1, got 'yes'\n"},
+                                       {"11", "tool: SANDWALL_EVENTS: must be 0 or 1, got '11'\n"}}) {
+        setenv("SANDWALL_EVENTS", value, 1);
+        host::CommandLine line("Does something.", "tool");
+        const Given given = parse(line, {});
+        EXPECT_EQ(given.error, error);
+        EXPECT_EQ(given.status, given.error.empty() ? std::nullopt : std::optional<int>(base::kExitBadInput));
+    }
+    kept ? setenv("SANDWALL_EVENTS", kept->c_str(), 1) : unsetenv("SANDWALL_EVENTS");
 }
 
 int exitStatus(const std::function<int()>& run) {

@@ -8,6 +8,8 @@
 
 #include <fstream>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
@@ -91,6 +93,143 @@ TEST_F(Files, ANewFileReplacesAPipeOrLinkOfItsName) {
         }
     }));
     EXPECT_EQ(textOf(other), "of another program") << "the link was followed";
+}
+
+TEST_F(Files, OnlyFilesAndLinksAreForgotten) {
+    std::filesystem::create_symlink(written("file", "x"), folder_ / "link");
+    support::makePipe(folder_ / "pipe");
+    for (const char* name : {"file", "link", "pipe", "none"}) {
+        host::forgetFile(folder_ / name);
+    }
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+    EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "pipe"));
+}
+
+TEST_F(Files, AWholeFileNeverFollowsALinkAndNeverReplacesADevice) {
+    using Other = host::WholeFile::Other;
+    const std::filesystem::path other = written("other", "of another program");
+    std::filesystem::create_symlink(other, folder_ / "link");
+    std::filesystem::create_symlink(folder_ / "none", folder_ / "dangling");
+    for (const char* name : {"link", "dangling"}) {
+        EXPECT_THROW(host::WholeFile(folder_ / name, Other::written), base::InputError) << name;
+        EXPECT_THROW(host::WholeFile(folder_ / name, Other::refused), base::InputError) << name;
+    }
+    EXPECT_EQ(textOf(other), "of another program");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+    host::WholeFile null("/dev/null");
+    null.stream() << "text";
+    null.keep();
+    EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+}
+
+TEST_F(Files, AWholeFileReplacesNoLinkThatCameWhileItWasWritten) {
+    host::WholeFile whole(folder_ / "file");
+    whole.stream() << "text";
+    std::filesystem::create_symlink(written("other", "of another program"), folder_ / "file");
+    EXPECT_THROW(whole.keep(), base::InputError);
+    EXPECT_EQ(textOf(folder_ / "other"), "of another program");
+}
+
+TEST_F(Files, AWholeFileIsWrittenToAnOpenFileThatDevNames) {
+    const int made = host::makeFile(folder_ / "out");
+    host::WholeFile whole("/dev/fd/" + std::to_string(made));
+    whole.stream() << "text";
+    whole.keep();
+    close(made);
+    EXPECT_EQ(textOf(folder_ / "out"), "text");
+}
+
+/// Sets the umask, and the previous one at the end.
+class Umask {
+public:
+    explicit Umask(mode_t mask) : before_(umask(mask)) {}
+    ~Umask() { umask(before_); }
+    Umask(const Umask&) = delete;
+    Umask& operator=(const Umask&) = delete;
+
+private:
+    mode_t before_;
+};
+
+/// Returns the access to a file, such as 0644.
+mode_t accessTo(const std::filesystem::path& path) {
+    struct stat about {};
+    EXPECT_EQ(lstat(path.c_str(), &about), 0) << path;
+    return about.st_mode & (S_IRWXU | S_IRWXG | S_IRWXO);
+}
+
+TEST_F(Files, NoFileIsWritableForOthersWhateverTheUmask) {
+    for (const auto& [mask, file, folder] :
+         {std::tuple{0000U, 0644U, 0755U}, {0027U, 0640U, 0750U}, {0077U, 0600U, 0700U}}) {
+        const Umask set(mask);
+        const std::filesystem::path at = folder_ / std::to_string(mask);
+        host::makeFolders(at);
+        close(host::makeFile(at / "made", 0666));
+        EXPECT_TRUE(host::appendText(at / "appended", "x"));
+        host::WholeFile whole(at / "whole");
+        whole.keep();
+        for (const char* name : {"made", "appended", "whole"}) {
+            EXPECT_EQ(accessTo(at / name), file) << name;
+        }
+        EXPECT_EQ(accessTo(at), folder);
+    }
+}
+
+TEST_F(Files, AWholeFileKeepsTheAccessToThePreviousOneExceptThatOthersMayNotWrite) {
+    for (const auto& [before, after] : {std::pair{0666U, 0644U}, {0620U, 0600U}, {0640U, 0640U}}) {
+        chmod(written("file", "x").c_str(), before);
+        host::WholeFile whole(folder_ / "file");
+        whole.keep();
+        EXPECT_EQ(accessTo(folder_ / "file"), after);
+    }
+}
+
+TEST_F(Files, AProcessThatKeepsOthersFromWritingKeepsTheRestOfItsUmask) {
+    for (const auto& [before, after] : {std::pair{0000U, 0022U}, {0077U, 0077U}, {0005U, 0027U}}) {
+        const Umask set(before);
+        host::keepOthersFromWriting();
+        EXPECT_EQ(umask(0), after);
+    }
+}
+
+TEST_F(Files, WhatEarlierSessionsLeftIsUnsafeIfOthersMayWriteToItOrItIsALink) {
+    EXPECT_EQ(host::whyUnsafeContent(folder_ / "none"), "");
+    written("note.txt", "of the user");
+    chmod((folder_ / "note.txt").c_str(), 0666);
+    EXPECT_EQ(host::whyUnsafeContent(folder_), "") << "no session reads or writes that file";
+    std::vector<std::filesystem::path> all{written("session.journal", "x"), written("session.journal.2", "x")};
+    for (const char* name : {"log", "checkpoints", "saves"}) {
+        std::filesystem::create_directory(folder_ / name);
+        all.push_back(folder_ / name);
+        std::ofstream(folder_ / name / "file") << "x";
+        all.push_back(folder_ / name / "file");
+    }
+    EXPECT_EQ(host::whyUnsafeContent(folder_), "");
+    for (const std::filesystem::path& one : all) {
+        const mode_t before = accessTo(one);
+        for (const mode_t others : {S_IWGRP, S_IWOTH}) {
+            chmod(one.c_str(), before | others);
+            EXPECT_EQ(host::whyUnsafeContent(folder_),
+                      one.string() +
+                          ": other users may write to it; run chmod -R go-w on the session's folder, or "
+                          "choose another --out");
+        }
+        chmod(one.c_str(), before);
+        if (geteuid() == 0) {
+            ASSERT_EQ(chown(one.c_str(), 1, 1), 0);
+            EXPECT_EQ(host::whyUnsafeContent(folder_),
+                      one.string() + ": belongs to another user; remove it, or choose another --out");
+            ASSERT_EQ(chown(one.c_str(), 0, 0), 0);
+        }
+        std::filesystem::rename(one, folder_ / "real");
+        std::filesystem::create_symlink(folder_ / "real", one);
+        EXPECT_EQ(
+            host::whyUnsafeContent(folder_),
+            one.string() + ": is a link, and a session follows none in its folder; remove it, or choose another --out");
+        std::filesystem::remove(one);
+        std::filesystem::rename(folder_ / "real", one);
+    }
+    EXPECT_EQ(host::whyUnsafeContent(folder_), "");
 }
 
 TEST_F(Files, APrivateFileBelongsToThisUserAlone) {

@@ -5,8 +5,11 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
+#include <string>
 #include <thread>
 
+#include "base/input_error.hpp"
 #include "tests/support/blocked_child.hpp"
 
 namespace {
@@ -19,6 +22,27 @@ TEST(Watchdog, HasARolePerRank) {
     EXPECT_EQ(Watchdog::roleOf(1), Watchdog::Role::firstRank);
     EXPECT_EQ(Watchdog::roleOf(2), Watchdog::Role::otherRank);
     EXPECT_EQ(Watchdog::roleOf(12), Watchdog::Role::otherRank);
+}
+
+TEST(Watchdog, RefusesAStartTimeoutThatIsNoNumberOfSecondsInItsRange) {
+    const auto refused = [](const char* value) -> std::string {
+        setenv("SANDWALL_START_TIMEOUT", value, 1);
+        try {
+            lockstep::requireStartUpLimit();
+        } catch (const base::InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    for (const char* good : {"", "1", "20.5", "3600", "3e2"}) {
+        EXPECT_EQ(refused(good), "");
+    }
+    for (const char* bad : {"abc", "0.9", "3601", "-5", "nan", "inf", "20s", " 20"}) {
+        EXPECT_EQ(refused(bad), std::string("SANDWALL_START_TIMEOUT: must be a number from 1 to 3600 [s], got '") +
+                                    bad + "'; unset it for 120 s");
+    }
+    unsetenv("SANDWALL_START_TIMEOUT");
+    EXPECT_NO_THROW(lockstep::requireStartUpLimit());
 }
 
 // Each description takes place after the limit, and another wait begins during it. The job must not end.

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/input_error.hpp"
+#include "tests/support/blocked_child.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/seed.hpp"
 
@@ -155,6 +156,21 @@ TEST_F(PngFile, NamesThePictureItCannotWrite) {
     } catch (const base::InputError& error) {
         EXPECT_EQ(std::string(error.what()).rfind(nowhere.string() + ":", 0), 0U) << error.what();
     }
+}
+
+TEST_F(PngFile, NeverReplacesAPipeOrALink) {
+    support::makePipe(file_);
+    EXPECT_TRUE(support::endsByItself([this] { EXPECT_THROW(writePng(file_, Image(2, 2)), base::InputError); }));
+    EXPECT_TRUE(fs::is_fifo(file_));
+    fs::remove(file_);
+    std::ofstream(folder_ / "other") << "of another program";
+    fs::create_symlink(folder_ / "other", file_);
+    EXPECT_THROW(writePng(file_, Image(2, 2)), base::InputError);
+    EXPECT_EQ(fs::file_size(folder_ / "other"), 18U);
+    fs::remove(file_);
+    std::ofstream(file_) << "old";
+    writePng(file_, Image(2, 2));
+    EXPECT_EQ(readPng(file_).width, 2);
 }
 
 }  // namespace

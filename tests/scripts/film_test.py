@@ -66,6 +66,17 @@ class Film(LauncherTest):
         self.assertIn("-framerate 24 -i frame_%06d.png ", words)
         self.assertIn("-c:v libx264 -crf 18 -pix_fmt yuv420p film.mp4", words)
 
+    def test_a_film_follows_no_link_and_replaces_no_pipe(self):
+        self.script("ffmpeg", FFMPEG)
+        self.write("other", "of another program")
+        film = self.folder / "out %d" / "film.mp4"
+        film.parent.mkdir()
+        for make in (lambda: film.symlink_to(self.folder / "other"), lambda: os.mkfifo(film)):
+            make()
+            self.assertEqual(self.film()[::2], (2, "sandwall: out %d/film.mp4: is not a regular file; remove it; the 3 pictures are whole\n"))
+            film.unlink()
+        self.assertEqual((self.folder / "other").read_text(), "of another program")
+
     def test_a_film_that_ffmpeg_cannot_write_is_one_line(self):
         self.script("ffmpeg", "#!/bin/sh\necho half > film.mp4; echo first >&2; echo No space left >&2; exit 1\n")
         status, _, error = self.film()

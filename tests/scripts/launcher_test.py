@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pty
+import shlex
 import signal
 import socket
 import subprocess
@@ -15,7 +16,10 @@ from unittest import mock
 
 from launcher_fixture import LauncherTest
 
+import environment
+import pointer
 import session_folder
+from rank_hosts import BadInput
 
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"
@@ -129,13 +133,51 @@ class PrintedCommands(DisplayTest):
         self.assertIn("LP_NUM_THREADS=3 ", self.printed(["node1", "node2", "node1"], "--gl-threads", "3"))
 
     def test_variables_are_for_every_rank(self):
-        command = self.printed(["node1"], "--env", "XAUTHORITY=/home/wall/.Xauthority", "--env", "A=")
-        self.assertIn(" -x XAUTHORITY=/home/wall/.Xauthority -x A= -n 1 ", command)
+        self.environment["B"] = "inherited"
+        command = self.printed(["node1"], "--env", "XAUTHORITY=/home/wall/.Xauthority", "--env", "A=", "--env", "B", "--env", "C=a b;c",
+                               "--env", "LP_NUM_THREADS=7")
+        self.assertIn(" LP_NUM_THREADS=7 XAUTHORITY=/home/wall/.Xauthority A='' C='a b;c' mpirun ", command)
+        self.assertIn(" -x XAUTHORITY -x A -x B -x C -n 1 ", command)
+        self.assertNotIn("inherited", command)
+
+    def test_a_printed_command_can_be_pasted(self):
+        self.script("mpirun", '#!/bin/sh\necho "$A"\n')
+        command = self.printed(["-"], "--env", "A=two words; echo three")
+        ran = subprocess.run(["sh", "-c", command], env=self.environment, capture_output=True, text=True)
+        self.assertEqual(ran.stdout, "two words; echo three\n")
 
     def test_nothing_is_started(self):
         self.script("mpirun", "#!/bin/sh\ntouch " + str(self.folder / "started"))
         self.printed(["away1"])
         self.assertFalse((self.folder / "started").exists())
+
+
+class Values(LauncherTest):
+    def test_no_process_that_the_launcher_starts_shows_the_value_of_a_variable(self):
+        # Each rank lists the arguments of all processes. A daemon of mpirun starts one of them by way of a made-up ssh.
+        listing = '#!/bin/sh\nfor file in /proc/[0-9]*/cmdline; do tr "\\0" " " < "$file"; echo; done > "$LISTED.$OMPI_COMM_WORLD_RANK" 2>&1\n' \
+            'echo "$GIVEN $TAKEN" > "$LISTED.values.$OMPI_COMM_WORLD_RANK"\n'
+        for name in ("sandwall-master", "sandwall-render-node"):
+            self.script(name, listing)
+        self.environment.update(TAKEN="taken-5c1f09", LISTED=str(self.folder / "listed"))
+        ended = self.start(["-", "node1"], "--env", "TAKEN", "--env", "GIVEN=given-77aa31", "--env", "LISTED")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        for rank in range(3):
+            self.assertEqual((self.folder / f"listed.values.{rank}").read_text(), "given-77aa31 taken-5c1f09\n")
+            lines = (self.folder / f"listed.{rank}").read_text(errors="replace").splitlines()
+            self.assertTrue(any("orted" in line for line in lines), "the daemon of node1 is not in the list")
+            self.assertFalse([line for line in lines if "taken-5c1f09" in line])
+            self.assertTrue(all("scripts/sandwall run" in line for line in lines if "given-77aa31" in line))
+
+
+class ShownCommands(unittest.TestCase):
+    def test_the_command_of_try_can_be_pasted_whatever_its_files_are_called(self):
+        for out, wall in (("out/try", "desktop.toml"), ("my out; echo x", "a wall's.toml"), ("$(touch x)", "w`x`.toml")):
+            with mock.patch("pointer.say") as said:
+                pointer.tell_journal(out, wall)
+            command = said.call_args[0][0].partition("session.journal; `")[2]
+            self.assertEqual(shlex.split(command.removesuffix("` makes a film of it"))[1:],
+                             ["film", f"{out}/session.journal", "--wall", wall, "--out", "film"])
 
 
 class LargeWall(DisplayTest):
@@ -172,8 +214,27 @@ class Refusals(LauncherTest):
     def test_a_network_that_is_none_is_refused(self):
         self.assertIn("--network: 'eth0' is not a network", self.refused(["node1"], "--print-command", "--network", "eth0"))
 
-    def test_a_variable_without_a_value_is_refused(self):
-        self.assertEqual(self.refused(["-"], "--env", "XAUTHORITY"), "sandwall: --env XAUTHORITY: write NAME=VALUE\n")
+    def test_a_variable_that_cannot_be_given_is_refused_without_its_value(self):
+        for word, line in (("NOWHERE", "NOWHERE: is not set here; export it, or write NOWHERE=VALUE"),
+                           ("1A=secret", "1A: write NAME, or NAME=VALUE in one line"),
+                           ("A=secret\n", "A: write NAME, or NAME=VALUE in one line"),
+                           ("OMPI_MCA_x=secret", "OMPI_MCA_x: belongs to Open MPI, which shows its value in command lines; export it instead"),
+                           ("SANDWALL_EVENTS=2", "SANDWALL_EVENTS: must be 0 or 1, got '2'")):
+            with self.assertRaises(BadInput) as refused:
+                environment.for_ranks([word])
+            self.assertEqual(str(refused.exception), f"--env {line}")
+        self.assertEqual(self.refused(["-"], "--env", "NOWHERE"), "sandwall: --env NOWHERE: is not set here; export it, or write NOWHERE=VALUE\n")
+
+    def test_a_variable_of_sandwall_is_checked_like_an_option(self):
+        for name, values, allowed in (("SANDWALL_START_TIMEOUT", ("abc", "0", "-5", "nan", "inf", "3601", "20s", " 20"),
+                                       "a number from 1 to 3600 [s], got '{}'; unset it for 120 s"),
+                                      ("SANDWALL_EVENTS", ("yes", "2", "01"), "0 or 1, got '{}'")):
+            for value in values:
+                self.assertEqual(environment.why_bad({name: value}), f"{name}: must be {allowed.format(value)}")
+        for good in ({}, {"SANDWALL_START_TIMEOUT": "20.5", "SANDWALL_EVENTS": ""}, {"SANDWALL_START_TIMEOUT": "", "SANDWALL_EVENTS": "0"}):
+            self.assertIsNone(environment.why_bad(good))
+        self.environment["SANDWALL_START_TIMEOUT"] = "abc"
+        self.assertEqual(self.refused(["-"]), f"sandwall: {environment.why_bad(self.environment)}\n")
 
     def test_too_few_slots_are_refused(self):
         hosts = self.write("hosts", "node1\n")

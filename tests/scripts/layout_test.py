@@ -145,7 +145,11 @@ class InstalledTree(LauncherTest):
     def test_a_folder_of_programs_that_is_none_names_the_variable(self):
         self.environment["SANDWALL_BIN"] = "/nowhere"
         ended = self.call("run", "--wall", "small", "--scene", "small")
-        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", "sandwall: /nowhere/sandwall-check: does not exist; unset "
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", "sandwall: SANDWALL_BIN: /nowhere is not a folder; unset it, or "
+                         "set it to the folder of the programs\n"))
+        self.environment["SANDWALL_BIN"] = str(self.folder)
+        ended = self.call("run", "--wall", "small", "--scene", "small")
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", f"sandwall: {self.folder}/sandwall-check: does not exist; unset "
                          "SANDWALL_BIN, or set it to the folder of the programs\n"))
 
 

@@ -4,6 +4,8 @@
 
 import os
 import pathlib
+import shutil
+import signal
 import stat
 import subprocess
 import tempfile
@@ -16,6 +18,9 @@ from supervisor_fixture import Supervised
 import processes
 import session_folder
 from rank_hosts import BadInput
+
+
+NOBODY = 65534
 
 
 class Folder(Supervised):
@@ -86,6 +91,117 @@ class Folder(Supervised):
         self.tries("dies 1 host 9", "dies 1 host 9")
         (self.folder / "tries").unlink()
         self.assertEqual(self.ended(["-"], "--resume", "--restarts", "1")[0], 1)
+
+
+    def complaint(self):
+        """Returns the line about what an earlier session left in the folder. It is the same as that of the launcher."""
+        with self.assertRaises(BadInput) as refused, session_folder.held(self.out, resume=True):
+            pass
+        return str(refused.exception).replace(str(self.folder) + "/", "")
+
+    def test_what_an_earlier_session_left_is_refused_if_others_may_change_it(self):
+        for name in ("log", "checkpoints", "saves"):
+            (self.out / name).mkdir()
+            (self.out / name / "file").write_text("x")
+        (self.out / "session.journal.2").write_text("x")
+        for entry in ["session.journal.2", *(f"{name}{end}" for name in ("log", "checkpoints", "saves") for end in ("", "/file"))]:
+            path = self.out / entry
+            mode = stat.S_IMODE(path.stat().st_mode)
+            for bit in (stat.S_IWGRP, stat.S_IWOTH):
+                path.chmod(mode | bit)
+                self.assertEqual(self.complaint(), f"out/{entry}: other users may write to it; run chmod -R go-w on the session's folder, "
+                                 "or choose another --out")
+            path.chmod(mode)
+            if os.geteuid() == 0:
+                os.chown(path, NOBODY, NOBODY)
+                self.assertEqual(self.complaint(), f"out/{entry}: belongs to another user; remove it, or choose another --out")
+                os.chown(path, 0, 0)
+            path.rename(self.folder / "real")
+            path.symlink_to(self.folder / "real")
+            self.assertEqual(self.complaint(), f"out/{entry}: is a link, and a session follows none in its folder; remove it, or choose another --out")
+            path.unlink()
+            (self.folder / "real").rename(path)
+        with session_folder.held(self.out):
+            pass
+
+    def test_a_session_that_is_refused_for_what_is_in_its_folder_has_written_nothing(self):
+        (self.out / "log").mkdir()
+        (self.out / "log").chmod(0o777)
+        (self.out / "log" / "try_1.out").write_text("of an earlier session")
+        for options in ([], ["--resume"]):
+            self.assertEqual(self.refused(["-"], *options), f"sandwall: {self.complaint()}\n")
+        self.assertEqual([str(path.relative_to(self.out)) for path in sorted(self.out.rglob("*"))], ["log", "log/try_1.out"])
+        self.assertEqual((self.out / "log" / "try_1.out").read_text(), "of an earlier session")
+        self.assertFalse((self.folder / "tries").exists(), "mpirun was started")
+
+
+class Umasks(Supervised):
+    def test_no_file_of_the_launcher_is_writable_for_others_whatever_the_umask(self):
+        for umask, file_mode, folder_mode in ((0o000, 0o644, 0o755), (0o022, 0o644, 0o755), (0o077, 0o600, 0o700)):
+            out = self.folder / "out"
+            shutil.rmtree(out, ignore_errors=True)
+            (self.folder / "tries").unlink(missing_ok=True)
+            self.tries("progress 7 6; dies 1 host 9", 'cat "$folder/out/log/restarting" > "$folder/why"; stat -c %a "$folder/out/log/restarting" >> "$folder/why"; dies 1 host 9')
+            ended = self.start(["-"], "--restarts", "1", umask=umask)
+            self.assertEqual(ended.returncode, 1, ended.stderr)
+            self.assertEqual((self.folder / "why").read_text().split("\n")[1], f"{file_mode:o}")
+            for folder in (out, out / "log"):
+                self.assertEqual(stat.S_IMODE(folder.stat().st_mode), folder_mode, folder)
+            files = list((out / "log").iterdir())
+            self.assertEqual({file.name for file in files}, {"report.txt", "try_1.err", "try_1.out", "try_2.err", "try_2.out"})
+            for file in [*files, out / "session.journal"]:  # mpirun inherits the umask, and so do the ranks
+                self.assertEqual(stat.S_IMODE(file.stat().st_mode), file_mode, file)
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
+    def test_another_user_can_neither_write_to_a_session_nor_put_a_link_into_it(self):
+        self.folder.chmod(0o755)  # so that the other user reaches the session's folder
+        self.tries(f'setpriv --reuid={NOBODY} --regid={NOBODY} --clear-groups sh -c "cd $folder/out && for place in . log; do '
+                   'ln -s /etc/passwd \\$place/restarting; ln -s /etc/passwd \\$place/made; done; echo x >> log/try_1.err; echo x >> log/try_1.out; echo ended > /dev/null; '
+                   'id -u" > "$folder/user" 2>/dev/null; ls -A "$folder/out" "$folder/out/log" > "$folder/listed"; exit 0')
+        ended = self.start(["-"], umask=0)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertEqual((self.folder / "user").read_text().strip(), str(NOBODY), "the other user did nothing")
+        listed = (self.folder / "listed").read_text()
+        self.assertNotIn("made", listed)
+        self.assertNotIn("restarting", listed)
+        self.assertEqual((self.folder / "out" / "log" / "try_1.out").read_text(), "")
+
+
+class Others(unittest.TestCase):
+    MARK = "1-1-0123456789abcdef"
+
+    def begin(self, mark, **options):
+        process = subprocess.Popen(["sleep", "100"], env={"PATH": os.environ["PATH"], processes.MARK: mark}, **options)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_only_processes_of_this_session_are_ended(self):
+        ours, longer = self.begin(self.MARK), self.begin(self.MARK + "0")
+        self.wait_for_environment(ours, longer)
+        self.assertEqual(processes.marked(f"{processes.MARK}={self.MARK}".encode()), [ours.pid])
+        self.end_all()
+        self.assertEqual((ours.wait(60), longer.poll()), (-signal.SIGKILL, None))
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can become another user")
+    def test_a_process_of_another_user_with_the_mark_of_the_session_is_not_ended(self):
+        ours, theirs = self.begin(self.MARK), self.begin(self.MARK, user=NOBODY, group=NOBODY, extra_groups=[])
+        self.wait_for_environment(ours, theirs)
+        self.end_all()
+        self.assertEqual((ours.wait(60), theirs.poll()), (-signal.SIGKILL, None))
+
+    def wait_for_environment(self, *begun):
+        """Waits until the processes have their own environment, which they get with exec."""
+        for process in begun:
+            while b"sleep" not in pathlib.Path(f"/proc/{process.pid}/cmdline").read_bytes():
+                pass
+
+    def end_all(self):
+        """Ends what is left of a job with the mark, at once."""
+        job = object.__new__(processes.Job)
+        job.mark = self.MARK
+        with mock.patch.object(processes, "KILL_SECONDS", 0):
+            job.clear()  # the environment of an ended process is empty
 
 
 class Orphans(Supervised):

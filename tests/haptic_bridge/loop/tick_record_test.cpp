@@ -213,6 +213,24 @@ TEST_F(Recorded, IntoAPipeOrADeviceIsRefusedWithoutWaiting) {
     EXPECT_THROW(open("/dev/null"), base::InputError);
 }
 
+TEST_F(Recorded, IntoALinkIsRefusedAndItsTargetStays) {
+    folder_.write("target", "of another program");
+    for (const char* target : {"target", "nowhere"}) {
+        std::filesystem::remove(folder_.file("link"));
+        std::filesystem::create_symlink(folder_.file(target), folder_.file("link"));
+        EXPECT_THROW(open(folder_.file("link")), base::InputError);
+    }
+    EXPECT_EQ(folder_.read("target"), "of another program");
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("nowhere")));
+}
+
+TEST_F(Recorded, IntoAFileOfAnEarlierSessionLeavesThatFilesOtherNameAlone) {
+    folder_.write("ticks.csv", "of an earlier session");
+    std::filesystem::create_hard_link(folder_.file("ticks.csv"), folder_.file("other"));
+    open(folder_.file("ticks.csv"));
+    EXPECT_EQ(folder_.read("other"), "of an earlier session");
+}
+
 TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/ticks.csv"), base::InputError); }
 
 TEST(TickTrack, RefusesBytesThatAreNone) {

@@ -70,6 +70,17 @@ TEST_F(TwoWriters, ASecondThatBeginsAnewWaitsAsLong) {
     EXPECT_EQ(waited_, 5000ms);
 }
 
+TEST_F(TwoWriters, ALinkIsNeitherContinuedNorReplaced) {
+    first_.reset();
+    const std::filesystem::path other = folder_ / "other";
+    std::filesystem::rename(file_, other);
+    std::filesystem::create_symlink(other, file_);
+    EXPECT_EQ(open(kNever), file_.string() + ": the journal cannot be continued (Too many levels of symbolic links)");
+    EXPECT_THROW((void)PartFile::make(file_, base::Bytes{4}), base::InputError);
+    EXPECT_TRUE(std::filesystem::is_symlink(file_));
+    EXPECT_EQ(std::filesystem::file_size(other), 3U);
+}
+
 TEST_F(TwoWriters, NobodyWaitsForAFileThatNobodyWrites) {
     first_.reset();
     EXPECT_EQ(open(kNever), "nothing");

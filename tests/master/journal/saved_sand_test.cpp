@@ -60,8 +60,19 @@ TEST_F(SavedSandFile, APipeIsRefusedWithoutWaitingForItsWriter) {
     support::makePipe(file_);
     EXPECT_TRUE(
         support::endsByItself([this] { expectComplaint(scene_, "is not a regular file; nothing was loaded"); }));
-    EXPECT_TRUE(support::endsByItself([this] { master::writeSavedSand(file_, sand()); })) << "it replaces the pipe";
-    EXPECT_EQ(complaint(scene_), "nothing");
+    EXPECT_TRUE(
+        support::endsByItself([this] { EXPECT_THROW(master::writeSavedSand(file_, sand()), base::InputError); }));
+    EXPECT_TRUE(std::filesystem::is_fifo(file_)) << "the pipe was replaced";
+}
+
+TEST_F(SavedSandFile, IsNeitherWrittenNorReadThroughALink) {
+    master::writeSavedSand(folder_ / "other", sand());
+    const auto before = std::filesystem::last_write_time(folder_ / "other");
+    std::filesystem::create_directory(folder_ / "saves");
+    std::filesystem::create_symlink(folder_ / "other", file_);
+    expectComplaint(scene_, "is a link, which is not followed; nothing was loaded");
+    EXPECT_THROW(master::writeSavedSand(file_, sand()), base::InputError);
+    EXPECT_EQ(std::filesystem::last_write_time(folder_ / "other"), before);
 }
 
 TEST_F(SavedSandFile, IsWrittenWhereAKilledSessionLeftAPipeOrLink) {
