@@ -18,7 +18,7 @@ namespace test {
 /// checks all bounds.
 class PushCheck {
 public:
-    /// The part of a tick that a test knows besides its push.
+    /// The part of a tick that a test knows, apart from its push.
     struct Asked {
         double time = 0;       // [s]
         bool fault = false;    // 0 must be pushed, and a ramp begins
