@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
 
@@ -201,7 +202,10 @@ void serve(const Options& options) {
     asio::io_context io;
     EndSignals signals(io);  // lives longer than the hand, so that a second signal cannot keep it from letting go
     HandChannel channel;
-    channel.failure.onFailure([&io] { io.stop(); });
+    Listener* open = nullptr;  // for the main thread alone
+    channel.failure.onFailure([&io, &open] {
+        asio::post(io, [&io, &open] { open != nullptr ? open->shut("the server has failed") : io.stop(); });
+    });
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
@@ -234,6 +238,7 @@ void serve(const Options& options) {
     DeviceWatch watch(io, options.device, device);
     signals.onFirst([&listener] { listener.shut("the server was stopped"); });
     listener.serve(sandThread);
+    open = &listener;
     announce(options, hand, endpoint);
     runLinks(io);
     if (loop != nullptr) {
