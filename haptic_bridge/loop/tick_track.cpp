@@ -218,8 +218,8 @@ void appendRow(const Tick& tick, std::string& text) {
     for (const Vec3& v : {tick.armPlace, tick.armVelocity, tick.place, tick.velocity, tick.lawful, tick.sent}) {
         fmt::format_to(out, ",{},{},{}", v.x, v.y, v.z);
     }
-    fmt::format_to(out, ",{},{},{},{},{},{},{},{}\n", tick.guards, tick.surfaceAge, tick.surfaceStep,
-                   tick.stepAge, tick.share, tick.talus, tick.edited ? 1 : 0, tick.engaged ? 1 : 0);
+    fmt::format_to(out, ",{},{},{},{},{},{},{},{}\n", tick.guards, tick.surfaceAge, tick.surfaceStep, tick.stepAge,
+                   tick.share, tick.talus, tick.edited ? 1 : 0, tick.engaged ? 1 : 0);
 }
 
 }  // namespace haptic_bridge

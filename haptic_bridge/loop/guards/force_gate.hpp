@@ -33,8 +33,8 @@ public:
         double time = 0;          // [s]
         sand::force::Vec3 force;  // [N], after all other guards
         double whole = 0;  // [N], norm that the force reaches without slew: within the device's, in the hand's share
-        bool contact = false;     // the limited force is above 0
-        bool edited = false;      // the first tick that feels a step with an edit
+        bool contact = false;  // the limited force is above 0
+        bool edited = false;   // the first tick that feels a step with an edit
     };
     /// Returns the force to push, and sets the bit of each guard that acted.
     [[nodiscard]] sand::force::Vec3 pass(const Wanted& wanted, std::uint32_t& acted);
