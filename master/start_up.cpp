@@ -70,8 +70,8 @@ void requireFolder(const std::filesystem::path& out) {
         throw base::InputError(fmt::format("{}: {}; {}choose another --out", out.string(), why,
                                            why.starts_with("other users") ? "run chmod go-w on it, or " : ""));
     }
-    if (std::string why = host::whyUnsafeContent(out); !why.empty()) {
-        throw base::InputError(std::move(why));
+    if (const std::string why = host::whyUnsafeContent(out); !why.empty()) {
+        throw base::InputError(why);
     }
 }
 

@@ -13,7 +13,6 @@ namespace bench {
 namespace {
 
 using sand::Between;
-using sand::force::Vec3;
 
 constexpr std::pair<Between, const char*> kWays[]{
     {Between::local, "local"}, {Between::hold, "hold"}, {Between::interpolate, "interpolate"}};

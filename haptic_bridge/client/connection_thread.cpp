@@ -128,17 +128,16 @@ void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
     if (!shelf.beginGranting()) {
         return;
     }
-    asio::post(io_,
-               [this, start = std::move(start), grant = Grant(start, std::move(state), std::move(recent))]() mutable {
-                   if (shelf.link() != Link::granting || !connection_) {
-                       return;
-                   }
-                   grant_ = std::move(grant);
-                   start.force = force_;
-                   started_ = true;
-                   shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
-                   connection_->send(start);
-               });
+    asio::post(io_, [this, start, grant = Grant(start, std::move(state), std::move(recent))]() mutable {
+        if (shelf.link() != Link::granting || !connection_) {
+            return;
+        }
+        grant_ = std::move(grant);
+        start.force = force_;
+        started_ = true;
+        shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
+        connection_->send(start);
+    });
 }
 
 void Client::Session::shareForce(const ForceShare& share) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/command_line.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -122,7 +123,8 @@ TEST_F(CommandLineOptions, RefusesWhatItCannotUseInOneLine) {
 TEST_F(CommandLineOptions, RefusesNumbersThatAreNotFinite) {
     for (const std::string option : {"--share", "--way", "--wait"}) {
         for (const std::string number : {"nan", "NaN", "-nan", "nan(0x1)", "inf", "-inf", "Infinity", "1e999"}) {
-            expectRefused({"a", option + "=" + number}, option + ": must be a finite number, got " + number);
+            expectRefused({"a", fmt::format("{}={}", option, number)},
+                          fmt::format("{}: must be a finite number, got {}", option, number));
         }
         expectRefused({"a", option, "far"}, option);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every option of every program that takes a number, as --help lists them. So a new option is tested too.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,7 +47,7 @@ std::vector<std::string> commandsOf(const std::string& program) {
     }
     std::vector<std::string> commands;
     for (const std::string& name : matches(help.substr(list), "\n  ([a-z-]+)")) {
-        commands.push_back(program + " " + name);
+        commands.push_back(fmt::format("{} {}", program, name));
     }
     return commands;
 }
@@ -57,12 +58,13 @@ TEST(NumberOptions, OfEveryProgramRefuseWhatIsNotFinite) {
         for (const std::string& command : commandsOf(program)) {
             const std::string help = support::runProgram(command, "--help").output;
             for (const std::string& option : matches(help, "\n  (?:-[a-z],)?(--[a-z-]+) FLOAT")) {
-                tried.insert(program + " " + option);
+                tried.insert(fmt::format("{} {}", program, option));
                 for (const std::string number : {"nan", "inf", "-inf"}) {
-                    const support::Ran ran = support::runProgram(command, option + "=" + number + " </dev/null");
+                    const support::Ran ran =
+                        support::runProgram(command, fmt::format("{}={} </dev/null", option, number));
                     EXPECT_EQ(ran.status, 2) << command << " " << option << "=" << number << "\n" << ran.output;
-                    EXPECT_EQ(ran.output,
-                              program + ": " + option + ": must be a finite number, got " + number + "; try --help\n");
+                    EXPECT_EQ(ran.output, fmt::format("{}: {}: must be a finite number, got {}; try --help\n", program,
+                                                      option, number));
                 }
             }
         }

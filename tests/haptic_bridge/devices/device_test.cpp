@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -131,7 +132,7 @@ TEST(Strokes, NamesTheLineOfWhatItCannotRead) {
     starts("stroke\narc 0 0 1 1 0\n", "word:2: 'arc' takes");
     for (const std::string number : {"nan", "inf", "-inf"}) {
         for (const std::string word : {"speed", "depth", "travel", "lift", "heading"}) {
-            starts(word + " " + number, "word:1: '" + word + "' needs a number from ");
+            starts(fmt::format("{} {}", word, number), fmt::format("word:1: '{}' needs a number from ", word));
         }
         starts("stroke\npoint 0 0\nhold " + number, "word:3: 'hold' needs a number from ");
         starts("stroke\npoint 0 " + number, "word:2: 'point' needs a number from ");

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers of a driver, of a simulated arm and of a recorded arm, at their bounds and outside of them.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -82,7 +84,8 @@ TEST_F(DriverNumbers, OutOfTheirBoundsAreRefusedByNameBeforeAnyPush) {
             const std::string fault =
                 value == "forgotten" || value == "nan" ? "does not state its " + row.name : row.name + " is ";
             const std::string errors = server.errors();
-            EXPECT_TRUE(errors.starts_with("sandwall-haptic-server: --device " + spec + ": " + fault)) << errors;
+            EXPECT_TRUE(errors.starts_with(fmt::format("sandwall-haptic-server: --device {}: {}", spec, fault)))
+                << errors;
             EXPECT_TRUE(errors.ends_with("; a driver must give " + row.bounds + "\n")) << errors;
             EXPECT_EQ(errors.find('\n'), errors.size() - 1) << errors;
             EXPECT_FALSE(std::filesystem::exists(folder_.file("pushes"))) << spec << ": it was pushed";
@@ -136,12 +139,13 @@ TEST(ArmNumbers, BoundTheKeysOfASimulatedArm) {
         for (const std::string& value : wrong) {
             const std::string spec = "sim:touch," + row.key + "=" + value;
             EXPECT_EQ(test::refusalOf([&] { (void)openSimulatedArm(spec); }),
-                      "--device " + spec + ": " + row.key + " needs " + row.bounds + ", got '" + value + "'");
+                      fmt::format("--device {}: {} needs {}, got '{}'", spec, row.key, row.bounds, value));
         }
     }
     for (const std::string key : {"grip", "grip_damping"}) {
         for (const std::string value : {"nan", "inf", "-inf", "-1", "100001"}) {
-            EXPECT_THROW((void)openSimulatedArm("sim:touch," + key + "=" + value), base::InputError) << key << value;
+            EXPECT_THROW((void)openSimulatedArm(fmt::format("sim:touch,{}={}", key, value)), base::InputError)
+                << key << value;
         }
     }
 }
