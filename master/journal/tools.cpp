@@ -11,6 +11,7 @@
 
 #include "base/input_error.hpp"
 #include "host/print_line.hpp"
+#include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/import/raster_memory.hpp"

@@ -207,7 +207,7 @@ TEST_F(Files, WhatEarlierSessionsLeftIsUnsafeIfOthersMayWriteToItOrItIsALink) {
     EXPECT_EQ(host::whyUnsafeContent(folder_), "");
     for (const std::filesystem::path& one : all) {
         const mode_t before = accessTo(one);
-        for (const mode_t others : {S_IWGRP, S_IWOTH}) {
+        for (const mode_t others : {mode_t{S_IWGRP}, mode_t{S_IWOTH}}) {
             chmod(one.c_str(), before | others);
             EXPECT_EQ(host::whyUnsafeContent(folder_),
                       one.string() +

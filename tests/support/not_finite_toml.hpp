@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cctype>
@@ -106,10 +107,11 @@ inline std::set<std::string> tryEachOtherKey(const std::string& text, const Comp
             if (given || key == "nonsense") {
                 continue;
             }
-            tried.insert(table + " " + key);
+            tried.insert(fmt::format("{} {}", table, key));
             for (const std::string number : {"nan", "inf", "-inf"}) {
                 std::vector<std::string> longer = lines;
-                longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(index) + 1, key + " = " + number);
+                longer.insert(longer.begin() + static_cast<std::ptrdiff_t>(index) + 1,
+                              fmt::format("{} = {}", key, number));
                 const std::string complaint = complain(joined(longer));
                 EXPECT_TRUE(complaint.starts_with("f.toml:"))
                     << table << " " << key << " = " << number << ": " << complaint;
