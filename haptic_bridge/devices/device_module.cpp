@@ -63,6 +63,8 @@ auto made(const std::string& option, const Make& make) {
         return thing;
     } catch (const std::exception& error) {
         throw base::InputError(fmt::format("{}: {}", option, error.what()));
+    } catch (...) {  // a driver may throw anything
+        throw base::InputError(option + ": the driver has thrown an exception without a text");
     }
 }
 

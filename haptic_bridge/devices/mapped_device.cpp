@@ -30,6 +30,10 @@ MappedDevice::MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& setting
       vertical_(scale_ * settings.verticalScale / scene.toolRadius()),
       origin_(settings.origin.value_or(Vec3{})),
       check_(kFarthestShare * arm_->physics().reach, troubles_) {
+    requireSettingsOfAnArm(settings);
+}
+
+void MappedDevice::requireSettingsOfAnArm(const HandSettings& settings) {
     if (settings.datum == HandSettings::Datum::surface) {
         // On a slope such a mapping would bend the hand's space. A force in that space would do work on a closed path.
         throw base::InputError("--map datum=surface: works only for recordings; an arm needs datum=level");

@@ -26,7 +26,11 @@ class MappedDevice : public Device {
 public:
     static constexpr double kFarthestShare = 0.5;  // [share of the reach], largest movement between two readings
 
-    /// Maps `arm` to `scene`. Throws base::InputError for settings that an arm cannot have.
+    /// Throws base::InputError for settings that an arm cannot have. Call it before an arm is opened, so that bad input
+    /// does not touch the arm.
+    static void requireSettingsOfAnArm(const HandSettings& settings);
+
+    /// Maps `arm` to `scene`. Requires what requireSettingsOfAnArm() does.
     MappedDevice(std::unique_ptr<Arm> arm, const HandSettings& settings, const scene::Scene& scene);
 
     /// Returns the scale of `arm` over `scene` [scene unit/m].

@@ -68,6 +68,7 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
         return openTrace(what, settings, scene);
     }
     if (kind == "driver" && !what.empty()) {
+        MappedDevice::requireSettingsOfAnArm(settings);
         return std::make_unique<MappedDevice>(openArmModule(what), settings, scene);
     }
     if (kind == "sim") {

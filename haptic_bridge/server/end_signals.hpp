@@ -11,14 +11,14 @@
 
 namespace haptic_bridge {
 
-/// The signals that end the server in order: SIGINT, SIGTERM and SIGHUP. While this object lives, none of them ends the
-/// process by itself. A second signal therefore changes nothing.
+/// The signals that end the server in order: SIGINT, SIGTERM, SIGQUIT and SIGHUP. While this object lives, none of them
+/// ends the process by itself. A second signal therefore changes nothing.
 ///
 /// SIGHUP stays ignored if the server was started so, as nohup does. SIGPIPE is ignored from now on. Otherwise the
 /// server would end in the middle of a touch when the reader of its output ends.
 class EndSignals {
 public:
-    explicit EndSignals(boost::asio::io_context& io) : signals_(io, SIGINT, SIGTERM) {
+    explicit EndSignals(boost::asio::io_context& io) : signals_(io, SIGINT, SIGTERM, SIGQUIT) {
         struct sigaction hangUp {};
         sigaction(SIGHUP, nullptr, &hangUp);
         if (hangUp.sa_handler != SIG_IGN) {

@@ -158,10 +158,17 @@ def missing_tests(repository, name):
                     yield f"{name}: {file} has no test {span}"
 
 
+def unknown_tests(repository, name):
+    """Yields a line for each test that a document names and the project does not have."""
+    for span in CODE.findall(repository.documents[name]):
+        if TEST_NAME.match(span) and span not in repository.all_tests():
+            yield f"{name}: names the test {span}, which is not in the project"
+
+
 def faults(repository):
     found = []
     for name in repository.documents:
-        for look in (broken_links, missing_functions, missing_sources, missing_filters):
+        for look in (broken_links, missing_functions, missing_sources, missing_filters, unknown_tests):
             found += look(repository, name)
     return found + list(missing_tests(repository, PAPERS))
 
@@ -246,6 +253,12 @@ class Documents(unittest.TestCase):
     def test_a_filter_that_runs_nothing_is_named(self):
         self.assertEqual(list(missing_filters(self.made_up("--gtest_filter='Law.*' --gtest_filter=Law.Holds:*Odd*"), "docs/page.md")), [])
         self.assertEqual(len(list(missing_filters(self.made_up("--gtest_filter=Law.Hold --gtest_filter='Rule.*'"), "docs/page.md"))), 2)
+
+    def test_a_test_that_no_file_has_is_named_in_any_document(self):
+        text = "`Law.Holds` and `{}` say so, not `law.toml` or `Law`"
+        self.assertEqual(list(unknown_tests(self.made_up(text.format("Law.IsOdd")), "docs/page.md")), [])
+        self.assertEqual(list(unknown_tests(self.made_up(text.format("Law.IsEven")), "docs/page.md")),
+                         ["docs/page.md: names the test Law.IsEven, which is not in the project"])
 
     def test_a_test_that_is_gone_is_named(self):
         row = "| `sand/law.cpp` | `tests/sand/law_test.cpp` `Law.Holds`, `{}` |"

@@ -26,6 +26,9 @@ public:
         if (what_ == "throws") {
             throw std::runtime_error("the device on USB 3 is taken");
         }
+        if (what_ == "throws 7") {
+            throw 7;
+        }
         if (what_ == "rough") {
             std::fesetround(FE_UPWARD);  // as a library of fast-math that the driver loads when it opens its device
         }

@@ -44,10 +44,13 @@ TEST_F(BadDevice, IsToldInALineAndTheWallGoesOn) {
 }
 
 TEST_F(BadDevice, ThatCannotBeOpenedIsNamed) {
-    ServerProcess server(folder_, words("throws"));
-    EXPECT_EQ(server.wait(), 2);
-    EXPECT_NE(server.errors().find("bad-driver.so:throws: the device on USB 3 is taken"), std::string::npos)
-        << server.errors();
+    for (const auto& [what, reason] : {std::pair{"throws", "the device on USB 3 is taken"},
+                                       {"throws 7", "the driver has thrown an exception without a text"}}) {
+        ServerProcess server(folder_, words(what));
+        EXPECT_EQ(server.wait(), 2) << what;
+        const std::string device = "sandwall-haptic-server: --device " + words(what)[3];
+        EXPECT_EQ(server.errors(), device + ": " + reason + "\n");
+    }
 }
 
 TEST_F(BadDevice, WhoseDriverChangesTheRoundingWhenItOpensIsSetBack) {

@@ -18,7 +18,7 @@ TEST_F(LastForce, IsZeroAfterAMasterThatLeavesAndASigterm) {
 }
 
 TEST_F(LastForce, IsZeroAfterASignalInTheMiddleOfATouch) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGQUIT, SIGHUP}) {
         ServerProcess server(folder_, words("none"));
         ASSERT_NO_FATAL_FAILURE(press(server.address()));
         EXPECT_EQ(server.stop(signal), 0) << server.errors();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Force laws that the real server refuses, because no arm could bear a number that is not finite.
+// Laws and settings of an arm that the real server refuses before the arm feels a force.
 #include "tests/haptic_bridge/server/pressing_server.hpp"
 
 namespace {
@@ -16,6 +16,16 @@ TEST_F(RefusedLaw, IsToldInALineBeforeTheArmIsOpened) {
                                    ":12: depth_exponent 20000 gives a force that is not finite 2 scene units deep; "
                                    "give at most 166\n");
     EXPECT_EQ(server.output(), "");
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("forces"))) << "the arm would have begun its log";
+}
+
+TEST_F(RefusedLaw, AHeightThatFollowsTheSurfaceIsRefusedBeforeTheArmIsOpened) {
+    auto all = words("none");
+    all.insert(all.end(), {"--map", "datum=surface"});
+    ServerProcess server(folder_, all);
+    EXPECT_EQ(server.wait(), 2);
+    EXPECT_EQ(server.errors(),
+              "sandwall-haptic-server: --map datum=surface: works only for recordings; an arm needs datum=level\n");
     EXPECT_FALSE(std::filesystem::exists(folder_.file("forces"))) << "the arm would have begun its log";
 }
 
