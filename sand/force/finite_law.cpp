@@ -137,7 +137,7 @@ LawRegion LawRegion::of(int longerSide, double cellSize) {
     const double side = std::min(longerSide * cellSize, kLargest);
     const double scale = std::min(side / kShortestReach, kLargest);
     return {.smallestRadius = cellSize / kProbePerCell,
-            .largestRadius = std::min(cellSize * (kLargestToolRadius / kProbePerCell), kLargest),
+            .largestRadius = std::min(cellSize * kLargestToolRadius / kProbePerCell, kLargest),
             .deepest = side,
             .scale = scale,
             .fastest = scale * (kFastest / kFramesPerSecond)};

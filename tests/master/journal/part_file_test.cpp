@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/byte_stream.hpp"
+#include "base/input_error.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {
