@@ -198,6 +198,8 @@ def recoveries(summary, failures):
 
 
 def journal(summary, _):
+    if resumed := sum(not recovery["failed_how"] for recovery in found):
+        words += f", {resumed} of them by --resume"
     told = summary["journal"]
     if summary["pace"] == "replay":
         return None

@@ -223,6 +223,11 @@ class SlowWalls(Lines):
         self.check("frames", GOOD, "453 in the session; 30.0 of 30 frames/s for 10.0 s since the last start", **fields)
         self.check("steps", GOOD, "900 in the session, 300 since the last start", **fields)
 
+    def test_a_session_that_was_resumed_by_hand_is_not_said_to_have_failed(self):
+        by_hand = {**RECOVERY, "failure": "the start", "failed_rank": None, "failed_how": ""}
+        self.only("recoveries", NOTE, "2 in the session, 1 of them by --resume, the wall stood still for 5.0 s", recoveries=[RECOVERY, by_hand])
+        self.assertNotIn("--resume", self.check("recoveries", NOTE, recoveries=[RECOVERY]))
+
     def test_the_slowest_rank_is_noted(self):
         self.only("slowest", NOTE, "rank 2, last in 90 % of frames", slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0})
 
