@@ -164,7 +164,7 @@ def sand(summary, _):
     end += f"; hash {summary['state_hash']}"
     found = []
     if differed or at_server or unhealed or compared["first_difference"] is not None:
-        found.append(f"differed in {counted(differed, 'frame')} on ranks, in {at_server} on the haptic server {SESSION}")
+        found.append(f"a difference was found in {counted(differed, 'frame')} on ranks, in {at_server} on the haptic server {SESSION}")
         found.append(f"first in frame {compared['first_difference']}" if compared["first_difference"] is not None else "first frame unknown")
         master = f", {summary['master_healed']} of the master {START}" if summary["master_healed"] else ""
         found.append(f"healed {counted(summary['healed'], 'time')}{master}")

@@ -289,7 +289,7 @@ class Sand(Lines):
         self.only("sand", NOTE, "first in frame 600", divergences=1, healed=1, compared__first_difference=600)
 
     def test_sand_that_differs_in_four_hundred_frames_and_was_healed_once_is_bad(self):
-        self.only("sand", BAD, "399 not healed", "differed in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
+        self.only("sand", BAD, "399 not healed", "found in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
         self.only("sand", BAD, "2 not healed", divergences=1, healed=1, unhealed=2, compared__first_difference=20)
 
     def test_a_difference_that_ended_an_earlier_job_is_no_fault_of_the_sand_now(self):
