@@ -51,7 +51,8 @@ RULES = (
     Rule("latency", "time from the hand to the picture, at any pace",
          f"median up to {lines.MOST_LATENCY_PERIODS} periods and {lines.MOST_LATENCY_MORE_MS} ms, "
          f"and 99 % up to {lines.MOST_LATENCY_P99_MS / 1000:g} s",
-         "more", "", "latency.md", ("latency_ms.mean", "latency_ms.p50", "latency_ms.p99", "refresh_hz", "hand.asked"), lines.latency),
+         "more", "", "latency.md", ("latency_ms.mean", "latency_ms.p50", "latency_ms.p99", "refresh_hz", "hand.asked", "haptic.hand_ticks", "haptic.faulted_ticks",
+          "haptic.guarded_ticks.lost"), lines.latency),
     Rule("hand", "the hand that was asked for, its links, and the frames in which it was there",
          f"linked in all but {percent(lines.MOST_FRAMES_WITHOUT_HAND)} of the frames and at the end, by the first link",
          "a link made again, not linked at the end, or more frames without a hand",

@@ -246,8 +246,9 @@ class Hands(Lines):
         self.check("hand", NOTE, "not linked at the end", seconds=1.0, frames=60, **gone)
 
     def test_a_device_that_answers_in_no_tick_is_bad(self):
-        self.only("force", BAD, "the device answered in no tick", haptic__hand_ticks=2561, haptic__felt_ticks=0, haptic__faulted_ticks=2561,
-                  haptic__guarded_ticks__lost=2561)
+        lost = {"haptic__hand_ticks": 2561, "haptic__felt_ticks": 0, "haptic__faulted_ticks": 2561, "haptic__guarded_ticks__lost": 2561}
+        self.only("force", BAD, "the device answered in no tick", **lost)
+        self.check("latency", UNMEASURED, "the device answered in no tick", **lost)
 
     def test_a_device_that_was_off_before_the_session_is_not_bad(self):
         self.check("force", GOOD, haptic__guarded_ticks__lost=100000)
@@ -344,6 +345,7 @@ SAMPLES = (SUMMARY, without_hand(), film(),
            changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),
            changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "last_refusal": "no answer"},
                    compared__server_at_end=None),
+           changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
            changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
            changed(hand={**SUMMARY["hand"], "asked": "pointer"}),
            changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))
