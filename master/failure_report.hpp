@@ -9,7 +9,7 @@ namespace master {
 /// Reason why a session has ended itself. The launcher reads it from OUT/failure.json before it starts the session
 /// again.
 struct FailureReport {
-    std::string what;     // "broken", "hung" or "disk"
+    std::string what;     // "broken", "hung", "disk", "sand" or "summary"
     int rank = -1;        // 0: the master; -1: no single rank
     std::string host;     // host that the rank runs on
     std::string tile;     // name of the rank's tile; empty for the master

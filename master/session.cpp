@@ -304,6 +304,7 @@ int Session::run() {
         writeSummary(told, options_.out / "summary.json");
     } catch (const base::InputError& error) {  // the ranks still have pictures to send
         host::printLine("{}", error.what());
+        (void)writeFailure({"summary", -1, "", "", error.what()}, options_.out);
         status = 1;
     }
     if (agreed && film_) {

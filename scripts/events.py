@@ -14,7 +14,7 @@ import environment
 
 VARIABLE = environment.EVENTS
 TAG = "@sandwall "
-FAILURES = ("hung", "broken", "disk", "sand")  # `what` of failure.json
+FAILURES = ("hung", "broken", "disk", "sand", "summary")  # `what` of failure.json
 MOST_RANKS = 1_000_000
 LONGEST_TEXT = 300  # characters of a text that the launcher shows and passes on
 

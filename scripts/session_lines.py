@@ -61,12 +61,20 @@ def frames(summary, _):
     return NOTE if lost > MOST_TIME_LOST * seconds else GOOD, words
 
 
+def never_answered(haptic):
+    """Returns whether the device of the haptic server was lost in every tick with a hand."""
+    ticks = haptic.get("hand_ticks", 0)
+    return ticks > 0 and haptic["faulted_ticks"] >= ticks and haptic["guarded_ticks"].get("lost", 0) >= ticks
+
+
 def latency(summary, _):
     if summary["hand"]["asked"] == "none":
         return None
     found = summary["latency_ms"]
     if not found["mean"]:
         return UNMEASURED, f"not measured: no hand moved the sand {START}"
+    if summary["hand"]["asked"] == "server" and never_answered(summary["haptic"]):
+        return UNMEASURED, f"not measured: the device answered in no tick {SERVER_START}"
     slow = found["p50"] > MOST_LATENCY_PERIODS * 1000 / summary["refresh_hz"] + MOST_LATENCY_MORE_MS or found["p99"] > MOST_LATENCY_P99_MS
     return NOTE if slow else GOOD, f"{found['p50']:.1f} ms from hand to picture (median), {found['p99']:.1f} ms (99 %) {START}"
 
@@ -107,7 +115,7 @@ def force(summary, _):
         words += f"; guards that acted: {acted}"
     if guards.get("frozen"):
         words += f"; frozen in {guards['frozen']}"
-    if faulted >= ticks and guards.get("lost", 0) >= ticks:
+    if never_answered(haptic):
         return BAD, f"the device answered in no tick; {words}"
     if haptic["literal"]:
         words = f"guards literal, without force limits; {words}"
@@ -164,7 +172,7 @@ def sand(summary, _):
     end += f"; hash {summary['state_hash']}"
     found = []
     if differed or at_server or unhealed or compared["first_difference"] is not None:
-        found.append(f"differed in {counted(differed, 'frame')} on ranks, in {at_server} on the haptic server {SESSION}")
+        found.append(f"a difference was found in {counted(differed, 'frame')} on ranks, in {at_server} on the haptic server {SESSION}")
         found.append(f"first in frame {compared['first_difference']}" if compared["first_difference"] is not None else "first frame unknown")
         master = f", {summary['master_healed']} of the master {START}" if summary["master_healed"] else ""
         found.append(f"healed {counted(summary['healed'], 'time')}{master}")
@@ -190,6 +198,8 @@ def recoveries(summary, failures):
     dark = sum(recovery["seconds_to_next_frame"] or 0 for recovery in found)
     alone = sum(recovery.get("seconds_to_link", 0) for recovery in found)
     words = f"{len(found)} {SESSION}"
+    if resumed := sum(not recovery["failed_how"] for recovery in found):
+        words += f", {resumed} of them by --resume"
     words += f", the wall stood still for {dark:.1f} s" if dark else ""
     words += f", it had no hand for {alone:.1f} s" if alone else ""
     if ended := sum(not failure["restarted"] for failure in failures):

@@ -76,7 +76,7 @@ def json_of(lines, summary, out, status):
     if summary is None:
         return report
     marks = {name: mark for mark, name, _ in lines}
-    hand = summary["latency_ms"] if summary["latency_ms"]["mean"] else None
+    hand = summary["latency_ms"] if marks.get("latency") in (GOOD, NOTE) else None
     report["session"] = {
         **{key: summary[key] for key in ("scene", "wall", "ranks", "frames", "steps", "seconds", "fps", "late_frames", "state_hash")},
         "measured_frames": summary["frame_ms"]["count"],

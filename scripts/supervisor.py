@@ -25,6 +25,7 @@ from rank_hosts import BadInput
 BAD_INPUT = 2
 FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
+ENDED_IN_ORDER = ("sand", "summary")  # `what` of failure.json, after which a restart would not help
 SERVER_HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
 JOURNAL = "session.journal"
 RECOVERIES = "recoveries.jsonl"
@@ -244,9 +245,9 @@ class Supervisor:
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 self.note_last_failure(status, log)
                 return FAILED if self.gave_up else exit_status(status)
-            if (content_of(self.out / "failure.json") or log.failure or {}).get("what") == "sand":
+            if (content_of(self.out / "failure.json") or log.failure or {}).get("what") in ENDED_IN_ORDER:
                 log.close()
-                return FAILED  # the session has ended with wrong sand, which the master has printed; a restart would not help
+                return FAILED  # the master has printed why the session is not good
             failure = failure_of_job(status, log, self.hosts, taken(self.out / "failure.json"))
             log.close()
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):
@@ -262,7 +263,7 @@ class Supervisor:
     def note_last_failure(self, status, log):
         """Writes down the failure of a job that is not started again. A job that the user has killed has not failed."""
         told = content_of(self.out / "failure.json")
-        if status in (0, BAD_INPUT) or self.stop.count > 1 or self.gave_up or told.get("what") == "sand":
+        if status in (0, BAD_INPUT) or self.stop.count > 1 or self.gave_up or told.get("what") in ENDED_IN_ORDER:
             return
         failure = failure_of_job(status, log, self.hosts, told) if log else failure_without_log(status, told, self.hosts)
         self.failed.add(failure, restarted=False)

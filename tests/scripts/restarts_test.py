@@ -58,6 +58,15 @@ class Restarts(Supervised):
         self.assertIn("sandwall: rank 1 sent garbage; starting again", self.ended(["-"])[2])
         self.assertIn(" --failed-rank 1 --failed-how broken ", self.commands()[1])
 
+    def test_a_session_that_ended_in_order_is_not_started_again(self):
+        failure = '{"what":"%s","rank":-1,"host":"","tile":"","message":"so"}'
+        end = """progress 7 6; event 0 '{"event":"failure","failure":%s}'; ends 0 1"""
+        self.tries(*(end % (failure % what) for what in ("sand", "summary")), "exit 0")
+        for started in (1, 2):
+            status, _, error = self.ended(["-"])
+            self.assertEqual((status, len(self.commands())), (1, started), error)
+            self.assertNotIn("starting again", error)
+
     def test_a_damaged_failure_file_does_not_stop_the_launcher(self):
         nested = "[" * 60000
         self.tries(f"progress 7 6; told '{nested}'; dies 1 host 9", """progress 9 8; told '{"what": "broken", "rank": 1e400}'; dies 1 host 9""",

@@ -223,6 +223,11 @@ class SlowWalls(Lines):
         self.check("frames", GOOD, "453 in the session; 30.0 of 30 frames/s for 10.0 s since the last start", **fields)
         self.check("steps", GOOD, "900 in the session, 300 since the last start", **fields)
 
+    def test_a_session_that_was_resumed_by_hand_is_not_said_to_have_failed(self):
+        by_hand = {**RECOVERY, "failure": "the start", "failed_rank": None, "failed_how": ""}
+        self.only("recoveries", NOTE, "2 in the session, 1 of them by --resume, the wall stood still for 5.0 s", recoveries=[RECOVERY, by_hand])
+        self.assertNotIn("--resume", self.check("recoveries", NOTE, recoveries=[RECOVERY]))
+
     def test_the_slowest_rank_is_noted(self):
         self.only("slowest", NOTE, "rank 2, last in 90 % of frames", slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0})
 
@@ -241,8 +246,9 @@ class Hands(Lines):
         self.check("hand", NOTE, "not linked at the end", seconds=1.0, frames=60, **gone)
 
     def test_a_device_that_answers_in_no_tick_is_bad(self):
-        self.only("force", BAD, "the device answered in no tick", haptic__hand_ticks=2561, haptic__felt_ticks=0, haptic__faulted_ticks=2561,
-                  haptic__guarded_ticks__lost=2561)
+        lost = {"haptic__hand_ticks": 2561, "haptic__felt_ticks": 0, "haptic__faulted_ticks": 2561, "haptic__guarded_ticks__lost": 2561}
+        self.only("force", BAD, "the device answered in no tick", **lost)
+        self.check("latency", UNMEASURED, "the device answered in no tick", **lost)
 
     def test_a_device_that_was_off_before_the_session_is_not_bad(self):
         self.check("force", GOOD, haptic__guarded_ticks__lost=100000)
@@ -284,7 +290,7 @@ class Sand(Lines):
         self.only("sand", NOTE, "first in frame 600", divergences=1, healed=1, compared__first_difference=600)
 
     def test_sand_that_differs_in_four_hundred_frames_and_was_healed_once_is_bad(self):
-        self.only("sand", BAD, "399 not healed", "differed in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
+        self.only("sand", BAD, "399 not healed", "found in 400 frames on ranks", divergences=400, healed=1, compared__first_difference=20)
         self.only("sand", BAD, "2 not healed", divergences=1, healed=1, unhealed=2, compared__first_difference=20)
 
     def test_a_difference_that_ended_an_earlier_job_is_no_fault_of_the_sand_now(self):
@@ -339,6 +345,7 @@ SAMPLES = (SUMMARY, without_hand(), film(),
            changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),
            changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "last_refusal": "no answer"},
                    compared__server_at_end=None),
+           changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
            changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
            changed(hand={**SUMMARY["hand"], "asked": "pointer"}),
            changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))

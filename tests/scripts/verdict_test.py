@@ -9,7 +9,7 @@ import signal
 import subprocess
 import unittest
 
-from schema_fixture import SessionTest
+from schema_fixture import ROOT, SessionTest
 
 
 def haptic_server_of(launcher):
@@ -56,6 +56,17 @@ class Verdict(SessionTest):
         text = self.log.read_text()
         report = json.loads(text[text.index("\n{\n") + 1:text.rindex("\n}\n") + 3])
         self.assertEqual((report["good"], self.mark(report, "hand")), (False, "BAD"))
+
+    def test_a_session_whose_summary_cannot_be_written_ends_when_it_is_told_to(self):
+        session = self.start("--json")
+        self.await_event(session, "progress")
+        (self.out / "summary.json").mkdir()
+        subprocess.run([ROOT / "scripts" / "sandwall", "ctl", self.out, "stop"], check=True, capture_output=True, timeout=60)
+        self.assertEqual(session.wait(120), 1, self.log.read_text())
+        failure = json.loads((self.out / "failure.json").read_text())
+        self.valid("failure", failure)
+        self.assertEqual(failure["what"], "summary")
+        self.assertNotIn("starting again", self.log.read_text())
 
 
 if __name__ == "__main__":
