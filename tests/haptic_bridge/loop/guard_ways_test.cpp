@@ -13,7 +13,6 @@
 namespace {
 
 using namespace haptic_bridge;
-using sand::force::Vec3;
 using test::VirtualServer;
 
 /// Returns an arm without a body of its own: it moves along the test's path, whatever pushes it.
