@@ -52,6 +52,15 @@ TEST_F(Files, APipeADeviceAndAFolderAreRefusedWithoutWaiting) {
     }));
 }
 
+TEST_F(Files, WhetherAPipeCanBeWrittenIsAskedWithoutWaitingForItsReader) {
+    support::makePipe(folder_ / "pipe");
+    EXPECT_TRUE(support::endsByItself([this] { host::requireWritable(folder_ / "pipe"); }));
+    EXPECT_THROW(host::requireWritable(folder_ / "none" / "file"), base::InputError);
+    EXPECT_THROW(host::requireWritable(folder_), base::InputError);
+    host::requireWritable(folder_ / "file");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "file"));
+}
+
 TEST_F(Files, TextIsAppendedToAnOldOrNewFile) {
     EXPECT_TRUE(host::appendText(folder_ / "log", "one\n"));
     EXPECT_TRUE(host::appendText(folder_ / "log", "two\n"));
