@@ -133,6 +133,13 @@ def new_file(path, flags):
     return os.open(path, flags | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
 
 
+def forget(path):
+    """Removes a regular file or a link. Leaves everything else, such as a pipe. Throws OSError if nothing has this name."""
+    kind = os.lstat(path).st_mode
+    if stat.S_ISREG(kind) or stat.S_ISLNK(kind):
+        os.unlink(path)
+
+
 def write_text(path, text):
     """Writes a new file as new_file() makes it. Throws OSError. Names of files in `text` need not be UTF-8."""
     with open(new_file(path, os.O_WRONLY), "w", encoding="utf-8", errors="surrogateescape") as file:

@@ -92,6 +92,15 @@ class Folder(Supervised):
         (self.folder / "tries").unlink()
         self.assertEqual(self.ended(["-"], "--resume", "--restarts", "1")[0], 1)
 
+    def test_a_new_session_replaces_no_pipe(self):
+        self.tries("exit 0")
+        pipes = [self.out / name for name in ("log", "failure.json", "failures.jsonl")]
+        for pipe in pipes:
+            os.mkfifo(pipe)
+        self.assertEqual(self.ended(["-"], "--restarts", "1")[0], 0)
+        for pipe in pipes:
+            self.assertTrue(pipe.is_fifo(), pipe)
+
 
     def complaint(self):
         """Returns the line about what an earlier session left in the folder. It is the same as that of the launcher."""
