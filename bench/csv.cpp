@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/csv.hpp"
 
+#include <fcntl.h>
+
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 #include <thread>
@@ -33,6 +36,19 @@ std::string date() {
     return text;
 }
 
+/// Opens a file for writing, or returns nullptr. Follows no link, except those to open files, such as /dev/stdout. A
+/// new file takes the place of a regular file, because other users could have the right to write to that one.
+std::FILE* newFile(const std::filesystem::path& path) {
+    std::error_code none;
+    if (std::filesystem::symlink_status(path, none).type() == std::filesystem::file_type::regular) {
+        std::filesystem::remove(path, none);
+    }
+    const bool own = path == "/dev/stdout" || path == "/dev/stderr" || path.native().starts_with("/dev/fd/");
+    const int made =
+        open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY | (own ? 0 : O_NOFOLLOW), 0644);
+    return made < 0 ? nullptr : fdopen(made, "w");
+}
+
 }  // namespace
 
 void Csv::Close::operator()(std::FILE* file) const {
@@ -42,7 +58,7 @@ void Csv::Close::operator()(std::FILE* file) const {
 }
 
 void Csv::open() {
-    file_.reset(settings_.out.empty() ? stdout : std::fopen(settings_.out.c_str(), "w"));
+    file_.reset(settings_.out.empty() ? stdout : newFile(settings_.out));
     if (!file_) {
         throw base::InputError(name() + ": cannot be written; choose another --out");
     }

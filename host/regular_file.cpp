@@ -167,11 +167,16 @@ std::string whyUnsafeFolder(const std::filesystem::path& path) {
 
 std::string whyUnsafeContent(const std::filesystem::path& out) {
     const std::array<std::string_view, 3> folders{"log", "checkpoints", "saves"};
+    const std::array<std::string_view, 5> continued{"divergence.txt", "drills.done", "failures.jsonl", "incidents.json",
+                                                    "recoveries.jsonl"};
     std::error_code none;  // ignored, because the folders need not exist
     for (const auto& entry : std::filesystem::directory_iterator(out, none)) {
         const std::string name = entry.path().filename().string();
         const bool folder = std::find(folders.begin(), folders.end(), name) != folders.end();
-        if (!folder && !name.starts_with("session.journal")) {
+        // A link is never followed: a new session removes it, and a resumed one refuses to append to it.
+        const bool file =
+            std::find(continued.begin(), continued.end(), name) != continued.end() && !entry.is_symlink(none);
+        if (!folder && !file && !name.starts_with("session.journal")) {
             continue;
         }
         if (std::string why = whyUnsafeEntry(entry.path()); !why.empty()) {

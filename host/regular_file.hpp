@@ -64,8 +64,10 @@ void forgetFile(const std::filesystem::path& path);
 [[nodiscard]] std::string whyUnsafeFolder(const std::filesystem::path& path);
 
 /// Returns why a session must not use what earlier sessions left in its folder `out`, and what to do, as one line. That
-/// is the journal, and the folders `log`, `checkpoints` and `saves` with everything in them. Each must belong to this
-/// user, be writable for this user alone, and be no symbolic link. Returns an empty text if nothing is wrong.
+/// is the journal, the folders `log`, `checkpoints` and `saves` with everything in them, and the files that a resumed
+/// session continues, such as recoveries.jsonl. Each must belong to this user and be writable for this user alone. None
+/// may be a symbolic link; one in place of a continued file is never followed, and may stay. Returns an empty text if
+/// nothing is wrong.
 [[nodiscard]] std::string whyUnsafeContent(const std::filesystem::path& out);
 
 /// Makes a folder and its missing parents, to which only this user may write. The new names survive a power loss.

@@ -104,6 +104,14 @@ void WholeFile::keep() {
     }
 }
 
+void requireWritable(const std::filesystem::path& path) {
+    struct stat about {};
+    const bool pipe = lstat(path.c_str(), &about) == 0 && S_ISFIFO(about.st_mode);
+    if (!pipe || ::access(path.c_str(), W_OK) != 0) {
+        const WholeFile canBeWritten(path);
+    }
+}
+
 bool syncFolderOf(const std::filesystem::path& file) {
     const std::filesystem::path folder = file.parent_path().empty() ? "." : file.parent_path();
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);

@@ -12,8 +12,7 @@ namespace host {
 /// The text goes into a temporary file in the same folder. keep() renames it; without keep() the destructor removes it,
 /// and a failure removes it at once.
 /// Never follows a symbolic link, except /dev/stdout, /dev/stderr and /dev/fd/N, and never lets group or other users
-/// write to the file. Throws base::InputError in one line if the path cannot be written. To test whether a path can be
-/// written, create a WholeFile and destroy it.
+/// write to the file. Throws base::InputError in one line if the path cannot be written.
 class WholeFile {
 public:
     /// What to do with a path that is not a regular file, such as a pipe.
@@ -40,6 +39,10 @@ private:
     int descriptor_ = -1;           // of the temporary file, or of the pipe or device
     std::ofstream stream_;
 };
+
+/// Throws base::InputError if `path` cannot be written, as WholeFile does, for example before hours of work. Never
+/// opens a pipe, because its reader would take the close for the end of the file.
+void requireWritable(const std::filesystem::path& path);
 
 /// Syncs the folder of `file`, so that created and removed names survive a power loss. Returns false with errno if that
 /// fails. Returns true if the folder must not be read, and on file systems that cannot sync a folder.

@@ -41,7 +41,7 @@ class FailedProcesses:
                 text = session_folder.read_text(self.path)[-MOST_BYTES:]
                 self.all = [failure for line in text.splitlines() if (failure := read_line(line))]
             else:
-                self.path.unlink()
+                session_folder.forget(self.path)
         except (OSError, ValueError):
             pass  # there is none, or the report has the failures of this launcher alone
 

@@ -25,6 +25,7 @@ def encode(folder, frames_per_second):
     film = folder / "film.mp4"
     if film.is_symlink() or (film.exists() and not film.is_file()):
         raise BadInput(f"{film}: is not a regular file; remove it; the {frames} pictures are whole")
+    film.unlink(missing_ok=True)  # ffmpeg would keep the previous file's access, with which others could write to it
     # Every player reads H.264 with colours at half the resolution, which needs even sizes. ffmpeg runs in the folder,
     # because a per cent sign in its path would be read as a number.
     command = ["ffmpeg", "-y", "-loglevel", "error", "-framerate", str(frames_per_second), "-i", PATTERN,

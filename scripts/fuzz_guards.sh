@@ -18,6 +18,10 @@ for number in "$gate" "$loop"; do
         exit 2
     fi
 done
+if [[ ! ${SANDWALL_SEED:-0} =~ ^[0-9]{1,10}$ ]]; then
+    echo "fuzz_guards.sh: SANDWALL_SEED: must be a whole number of at most ten digits, got '$SANDWALL_SEED'" >&2
+    exit 2
+fi
 cmake --preset release >/dev/null
 cmake --build build/release --parallel "$(nproc)" --target haptic_tests >/dev/null
 export SANDWALL_SEED=${SANDWALL_SEED:-$((RANDOM << 15 | RANDOM))}

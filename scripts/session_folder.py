@@ -15,6 +15,7 @@ PATIENCE = 5  # seconds to wait for a session that is ending
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 FOLDERS = ("log", "checkpoints", "saves")
 JOURNAL = "session.journal"  # first part of the names of all parts
+CONTINUED = ("divergence.txt", "drills.done", "failures.jsonl", "incidents.json", "recoveries.jsonl")  # files of a resumed session
 
 
 class InUse(Exception):
@@ -64,10 +65,11 @@ def why_unsafe(path):
 def require_safe_content(out):
     """Throws BadInput for a file or folder of an earlier session in `out` that another user owns or may write to, and for a link.
 
-    The programs have the same check, host::whyUnsafeContent().
+    A link in place of a file of CONTINUED is not refused, because it is never followed. The programs have the same check, host::whyUnsafeContent().
     """
     out = pathlib.Path(out)
-    for entry in [path for path in out.iterdir() if path.name in FOLDERS or path.name.startswith(JOURNAL)]:
+    for entry in [path for path in out.iterdir() if path.name in FOLDERS or path.name.startswith(JOURNAL) or
+                  (path.name in CONTINUED and not path.is_symlink())]:
         require_safe_entry(entry)
         if entry.name in FOLDERS and entry.is_dir():
             for inside in entry.iterdir():
@@ -129,6 +131,13 @@ def new_file(path, flags):
             raise OSError(errno.EINVAL, "is a link" if stat.S_ISLNK(about.st_mode) else "is not a regular file", str(path))
         os.unlink(path)
     return os.open(path, flags | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC, 0o644)
+
+
+def forget(path):
+    """Removes a regular file or a link. Leaves everything else, such as a pipe. Throws OSError if nothing has this name."""
+    kind = os.lstat(path).st_mode
+    if stat.S_ISREG(kind) or stat.S_ISLNK(kind):
+        os.unlink(path)
 
 
 def write_text(path, text):

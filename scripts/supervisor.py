@@ -75,7 +75,7 @@ def taken(path):
     """Returns the content of the master's failure.json, or {} if the file does not exist. Removes it, so that it is read once."""
     found = content_of(path)
     try:
-        path.unlink()
+        session_folder.forget(path)
     except OSError:
         pass  # it does not exist, or the folder is read-only
     return found
@@ -219,7 +219,7 @@ class Supervisor:
         """Returns OUT/log, or the temporary folder `otherwise` if OUT/log cannot be written. The master reports the latter."""
         folder = self.out / "log"
         try:
-            if not self.resume:
+            if not self.resume and folder.is_dir():  # rmtree would wait for the writer of a pipe
                 shutil.rmtree(folder, ignore_errors=True)
             folder.mkdir(mode=0o755, parents=True, exist_ok=True)
         except OSError:

@@ -62,7 +62,10 @@ JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOpti
     if (resumed == nullptr) {
         requireNoWriter();
         std::error_code none;  // ignored, because the folder need not exist
-        std::filesystem::remove_all(checkpointFile(journal_, 0).parent_path(), none);
+        const std::filesystem::path old = checkpointFile(journal_, 0).parent_path();
+        if (std::filesystem::is_directory(std::filesystem::symlink_status(old, none))) {
+            std::filesystem::remove_all(old, none);
+        }
         writer_.emplace(journal_, scene, buildId_, options_.partBytes);
         return;
     }

@@ -150,7 +150,7 @@ void checkOutputs(const Options& options) {
     }
     for (const std::string& file : {options.steps, options.heights, options.difference, options.mesh}) {
         if (!file.empty()) {
-            const host::WholeFile canBeWritten(file);
+            host::requireWritable(file);
         }
     }
 }

@@ -140,7 +140,7 @@ void relaxGrid(const Options& options) {
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
-    { const host::WholeFile canBeWritten(options.out); }  // to report a faulty OUT before hours of work
+    host::requireWritable(options.out);  // to report a faulty OUT before hours of work
     std::vector<std::string> warnings = grid.warnings;
     if (bedrock) {
         warnings.insert(warnings.end(), bedrock->warnings.begin(), bedrock->warnings.end());

@@ -101,7 +101,7 @@ void relaxTin(const Options& options) {
         thinned = thin(raster, {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
-    { const host::WholeFile canBeWritten(options.out); }  // to report a faulty OUT before hours of work
+    host::requireWritable(options.out);  // to report a faulty OUT before hours of work
     warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
     for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);

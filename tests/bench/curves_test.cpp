@@ -108,6 +108,18 @@ TEST(SandwallBench, ExplainsATinWhoseVolumesHoldLessThanItsToolIsHigh) {
     EXPECT_NE(ran.output.find("step,everything moving,yes,"), std::string::npos) << ran.output;
 }
 
+TEST(SandwallBench, FollowsNoLinkAndReplacesAFileToWhichOthersMayWrite) {
+    const TemporaryFile other("other.csv"), link("link.csv");
+    std::ofstream(other.path()) << "of another program\n";
+    std::filesystem::permissions(other.path(), std::filesystem::perms(0666));
+    std::filesystem::create_symlink(other.path(), link.path());
+    EXPECT_EQ(runProgram("sandwall-bench", "hashes --sizes 16 --out " + link.path()).status, 2);
+    EXPECT_EQ(other.lines(), std::vector<std::string>{"of another program"});
+    EXPECT_EQ(runProgram("sandwall-bench", "hashes --sizes 16 --out " + other.path()).status, 0);
+    EXPECT_EQ(std::filesystem::status(other.path()).permissions() & std::filesystem::perms(0022),
+              std::filesystem::perms::none);
+}
+
 TEST(SandwallBench, RefusesInOneLineWhatItCannotDo) {
     for (const auto& [arguments, part] : std::vector<std::pair<std::string, std::string>>{
              {"", "ubcommand"},

@@ -77,6 +77,15 @@ class Film(LauncherTest):
             film.unlink()
         self.assertEqual((self.folder / "other").read_text(), "of another program")
 
+    def test_a_film_takes_the_place_of_one_to_which_other_users_may_write(self):
+        self.script("ffmpeg", FFMPEG)
+        film = self.folder / "out %d" / "film.mp4"
+        film.parent.mkdir()
+        film.touch()
+        film.chmod(0o666)
+        self.assertEqual(self.film()[0], 0)
+        self.assertEqual(film.stat().st_mode & 0o022, 0)
+
     def test_a_film_that_ffmpeg_cannot_write_is_one_line(self):
         self.script("ffmpeg", "#!/bin/sh\necho half > film.mp4; echo first >&2; echo No space left >&2; exit 1\n")
         status, _, error = self.film()

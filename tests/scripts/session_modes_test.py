@@ -11,7 +11,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # At least these files are in the list. So the test cannot pass because a session has ended early.
 EXPECTED = ("./", "capture_001/", "capture_001/wall_left.png", "checkpoints/", "checkpoints/N.checkpoint", "control", "divergence.txt", "drills.done",
-            "failure.json", "incidents.json", "log/", "log/report.txt", "log/restarting", "log/try_1.err", "log/try_1.out", "recoveries.jsonl",
+            "failure.json", "failures.jsonl", "incidents.json", "log/", "log/report.txt", "log/restarting", "log/try_1.err", "log/try_1.out", "recoveries.jsonl",
             "saves/", "saves/dunes.sand", "session.journal", "summary.json", "ticks.csv", "wall_left.png")
 
 

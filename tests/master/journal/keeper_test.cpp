@@ -38,6 +38,12 @@ TEST_F(Keeper, SwitchedOffItLeavesNoJournalOfAnotherSessionInItsPlace) {
     EXPECT_EQ(master::readJournal(folder_ / "session.journal.previous").frames.size(), 1U);
 }
 
+TEST_F(Keeper, ANewSessionRemovesNoPipeInPlaceOfItsCheckpoints) {
+    support::makePipe(folder_ / "checkpoints");
+    begin({});
+    EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "checkpoints"));
+}
+
 // A new session renames no file before the session that still runs in the folder has ended.
 TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
     begin({});
