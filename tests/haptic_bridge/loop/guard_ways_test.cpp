@@ -273,13 +273,14 @@ TEST_F(WayAround, SandThatAnEditPutsOnAHandIsFeltInARamp) {
                        }
                        return sand::Edit::loaded(sand::Replica(high).copySand()->encode());
                    }};
-    for (const Way& way : {wider, reset, load}) {
+    const Way pressed{"a wider tool of a hand that presses", wider.edit};
+    for (const Way& way : {wider, pressed, reset, load}) {
         SCOPED_TRACE(way.name);
         // The hand rests just above the sand. For `reset` it has dug a wide pit before, and rests in it.
-        const bool inPit = std::string(way.name) == "reset";
-        open([inPit](double time) {
+        const bool inPit = std::string(way.name) == "reset", presses = way.name == pressed.name;
+        open([inPit, presses](double time) {
             const double out = inPit ? 0.03 * std::clamp(4 - time, 0.0, 1.0) * std::sin(3 * time) : 0;
-            const double depth = !inPit ? -0.2 : time < 4 ? 2 : 1.2;
+            const double depth = presses ? 0.3 : !inPit ? -0.2 : time < 4 ? 2 : 1.2;
             return ArmReading{
                 {out * std::cos(40 * time), out * std::sin(40 * time), -depth * kToolInArm}, true, false, true};
         });
