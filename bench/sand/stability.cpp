@@ -101,15 +101,12 @@ void stability(const Settings& settings, Csv& csv) {
 }
 
 void guardedSweep(const Settings& settings, Csv& csv) {
-    csv.note(
-        "The constants of Dorjgotov et al. 2007 on level sand: depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held "
-        "by "
-        "a hand.");
-    csv.note(
-        "rest: share of the trials below 1 mm/s within 3 s, or within what a heavy arm's damping takes; force: the");
-    csv.note(
-        "greatest asked of the device [N]; deviation: of what is sent from the law with the constants said at start,");
-    csv.note("where nothing else limits it; unlimited: share of the ticks in the sand of which that holds.");
+    csv.note("The constants of Dorjgotov et al. 2007 on level sand.");
+    csv.note("Depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held by a hand.");
+    csv.note("rest: share of the trials below 1 mm/s within 3 s, or within what a heavy arm's damping takes.");
+    csv.note("force: the greatest force asked of the device [N].");
+    csv.note("unlimited: share of the ticks in the sand in which only the lowered constants act.");
+    csv.note("deviation: relative difference in these ticks between the force sent and the law with these constants.");
     csv.columns("arm,delay,b,hand,trials,rest,force,max_force,deviation,unlimited,literal_rest,literal_force");
     const scene::Scene scene = test::levelSand();
     const bool full = settings.runs > 1;
