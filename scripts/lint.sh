@@ -6,14 +6,16 @@
 #
 # usage: scripts/lint.sh [FILE.cpp...]   (paths from the root of the repository)
 set -euo pipefail
-cd "$(dirname "$0")/.."
+# The paths of the build's commands have no link, so that the patterns below match them.
+cd -P "$(dirname "$0")/.."
+here=$(python3 -c 'import os, re; print(re.escape(os.getcwd()))')
 
 # Matches every compiled source outside build/. tests/scripts/lint_test.py compares them with the folders.
-every_source="^$PWD/(?!build/)"
+every_source="^$here/(?!build/)"
 selected=()
 for file in "$@"; do
     [[ $file == *.cpp && -f $file ]] || { echo "lint.sh: $file: is not a .cpp file of the repository; usage: scripts/lint.sh [FILE.cpp...]" >&2; exit 2; }
-    selected+=("^$PWD/$file\$")
+    selected+=("^$here/$file\$")
 done
 # The check of the English takes seconds. If it fails, the other checks still run, and the script ends with its status.
 english=0

@@ -13,7 +13,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT / "build" / "release"
+BUILD = pathlib.Path(sys.argv.pop(1) if len(sys.argv) > 1 else ROOT / "build" / "release")
 
 
 def tracked(*patterns):
@@ -25,7 +25,7 @@ def tracked(*patterns):
 def linted():
     """Returns the sources that run-clang-tidy selects: compiled ones that match the pattern in scripts/lint.sh."""
     script = (ROOT / "scripts" / "lint.sh").read_text()
-    pattern = re.search(r'^every_source="([^"]+)"$', script, re.MULTILINE)[1].replace("$PWD", re.escape(str(ROOT)))
+    pattern = re.search(r'^every_source="([^"]+)"$', script, re.MULTILINE)[1].replace("$here", re.escape(str(ROOT)))
     compiled = json.loads((BUILD / "compile_commands.json").read_text())
     found = set()
     for command in compiled:
@@ -35,6 +35,8 @@ def linted():
             found |= set(re.findall(r'#include "(/[^"]+)"', path.read_text()))
         else:
             found.add(str(path))
+    # The checkout may be reached by a link. scripts/lint.sh and ROOT have the path without links.
+    found = {str(pathlib.Path(path).resolve()) for path in found}
     return {pathlib.Path(path).relative_to(ROOT) for path in found if re.search(pattern, path)}
 
 
