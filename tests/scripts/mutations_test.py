@@ -1,18 +1,28 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that every patch of tests/mutations applies, and names a test program and tests that exist.
+"""Tests that every patch of tests/mutations applies, and names a test program and tests that exist. Tests the rule by
+which scripts/mutate.sh draws further bugs.
 
 usage: mutations_test.py
 """
 
+import ast
 import fnmatch
 import re
 import subprocess
+import sys
+import tomllib
 import unittest
 
 from docs_test import PROJECT, ROOT, tracked
 
-HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# tests: (?P<program>\w+) (?P<filter>\S+)\n(# programs: [\w -]+\n)?(?=diff --git |--- a/)")
+sys.path.insert(0, str(ROOT / "scripts" / "mutation"))
+import draw  # noqa: E402
+import run  # noqa: E402
+import sites  # noqa: E402
+
+HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# (?:tests: (?P<program>\w+) (?P<filter>\S+)|script tests: (?P<file>\w+\.py)(?: (?P<test>[\w.]+))?)\n"
+                    r"(# programs: [\w -]+\n)?(?=diff --git |--- a/)")
 PROGRAMS = {name for file in tracked("tests/*CMakeLists.txt")
             for name in re.findall(r"^ *sandwall_test\((\w+)", (ROOT / file).read_text(), re.MULTILINE)}
 
@@ -22,14 +32,28 @@ def faults(name, text, tests, applies):
     if header is None:
         yield f"{name}: must begin with the lines '# What is wrong.' and '# tests: PROGRAM FILTER'"
         return
-    if header["program"] not in PROGRAMS:
+    if header["file"]:
+        if f"{header['file']} {header['test'] or ''}".strip() not in script_tests():
+            yield f"{name}: there is no test {header['file']} {header['test'] or ''}"
+    elif header["program"] not in PROGRAMS:
         yield f"{name}: there is no test program {header['program']}"
-    for pattern in header["filter"].split(":"):
+    for pattern in (header["filter"] or "").split(":") if header["filter"] else ():
         # The full name of a test with parameters has an instance in front and a parameter at the end.
         if not any(fnmatch.fnmatchcase(test, pattern) or fnmatch.fnmatchcase(f"x/{test}/x", pattern) for test in tests):
             yield f"{name}: the filter {pattern} runs no test"
     if not applies(text):
         yield f"{name}: no longer applies; make it again from the current source"
+
+
+def script_tests():
+    """Returns FILE, FILE CLASS and FILE CLASS.TEST of the Python tests."""
+    for name in tracked("tests/scripts/*_test.py"):
+        file = name.rpartition("/")[2]
+        yield file
+        for node in ast.parse((ROOT / name).read_text()).body:
+            if isinstance(node, ast.ClassDef):
+                yield f"{file} {node.name}"
+                yield from (f"{file} {node.name}.{test.name}" for test in node.body if isinstance(test, ast.FunctionDef))
 
 
 def applies(text):
@@ -50,6 +74,59 @@ class Mutations(unittest.TestCase):
                     good.replace("Law.*", "Rule.*"), good.replace("# Sand falls up.\n", "")):
             self.assertEqual(len(list(faults("a", bad, {"Law.Holds"}, lambda _: True))), 1, bad)
         self.assertEqual(len(list(faults("a", good, {"Law.Holds"}, lambda _: False))), 1)
+        python = good.replace("# tests: sand_tests Law.*:x/Law.Holds/*", "# script tests: mutations_test.py Mutations.test_that_do_not_are_named")
+        self.assertEqual(list(faults("a", python, set(), lambda _: True)), [])
+        self.assertEqual(len(list(faults("a", python.replace("do_not", "do"), set(), lambda _: True))), 1)
+
+
+class Drawn(unittest.TestCase):
+    CODE = """#if 1 + 1
+// if (a) 1
+if (const int a = f(2); a > 0x1FU) {
+    text = "1 + 1" + name, x = -1.5e-3F, on = true;  /* 2 */
+}
+int operator+(A a), operator-=(A b);
+p->next++;
+"""
+    SCRIPT = """if size > 10 and not f"{size + 1}":  # 1 + 1
+    share -= 0.5
+"""
+
+    def changes(self, name, text):
+        return [(site.kind, text[site.start:site.end], site.replacement) for site in sites.sites(name, text)]
+
+    def test_bugs_are_planted_in_code_alone(self):
+        self.assertEqual(self.changes("a.cpp", self.CODE), [
+            ("constant", "2", "3"), ("condition", " a > 0x1FU", "!(a > 0x1FU)"), ("constant", "0x1FU", "32U"), ("sign", "+", "-"),
+            ("sign", "-", "+"), ("constant", "1.5e-3F", "(1.5 * 1.5e-3F)"), ("constant", "true", "false")])
+        self.assertEqual(self.changes("a.py", self.SCRIPT), [
+            ("condition", 'size > 10 and not f"{size + 1}"', '(not (size > 10 and not f"{size + 1}"))'), ("constant", "10", "11"),
+            ("sign", "-", "+"), ("constant", "0.5", "0.75")])
+        self.assertEqual(sites.sites("a.cpp", self.CODE)[1].planted(self.CODE).splitlines()[2],
+                         "if (const int a = f(2);!(a > 0x1FU)) {")
+
+    def test_a_change_elsewhere_in_a_source_draws_the_same_bug(self):
+        lines = [f"int f{i}() {{ return {i}; }}" for i in range(20)]
+        for seed in range(20):
+            first = next(draw.candidates(seed, "a.cpp", "\n".join(lines)))
+            moved = [line for line in lines if line != first.site.line_text(first.text)][:9]
+            text = "\n".join(["// new", *moved, first.site.line_text(first.text)])
+            self.assertEqual(next(draw.candidates(seed, "a.cpp", text)).site.words(text), first.site.words(first.text))
+
+    def test_another_seed_draws_other_sources(self):
+        bugs = [{list_[0].name for list_ in draw.drawn(seed, 10)} for seed in ("a", "a", "b")]
+        self.assertEqual(len(bugs[0]), 10)
+        self.assertEqual(bugs[0], bugs[1])
+        self.assertNotEqual(bugs[0], bugs[2])
+
+    def test_at_most_a_tenth_is_explained_instead_of_caught(self):
+        kept = tomllib.loads((ROOT / "tests" / "mutations" / "drawn.toml").read_text())
+        names = {run.key(bug) for list_ in draw.drawn(kept["seed"], run.COUNT) for bug in list_}
+        unseen = kept.get("unseen", [])
+        self.assertLessEqual(len(unseen), run.COUNT // 10)
+        self.assertEqual([entry["bug"] for entry in unseen if entry["bug"] not in names], [], "not drawn from the present sources")
+        for entry in unseen:
+            self.assertRegex(entry["why"], r"^[A-Z].*\.$")
 
 
 if __name__ == "__main__":

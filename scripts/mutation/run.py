@@ -1,0 +1,225 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Plants one bug at a time in a copy of the sources, and expects a test to fail: scripts/mutate.sh. docs/testing.md"""
+
+import argparse
+import collections
+import concurrent.futures
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import time
+import tomllib
+
+import draw
+from workspace import ROOT, DoesNotCompile, Workspace
+
+PATCHES = ROOT / "tests" / "mutations"
+COUNT = 64  # bugs that are drawn
+# Sessions over real ranks, and comparisons with other libraries, are too slow to run for each drawn bug.
+SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_tests", "window_tests", "module_tests"}
+# Python tests that start neither sessions nor windows.
+SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
+
+
+class Patch:
+    """A bug of tests/mutations. Its first lines name its test: "# tests: PROGRAM FILTER" or "# script tests: FILE.py [TEST]",
+    and "# programs: TARGET…" the programs that the test starts."""
+
+    def __init__(self, path):
+        self.title = path.stem
+        self.text = path.read_text()
+        self.names = re.findall(r"^--- a/(\S+)", self.text, re.MULTILINE)
+        self.test = re.search(r"^# (?:script )?tests: (.*)", self.text, re.MULTILINE)[1]
+        self.programs = " ".join(re.findall(r"^# programs: (.*)", self.text, re.MULTILINE)).split()
+
+    def targets(self):
+        return self.programs if ".py" in self.test else [self.test.split()[0], *self.programs]
+
+    def try_in(self, space):
+        space.patch(self.text)
+        try:
+            if targets := self.targets():
+                space.build(targets)
+            failure = space.run(self.test, space.limit(self.test))
+        except DoesNotCompile:
+            return False, "does not compile"
+        finally:
+            space.patch(self.text, "--reverse")
+        return (True, f"caught by {failure}") if failure else (False, f"SURVIVED {self.test}")
+
+
+class DrawnBug:
+    """The first of `bugs` that compiles. `tests` are those of its folder, and then the others; the first failure counts."""
+
+    def __init__(self, bugs, tests):
+        self.bugs = bugs
+        self.tests = tests
+        self.names = [bugs[0].name]
+        self.title, self.key = bugs[0].words(), key(bugs[0])
+        self.test = None
+
+    def targets(self):
+        return sorted({test.split()[0] for test in self.tests if ".py" not in test})
+
+    def try_in(self, space):
+        original = space.read(self.names[0])
+        try:
+            for bug in self.bugs:
+                self.title, self.key = bug.words(), key(bug)
+                space.write(bug.name, bug.planted())
+                try:
+                    return self.run_tests(space)
+                except DoesNotCompile:
+                    continue
+            return False, "no bug of this file compiles"
+        finally:
+            space.write(self.names[0], original)
+
+    def run_tests(self, space):
+        for test in self.tests:
+            if ".py" not in test:
+                space.build([test.split()[0]])
+            # A failure counts if it comes twice, because a test may also fail on a busy machine.
+            if (failure := space.run(test, space.limit(test))) and space.run(test, space.limit(test)):
+                return True, f"caught by {failure}"
+        return False, "SURVIVED"
+
+
+def key(bug):
+    """Returns the name of a drawn bug in drawn.toml. It has no number of a line, which a change elsewhere would move."""
+    return f"{bug.name}: {bug.site.words(bug.text)}"
+
+
+def test_programs():
+    """Returns the test programs and their folders, relative to tests/."""
+    found = {}
+    for file in sorted((ROOT / "tests").rglob("CMakeLists.txt")):
+        for name in re.findall(r"^ *sandwall_test\((\w+)", file.read_text(), re.MULTILINE):
+            found[name] = file.parent.relative_to(ROOT / "tests").as_posix()
+    return found
+
+
+def common(a, b):
+    """Returns how many folders two paths have in common."""
+    return len(os.path.commonprefix([a.split("/"), b.split("/")]))
+
+
+def tests_for(name, programs):
+    """Returns the tests that may see a bug in the source `name`, the nearest first."""
+    if name.endswith(".cpp"):
+        near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
+        return sorted(near, key=lambda program: (-near[program], program))
+    files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
+    module = re.compile(rf"\b{pathlib.PurePath(name).stem}\b")
+    return [f"{file}.py" for file in sorted(files, key=lambda file: not module.search(
+        (ROOT / "tests" / "scripts" / f"{file}.py").read_text()))]
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="scripts/mutate.sh", description=__doc__)
+    parser.add_argument("which", nargs="*", metavar="FOLDER|PATCH",
+                        help="only the bugs in sources below these folders, or these patches (default: all, and the drawn bugs)")
+    parser.add_argument("--drawn", type=int, default=COUNT, metavar="N", help=f"how many bugs to draw (default: {COUNT}; 0: none)")
+    parser.add_argument("--drawn-only", action="store_true", help="plant only drawn bugs, and no patch")
+    parser.add_argument("--seed", help="draw by this text instead of the one in tests/mutations/drawn.toml")
+    parser.add_argument("--list", action="store_true", help="print the bugs and do not plant them")
+    options = parser.parse_args(arguments)
+    for which in options.which:
+        if not (ROOT / which).exists():
+            parser.error(f"{which}: there is no such folder or patch in {ROOT}")
+    return options
+
+
+def selected(options, kept):
+    """Returns the bugs that the options select."""
+    folders = [pathlib.Path(which).as_posix() for which in options.which if not which.endswith(".patch")]
+    patches = [pathlib.Path(which) for which in options.which if which.endswith(".patch")]
+    programs = test_programs()
+    drawn = [] if patches and not folders else draw.drawn(options.seed or kept["seed"], options.drawn)
+    bugs = [Patch(path) for path in ([] if options.drawn_only else patches or sorted(PATCHES.glob("*.patch")))]
+    bugs += [DrawnBug(list_, tests_for(list_[0].name, programs)) for list_ in drawn]
+    if folders:
+        bugs = [bug for bug in bugs if any(common(name, folder) == len(folder.split("/"))
+                                           for name in bug.names for folder in folders)]
+    return bugs
+
+
+def test_without_bugs(space, tests):
+    """Ends the run if a test of a patch fails without a bug. Returns the tests that drawn bugs cannot use."""
+    useless = set()
+    for test, drawn in tests:
+        if failure := space.run(test):
+            if not drawn:
+                sys.exit(f"mutate.sh: {test} fails without a bug ({failure}); mend the test or the filter first")
+            print(f"left out, because it fails without a bug: {test} ({failure})", flush=True)
+            useless.add(test)
+    return useless
+
+
+def main():
+    options = parse(sys.argv[1:])
+    kept = tomllib.loads((PATCHES / "drawn.toml").read_text())
+    bugs = selected(options, kept)
+    drawn = [bug for bug in bugs if isinstance(bug, DrawnBug)]
+    print(f"{len(bugs) - len(drawn)} patches, {len(drawn)} drawn bugs; seed {options.seed or kept['seed']}", flush=True)
+    if options.list:
+        print("\n".join(bug.title for bug in bugs))
+        return 0
+    cores = os.cpu_count() or 1
+    spaces = [Workspace(ROOT / "build" / "mutants" / str(i), 1) for i in range(cores)]
+    targets = sorted({target for bug in bugs for target in bug.targets()})
+    print(f"== building {len(targets)} programs, for {cores} bugs at a time", flush=True)
+    for space in spaces:
+        space.prepare()
+    spaces[0].jobs = cores
+    for space in spaces:  # what the first one has compiled, the others take from ccache
+        try:
+            space.build(targets)
+        except DoesNotCompile as fault:
+            sys.exit(f"mutate.sh: the sources do not compile without a bug:\n{fault}")
+    spaces[0].jobs = 1
+    print("== testing without bugs", flush=True)
+    tests = sorted({(bug.test, False) for bug in bugs if bug.test} | {(test, True) for bug in drawn for test in bug.tests})
+    with concurrent.futures.ThreadPoolExecutor(cores) as pool:
+        parts = list(pool.map(lambda i: test_without_bugs(spaces[i], tests[i::cores]), range(cores)))
+    useless = set().union(*parts)
+    seconds = {test: time_ for space in spaces for test, time_ in space.seconds.items()}
+    for space in spaces:
+        space.seconds = dict(seconds)
+    for bug in drawn:
+        bug.tests = [test for test in bug.tests if test not in useless]
+    print(f"== testing with each of {len(bugs)} bugs", flush=True)
+    return try_all(bugs, spaces, kept.get("unseen", []))
+
+
+def try_all(bugs, spaces, unseen):
+    """Tries the bugs, prints a line for each, and returns the exit status."""
+    free = collections.deque(spaces)
+    accepted = {entry["bug"]: entry["why"] for entry in unseen}
+    survived = caught = 0
+
+    def try_one(bug):
+        space = free.popleft()
+        try:
+            return bug.try_in(space)
+        finally:
+            free.append(space)
+
+    start = time.monotonic()
+    with concurrent.futures.ThreadPoolExecutor(len(spaces)) as pool:
+        for bug, future in [(bug, pool.submit(try_one, bug)) for bug in bugs]:
+            found, result = future.result()
+            if not found and (why := accepted.get(getattr(bug, "key", None))):
+                found, result = True, f"no user sees it: {why}"
+            caught += found
+            survived += not found
+            print(f"{bug.title:<60} {result}", flush=True)
+    print(f"{caught} caught or explained, {survived} not, in {(time.monotonic() - start) / 60:.0f} min")
+    return 1 if survived else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

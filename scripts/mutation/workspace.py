@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A copy of the sources with a build of its own, in which one bug at a time is planted."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LONGEST = 300  # [s], limit of a test program
+FAILED = re.compile(r"^\[  FAILED  \] ([^ ,\n]+)", re.MULTILINE)
+NO_TEST = re.compile(r"^\[  PASSED  \] 0 tests", re.MULTILINE)
+PYTHON_FAILED = re.compile(r"^(?:FAIL|ERROR): (\w+) ", re.MULTILINE)
+
+
+class DoesNotCompile(Exception):
+    pass
+
+
+class Workspace:
+    """Not for several threads at once: each thread has a workspace of its own."""
+
+    def __init__(self, folder, jobs):
+        self.folder = folder
+        self.jobs = jobs
+        self.build_folder = folder / "build" / "release"
+        self.bin = self.build_folder / "bin"
+        self.seconds = {}  # of each test without a bug
+
+    def prepare(self):
+        """Copies the tracked sources and configures the build. A file that a run before has left changed is restored."""
+        names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True).stdout.split("\0")
+        for name in filter(None, names):
+            source, copy = ROOT / name, self.folder / name
+            if not copy.is_file() or copy.read_bytes() != source.read_bytes():
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_bytes(source.read_bytes())  # newer than its object file, which is therefore built again
+                shutil.copymode(source, copy)
+        # No unity build, because a bug changes one file. -O1 compiles in half the time of the release build. Warnings
+        # are off, because a bug may leave a name unused.
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"] if shutil.which("ccache") else []
+        subprocess.run(["cmake", "--preset", "release", "-S", self.folder, "-B", self.build_folder, "-DCMAKE_UNITY_BUILD=OFF",
+                        "-DCMAKE_CXX_FLAGS=", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", *launcher],
+                       cwd=self.folder, check=True, stdout=subprocess.DEVNULL, env=self.environment())
+
+    def environment(self):
+        """Returns the environment of builds and tests. With it, one workspace uses what another one has compiled."""
+        return dict(os.environ, CCACHE_BASEDIR=str(self.folder), CCACHE_NOHASHDIR="1", PYTHONDONTWRITEBYTECODE="1",
+                    SANDWALL_BIN=str(self.bin))
+
+    def build(self, targets):
+        """Throws DoesNotCompile."""
+        command = ["cmake", "--build", str(self.build_folder), "--parallel", str(self.jobs), "--target", *targets]
+        built = subprocess.run(command, env=self.environment(), capture_output=True, text=True)
+        if built.returncode != 0:
+            raise DoesNotCompile(built.stdout[-4000:] + built.stderr[-1000:])
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
+    def read(self, name):
+        return (self.folder / name).read_text()
+
+    def patch(self, text, *options):
+        subprocess.run(["patch", "--strip", "1", "--fuzz", "0", "--silent", "--no-backup-if-mismatch", *options],
+                       cwd=self.folder, input=text, text=True, check=True)
+
+    def run(self, test, limit=LONGEST):
+        """Runs a test and returns the name of its first failure, or None if it passes.
+
+        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of tests/scripts.
+        """
+        program, _, which = test.partition(" ")
+        if program.endswith(".py"):
+            command = ["python3", str(self.folder / "tests" / "scripts" / program), *which.split(), "--failfast"]
+        else:
+            command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]
+        start = time.monotonic()
+        process = subprocess.Popen(command, cwd=self.folder, env=self.environment(), text=True, errors="replace",
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, 9)
+            process.communicate()
+            return "the time limit"
+        self.seconds.setdefault(test, time.monotonic() - start)
+        if process.returncode == 0:
+            return "no test" if NO_TEST.search(output) else None
+        named = (PYTHON_FAILED if program.endswith(".py") else FAILED).search(output)
+        return named[1] if named else f"status {process.returncode}"
+
+    def limit(self, test):
+        """Returns the time limit of a test that may hang with a bug [s]."""
+        return min(LONGEST, 20 + 5 * self.seconds.get(test, LONGEST))
