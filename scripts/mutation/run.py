@@ -52,7 +52,7 @@ class Patch:
 
 
 class DrawnBug:
-    """The first of `bugs` that compiles. `tests` are those of its folder, and then the others; the first failure counts."""
+    """The first of `bugs` that compiles. A failure of any of `tests` counts."""
 
     def __init__(self, bugs, tests):
         self.bugs = bugs
@@ -108,10 +108,10 @@ def common(a, b):
 
 
 def tests_for(name, programs):
-    """Returns the tests that may see a bug in the source `name`, the nearest first."""
+    """Returns the tests that should see a bug in the source `name`, the nearest first: the unit tests of its top folder."""
     if name.endswith(".cpp"):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
-        return sorted(near, key=lambda program: (-near[program], program))
+        return sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
     files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
     module = re.compile(rf"\b{pathlib.PurePath(name).stem}\b")
     return [f"{file}.py" for file in sorted(files, key=lambda file: not module.search(
@@ -210,8 +210,9 @@ def try_all(bugs, spaces, unseen):
 
     start = time.monotonic()
     with concurrent.futures.ThreadPoolExecutor(len(spaces)) as pool:
-        for bug, future in [(bug, pool.submit(try_one, bug)) for bug in bugs]:
-            found, result = future.result()
+        running = {pool.submit(try_one, bug): bug for bug in bugs}
+        for future in concurrent.futures.as_completed(running):
+            bug, (found, result) = running[future], future.result()
             if not found and (why := accepted.get(getattr(bug, "key", None))):
                 found, result = True, f"no user sees it: {why}"
             caught += found
