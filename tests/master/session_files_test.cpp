@@ -51,6 +51,34 @@ TEST_F(SessionFiles, APipeIsNotWrittenToWhileFramesWait) {
 
 using Recoveries = test::FolderTest;
 
+// Without the end of the torn line, both recoveries would be lost.
+TEST_F(Recoveries, ALineThatACrashHasTornIsEndedBeforeTheNext) {
+    const std::filesystem::path file = folder_ / "recoveries.jsonl";
+    const auto lines = [&file] {
+        std::vector<std::string> all;
+        std::ifstream stream(file);
+        for (std::string line; std::getline(stream, line);) {
+            all.push_back(line);
+        }
+        return all;
+    };
+    for (const std::uint64_t step : {7U, 8U}) {
+        master::tellRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = step}, folder_);
+    }
+    const std::vector<std::string> whole = lines();
+    ASSERT_EQ(whole.size(), 2U) << "a whole line needs no end";
+    const std::string torn = whole[1].substr(0, whole[1].size() / 2);
+    std::ofstream(file) << whole[0] << "\n" << torn;
+    master::tellRecovery({.failure = {"rank 3 died", 3, "SIGKILL", 0}, .step = 9}, folder_);
+    const std::vector<std::string> after = lines();
+    ASSERT_EQ(after.size(), 3U);
+    EXPECT_EQ(after[0], whole[0]);
+    EXPECT_EQ(after[1], torn);
+    EXPECT_EQ(master::recoveriesOf(folder_), (std::vector<std::string>{whole[0], after[2]}));
+    EXPECT_NE(after[2].find(R"("step":9)"), std::string::npos) << after[2];
+    EXPECT_EQ(master::RecoveryCount(folder_).count(), 2U);
+}
+
 TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
     master::tellRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = 7, .frame = 8}, folder_);
     std::string good;

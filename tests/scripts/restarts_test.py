@@ -5,12 +5,16 @@ up."""
 
 import re
 import subprocess
+import tempfile
 import time
 import unittest
+from unittest import mock
 
 from supervisor_fixture import HOST, Supervised
 
 import events
+import job_log
+import supervisor
 
 
 class Restarts(Supervised):
@@ -160,6 +164,83 @@ class GivenUp(Supervised):
         self.assertEqual(self.ended(["-"], "--restarts", "20", "--restart-window", "0.001")[0], 0)
         kept = sorted(int(path.stem[4:]) for path in (self.folder / "out/log").glob("try_*.err"))
         self.assertEqual(kept, list(range(5, 13)))
+
+
+class Waits(unittest.TestCase):
+    """The waits before restarts that docs/recovery.md names, on a clock that only sleep() and the test move."""
+
+    def setUp(self):
+        self.now, self.stop = 1000.0, mock.Mock(count=0)
+        for name, fake in (("monotonic", lambda: self.now), ("sleep", self.sleep)):
+            patched = mock.patch(f"time.{name}", fake)
+            patched.start()
+            self.addCleanup(patched.stop)
+
+    def sleep(self, seconds):
+        self.now += seconds
+
+    def supervisor(self, restarts=20, window=60):
+        return supervisor.Supervisor("", None, None, None, None, mock.Mock(restarts=restarts, restart_window=window), self.stop)
+
+    def test_the_first_restart_comes_at_once_and_each_further_one_later(self):
+        allowance = supervisor.Allowance(20, 60)
+        waits = []
+        for _ in range(7):
+            self.assertTrue(allowance.take(showed_a_frame=True))
+            waits.append(allowance.wait())
+        self.assertEqual(waits, [0, 1, 2, 4, 8, 8, 8])
+        self.now += 60
+        self.assertTrue(allowance.take(showed_a_frame=True))
+        self.assertEqual(allowance.wait(), 8, "a restart counts for the whole window")
+        self.now += 60.5
+        self.assertTrue(allowance.take(showed_a_frame=True))
+        self.assertEqual(allowance.wait(), 0, "the window has passed")
+
+    def test_restarts_without_a_frame_count_whatever_the_window(self):
+        allowance = supervisor.Allowance(20, 60)
+        waits = []
+        for showed_a_frame in (True, False, False, False, True, False):
+            allowance.take(showed_a_frame)
+            waits.append(allowance.wait())
+            self.now += 1000
+        self.assertEqual(waits, [0, 0, 1, 2, 0, 0])
+
+    def test_as_many_restarts_as_the_option_says_are_allowed(self):
+        for restarts in (1, 3):
+            for showed_a_frame in (True, False):
+                allowance = supervisor.Allowance(restarts, 60)
+                self.assertEqual([allowance.take(showed_a_frame) for _ in range(restarts + 2)], [True] * restarts + [False] * 2)
+
+    def test_the_launcher_waits_so_long_before_it_starts_the_job_again(self):
+        watched = self.supervisor()
+        for seconds in (0, 1, 2, 4, 8, 8):
+            watched.allowance.take(showed_a_frame=True)
+            before = self.now
+            watched.pause()
+            self.assertAlmostEqual(self.now - before, seconds, delta=0.1, msg="it looks for signals twenty times in a second")
+        self.stop.count = 1
+        before = self.now
+        watched.pause()
+        self.assertEqual(self.now, before, "a signal ends the wait")
+
+    def test_the_haptic_server_is_started_again_after_the_same_waits(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-waits-") as folder:
+            log = job_log.JobLog(folder, 1)
+            self.addCleanup(log.close)
+            watched = self.supervisor()
+            watched.failed = mock.Mock()
+            watched.job = mock.Mock(log=log)
+            watched.server = mock.Mock(**{"process.poll.return_value": -11})
+            for seconds in (0, 1, 2, 4, 8, 8):
+                watched.server.start.reset_mock()
+                watched.look_after_server()  # finds that the server has ended
+                if seconds > 0:
+                    self.now += seconds - 0.01
+                    watched.look_after_server()
+                    self.assertFalse(watched.server.start.called, f"too early for {seconds} s")
+                    self.now += 0.01
+                watched.look_after_server()
+                watched.server.start.assert_called_once()
 
 
 if __name__ == "__main__":

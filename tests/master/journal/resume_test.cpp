@@ -312,6 +312,33 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
     EXPECT_EQ(master::readSession(journal(), "")->material.humidity, before.humidity);
 }
 
+// The resumed session may take a frame without a material as its first. A material that the crash left without its step
+// is not a material of this frame.
+TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
+    const scene::Material before = master::readSession(journal(), "")->material;
+    {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        scene::Material wetter = before;
+        wetter.humidity = 0.5;
+        ASSERT_NE(wetter, before);
+        (void)writer.keep(wetter);
+        record(writer, 1);
+    }
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);  // tears off the frame alone
+    const auto torn = master::readSession(journal(), "");
+    ASSERT_EQ(torn->step, 40U);
+    ASSERT_GT(torn->cutBytes, 0);
+    terrain_.decodeState(torn->state);
+    {
+        master::JournalWriter writer(torn->place, "test");
+        writer.resume({torn->frame, {torn->step, torn->hash}, torn->cutBytes, "a crash"});
+        record(writer, 1);
+    }
+    const auto again = master::readSession(journal(), "");
+    EXPECT_EQ(again->step, 42U);
+    EXPECT_EQ(again->material, before);
+}
+
 TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {
     EXPECT_FALSE(master::readSession(folder_ / "nowhere" / "session.journal", "").has_value());
 }

@@ -128,6 +128,25 @@ TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
     EXPECT_EQ(terrain.copySand()->encode(), saved);
 }
 
+// A slide would hide a vertex that the tool has changed and that was not marked for the undo.
+TEST_F(TinTerrain, AnUndoRestoresSandThatDoesNotSlide) {
+    scene::Scene start = scene();
+    start.rules.threshold = start.rules.startThreshold = sand::kLargestThreshold;
+    Replica terrain(start);
+    const auto stroke = [&terrain](std::int32_t x) {
+        for (std::int32_t y = 4000; y <= 12000; y += 1000) {
+            terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{x, y, 2000}}});
+        }
+        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}});
+    };
+    stroke(5000);
+    const base::Bytes first = terrain.copySand()->encode();
+    stroke(5600);
+    ASSERT_NE(terrain.copySand()->encode(), first);
+    terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
+    EXPECT_EQ(terrain.copySand()->encode(), first);
+}
+
 TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
     Replica terrain(scene());
     const std::uint64_t right = terrain.stateHash();

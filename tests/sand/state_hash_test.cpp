@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every part of a replica's state shows in its hash.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <string>
+
+#include "sand/grid/snapshot.hpp"
+#include "sand/replica.hpp"
+#include "tests/support/sand_of.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace state_hash {
+namespace {
+
+using sand::Edit;
+using sand::Replica;
+using sand::Step;
+using sand::Tuning;
+
+constexpr int kSide = 40;  // [cell]
+
+/// Returns a replica after one step that leaves the level sand as it is.
+Replica after(const std::function<void(Step&)>& change, const scene::Scene& scene = samples::flatScene(kSide, kSide)) {
+    Replica terrain(scene);
+    Step step{1, 1, false, {{100, 200, 300}}};
+    change(step);
+    terrain.apply(step);
+    return terrain;
+}
+
+std::uint64_t hashAfter(const std::function<void(Step&)>& change) { return after(change).stateHash(); }
+
+/// Returns a load of level sand with inertia of this age and this outflow. The step with the load runs no sweeps.
+Edit loadOf(int age, std::int64_t outflow) {
+    const sand::HeightField field(kSide, kSide, 1.0);
+    return Edit::loaded(sand::grid::Snapshot(field, sand::grid::Inertia(age), outflow).encode());
+}
+
+/// Adds a name for `hash`, and expects that no other name has it.
+class Hashes {
+public:
+    void add(const std::string& name, std::uint64_t hash) {
+        const auto [found, isNew] = names_.emplace(hash, name);
+        EXPECT_TRUE(isNew) << name << " has the hash of " << found->second;
+    }
+
+private:
+    std::map<std::uint64_t, std::string> names_;
+};
+
+TEST(StateHash, TellsThePlaceOfTheToolAndWhetherItIsEngaged) {
+    Hashes hashes;
+    const std::uint64_t plain = hashAfter([](Step&) {});
+    hashes.add("plain", plain);
+    EXPECT_EQ(hashAfter([](Step& step) { step.epoch = 7; }), plain) << "the state does not hold the epoch";
+    hashes.add("x", hashAfter([](Step& step) { step.path[0].x ^= 1; }));
+    hashes.add("y", hashAfter([](Step& step) { step.path[0].y ^= 1; }));
+    hashes.add("z", hashAfter([](Step& step) { step.path[0].z ^= 1; }));
+    const auto above = [](bool engaged) {
+        return hashAfter([engaged](Step& step) {
+            step.engaged = engaged;
+            step.path = {{100, 200, 20 * sand::kProbePerCell}};
+        });
+    };
+    hashes.add("above the sand", above(false));
+    hashes.add("engaged above the sand", above(true));
+    Replica later = after([](Step&) {});
+    later.apply({1, 2, false, {}});
+    hashes.add("a step later", later.stateHash());
+}
+
+TEST(StateHash, TellsTheAgeOfTheInertiaAndTheOutflow) {
+    Hashes hashes;
+    for (const int age : {0, 1, 2, 1000}) {
+        const Replica terrain = after([age](Step& step) { step.edit = loadOf(age, 0); });
+        ASSERT_EQ(terrain.leftOut(), "");
+        ASSERT_EQ(samples::erosionOf(terrain).undisturbed(), age);
+        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), sand::HeightField(kSide, kSide, 1.0)));
+        hashes.add("age " + std::to_string(age), Replica(terrain).stateHash());
+    }
+    hashes.add("outflow 1", hashAfter([](Step& step) { step.edit = loadOf(0, 1); }));
+    hashes.add("outflow -1", hashAfter([](Step& step) { step.edit = loadOf(0, -1); }));
+}
+
+TEST(StateHash, TellsTheHeadingThatAHandHasTurnedTheToolTo) {
+    Hashes hashes;
+    hashes.add("not turned", hashAfter([](Step&) {}));
+    for (const double degrees : {90.0, -90.0, 180.0, 0.01}) {
+        for (const bool mirrored : {false, true}) {
+            hashes.add(std::to_string(degrees) + (mirrored ? " mirrored" : ""),
+                       hashAfter([&](Step& step) { step.heading = *sand::headingOf(degrees, mirrored); }));
+        }
+    }
+    EXPECT_EQ(hashAfter([](Step& step) { step.heading = sand::Heading{}; }), hashAfter([](Step&) {}))
+        << "the heading of the scene";
+}
+
+TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
+    Hashes hashes;
+    hashes.add("not tuned", hashAfter([](Step&) {}));
+    const auto tuned = [](const std::function<void(Tuning&)>& change) {
+        return hashAfter([&](Step& step) {
+            Tuning tuning = samples::flatScene(kSide, kSide).rules.tuning();
+            tuning.startThreshold += 100;
+            change(tuning);
+            step.edit = Edit::tuned(tuning);
+        });
+    };
+    hashes.add("start threshold", tuned([](Tuning&) {}));
+    hashes.add("threshold", tuned([](Tuning& tuning) { ++tuning.threshold; }));
+    hashes.add("sweeps per step", tuned([](Tuning& tuning) { ++tuning.sweepsPerStep; }));
+    hashes.add("tool's radius", tuned([](Tuning& tuning) { ++tuning.toolRadius; }));
+    hashes.add("circle", tuned([](Tuning& tuning) { tuning.toolKind = sand::ToolKind::circle; }));
+    hashes.add("tool's heading", tuned([](Tuning& tuning) { tuning.toolHeading = *sand::headingOf(1); }));
+    const auto ellipse = [](Tuning& tuning) {
+        tuning.toolKind = sand::ToolKind::ellipse;
+        tuning.toolHalfWidth = 200;
+    };
+    hashes.add("ellipse", tuned(ellipse));
+    for (const sand::ToolKind kind :
+         {sand::ToolKind::rectangle, sand::ToolKind::ellipsoid, sand::ToolKind::footprint}) {
+        hashes.add(std::string(sand::toolName(kind)), tuned([&](Tuning& tuning) {
+                       ellipse(tuning);
+                       tuning.toolKind = kind;
+                   }));
+    }
+    hashes.add("wider ellipse", tuned([&](Tuning& tuning) {
+                   ellipse(tuning);
+                   ++tuning.toolHalfWidth;
+               }));
+}
+
+// The operator turns the tool, and a hand turns it back. The rules have another heading than the hand.
+TEST(StateHash, TellsTheHeadingOfTheRulesFromThatOfTheHand) {
+    Hashes hashes;
+    for (const double ofRules : {0.0, 90.0}) {
+        for (const double ofHand : {0.0, 45.0, 90.0}) {
+            Replica terrain(samples::flatScene(kSide, kSide));
+            Tuning tuning = terrain.rules().tuning();
+            tuning.toolKind = sand::ToolKind::circle;
+            tuning.toolHeading = *sand::headingOf(ofRules);
+            terrain.apply({1, 1, false, {}, Edit::tuned(tuning)});
+            Step turned{1, 2, false, {}};
+            turned.heading = *sand::headingOf(ofHand);
+            terrain.apply(turned);
+            hashes.add(std::to_string(ofRules) + " and " + std::to_string(ofHand), terrain.stateHash());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace state_hash
