@@ -120,8 +120,8 @@ void forgetFile(const std::filesystem::path& path) {
     }
 }
 
-bool appendText(const std::filesystem::path& path, std::string_view text) {
-    constexpr int kFlags = O_WRONLY | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+bool appendLines(const std::filesystem::path& path, std::string_view lines) {
+    constexpr int kFlags = O_RDWR | O_APPEND | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
     int descriptor = open(path.c_str(), kFlags);
     const bool made = descriptor < 0 && errno == ENOENT;
     if (made) {
@@ -134,6 +134,11 @@ bool appendText(const std::filesystem::path& path, std::string_view text) {
     if (!S_ISREG(about.st_mode)) {
         return refused(descriptor, EINVAL);
     }
+    char last = '\n';
+    if (about.st_size > 0 && pread(descriptor, &last, 1, about.st_size - 1) != 1) {
+        return refused(descriptor, errno);
+    }
+    const std::string text = (last == '\n' ? "" : "\n") + std::string(lines);
     const ssize_t count = write(descriptor, text.data(), text.size());
     if (count != static_cast<ssize_t>(text.size())) {
         return refused(descriptor, count < 0 ? errno : ENOSPC);

@@ -96,7 +96,7 @@ void tell(const std::vector<std::string>& lines, const std::filesystem::path& fi
         host::printLine("{}", line);
         text += line + '\n';
     }
-    (void)host::appendText(file, text);  // the lines are on standard error already
+    (void)host::appendLines(file, text);  // the lines are on standard error already
 }
 
 }  // namespace master

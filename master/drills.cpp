@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kDone = "drills.done";
 
 void keep(const std::string& text, const std::filesystem::path& file) {
-    if (!host::appendText(file, text + "\n")) {
+    if (!host::appendLines(file, text + "\n")) {
         host::printLine("{}: cannot be written ({}); after a restart the drill happens again", file.string(),
                         std::strerror(errno));
     }

@@ -34,11 +34,6 @@ std::string textOf(const std::filesystem::path& file) {
     return bytes ? std::string(bytes->begin(), bytes->end()) : "";
 }
 
-bool endsInsideALine(const std::filesystem::path& file) {
-    const std::string text = textOf(file);
-    return !text.empty() && text.back() != '\n';
-}
-
 /// Throws base::InputError if `recovery` lacks a field, or has a value that no session can write.
 void check(const ordered_json& recovery) {
     const auto require = [&recovery](const char* key, auto fits, const std::string& allowed) {
@@ -117,9 +112,8 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
                             {"cut_bytes", recovery.cutBytes}};
     host::emitEvent("recovered",
                     {{"recovery", host::Json{json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)}}});
-    const bool torn = endsInsideALine(fileIn(folder));  // a crash may have cut off the last line
     const std::string line = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-    if (!host::appendText(fileIn(folder), (torn ? "\n" : "") + line)) {
+    if (!host::appendLines(fileIn(folder), line)) {
         host::printLine("{}: cannot be written", fileIn(folder).string());
     }
 }

@@ -48,7 +48,7 @@ TEST_F(Files, APipeADeviceAndAFolderAreRefusedWithoutWaiting) {
         for (const std::filesystem::path& other : {folder_ / "pipe", std::filesystem::path("/dev/zero"), folder_}) {
             EXPECT_EQ(host::RegularFile(other).error(), "is not a regular file") << other;
         }
-        EXPECT_FALSE(host::appendText(folder_ / "pipe", "x"));
+        EXPECT_FALSE(host::appendLines(folder_ / "pipe", "x"));
         EXPECT_THROW(host::WholeFile(folder_ / "pipe", host::WholeFile::Other::refused), base::InputError);
     }));
 }
@@ -62,14 +62,17 @@ TEST_F(Files, WhetherAPipeCanBeWrittenIsAskedWithoutWaitingForItsReader) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "file"));
 }
 
-TEST_F(Files, TextIsAppendedToAnOldOrNewFile) {
-    EXPECT_TRUE(host::appendText(folder_ / "log", "one\n"));
-    EXPECT_TRUE(host::appendText(folder_ / "log", "two\n"));
+TEST_F(Files, LinesAreAppendedToAnOldOrNewFile) {
+    EXPECT_TRUE(host::appendLines(folder_ / "log", "one\n"));
+    EXPECT_TRUE(host::appendLines(folder_ / "log", "two\n"));
     EXPECT_EQ(textOf(folder_ / "log"), "one\ntwo\n");
-    EXPECT_FALSE(host::appendText(folder_ / "none" / "log", "x"));
+    std::ofstream(folder_ / "torn") << "one\ntw";
+    EXPECT_TRUE(host::appendLines(folder_ / "torn", "three\n"));
+    EXPECT_EQ(textOf(folder_ / "torn"), "one\ntw\nthree\n") << "a crash has cut off the last line";
+    EXPECT_FALSE(host::appendLines(folder_ / "none" / "log", "x"));
     EXPECT_EQ(errno, ENOENT);
     std::filesystem::create_symlink(folder_ / "log", folder_ / "link");
-    EXPECT_FALSE(host::appendText(folder_ / "link", "x")) << "a link of another program";
+    EXPECT_FALSE(host::appendLines(folder_ / "link", "x")) << "a link of another program";
     EXPECT_EQ(textOf(folder_ / "log"), "one\ntwo\n");
 }
 
@@ -175,7 +178,7 @@ TEST_F(Files, NoFileIsWritableForOthersWhateverTheUmask) {
         const std::filesystem::path at = folder_ / std::to_string(mask);
         host::makeFolders(at);
         close(host::makeFile(at / "made", 0666));
-        EXPECT_TRUE(host::appendText(at / "appended", "x"));
+        EXPECT_TRUE(host::appendLines(at / "appended", "x"));
         host::WholeFile whole(at / "whole");
         whole.keep();
         for (const char* name : {"made", "appended", "whole"}) {

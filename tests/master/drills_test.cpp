@@ -43,6 +43,14 @@ TEST_F(Drills, HappenOnceInASessionThatIsTakenUpAgain) {
     EXPECT_EQ(left[1].text, "garbage");
 }
 
+TEST_F(Drills, HappenOnceAlsoBehindALineThatACrashHasTorn) {
+    std::ofstream(folder_ / "drills.done") << "garb";
+    (void)master::beginDrills(drills_, 5, folder_);
+    const std::vector<Drill> left = master::withoutDone(drills_, folder_, true);
+    ASSERT_EQ(left.size(), 2U);
+    EXPECT_EQ(left[1].text, "garbage");
+}
+
 TEST_F(Drills, OfAnEarlierSessionAreForgotten) {
     (void)master::beginDrills(drills_, 5, folder_);
     EXPECT_EQ(master::withoutDone(drills_, folder_, false).size(), 3U);
