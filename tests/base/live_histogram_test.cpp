@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -24,6 +26,18 @@ TEST(LiveHistogram, EveryDurationIsInABucketThatBeginsAtMostAPercentBelow) {
         }
     });
     EXPECT_EQ(i, durations.size());
+}
+
+// Durations below 256 ns have buckets of their own.
+TEST(LiveHistogram, OfFewDurationsGivesTheOneThatTheShareReaches) {
+    base::LiveHistogram histogram;
+    for (const std::int64_t duration : {30, 10, 20}) {
+        histogram.add(duration);
+    }
+    for (const auto& [share, duration] :
+         {std::pair{0.01, 10}, {0.33, 10}, {0.34, 20}, {0.5, 20}, {0.66, 20}, {0.67, 30}, {0.99, 30}, {1.0, 30}}) {
+        EXPECT_EQ(histogram.percentileNs(share), duration) << share;
+    }
 }
 
 TEST(LiveHistogram, PercentilesAreWithinAPercent) {

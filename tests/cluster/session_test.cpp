@@ -79,12 +79,15 @@ TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
     const double ticks = result["haptic"]["ticks"], missed = result["haptic"]["ticks_missed"];
     EXPECT_LE(ticks + missed, all.count() / 1000);
     EXPECT_GE(ticks + missed, 450);
-    // Each deadline has at most one tick. So the mean period is at least a millisecond, and the longest one, too.
-    const double middle = result["haptic_period_us"]["p50"], longest = result["haptic_period_us"]["max"];
-    EXPECT_GE(longest, 1000);
-    // A period of two milliseconds or more ends with a tick that follows missed deadlines. If fewer than half of the
-    // ticks are such ticks, the median period is shorter. The median is known within 1 %.
-    EXPECT_LT(middle, missed < ticks / 2 ? 1.01 * 2000 : 1.01 * longest);
+    // Each deadline has at most one tick. So the mean period is at least a millisecond. Half of the periods are at most
+    // the median, and 99 % are at most the 99th percentile. Both are known within 1 %. Their largest sum is no less
+    // than that of the periods.
+    const double middle = result["haptic_period_us"]["p50"], high = result["haptic_period_us"]["p99"],
+                 longest = result["haptic_period_us"]["max"];
+    EXPECT_GE(1.01 * (0.5 * middle + 0.49 * high + 0.01 * longest) + longest / ticks, 1000);
+    // All periods together last less than a millisecond longer than their deadlines. Half of them are at least the
+    // median. The server counts its ticks later than it takes the median: on a busy machine, after up to as many more.
+    EXPECT_LE(middle, 1.01 * 2 * 1000 * (1 + 2 * (missed + 1) / ticks));
 }
 
 TEST_F(Lockstep, ARankThatSeesAnotherViewIsNamed) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
 
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
+#include "tests/support/x_screen.hpp"
+#include "tests/support/x_server.hpp"
 
 namespace {
 
@@ -132,6 +135,65 @@ TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     std::printf("seven processes of a still wall: %.1f %% of one core\n", 100 * share);
     EXPECT_GT(share, 0) << "the measurement found no running thread";
     EXPECT_LT(share, 0.4);
+}
+
+/// Ranks whose clocks differ, as those of machines that have been switched on at different times.
+class Clocks : public SessionTest {
+protected:
+    // The tests bound no real time: a session that ignores the clocks is wrong by this much.
+    static constexpr double kAhead = 1000;  // [s]
+
+    /// Sets the clock of this rank ahead (tests/support/other_clock.cpp).
+    void setAhead(int rank) {
+        environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("other-clock.so")).string(),
+                        "SANDWALL_CLOCK_RANK=" + std::to_string(rank),
+                        "SANDWALL_CLOCK_AHEAD=" + std::to_string(static_cast<int>(kAhead))};
+    }
+};
+
+// Rank 1 is slow, so that the wall waits for it. The clock of rank 2 is ahead.
+TEST_F(Clocks, ThatDifferChangeNoTimeOfTheSummary) {
+    setAhead(2);
+    const Ended ended =
+        runToEnd({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--device", "script:gis", "--frames", "40",
+                  "--no-pictures", "--inject", "slow:rank=1,ms=150,frame=2", "--out", out()});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    const nlohmann::json result = summary();
+    EXPECT_LT(result["skew_us"]["max"], 1e6 * kAhead / 2) << "times of swaps";
+    ASSERT_EQ(result["per_rank"].size(), 3U);
+    const nlohmann::json& waited = result["per_rank"][0]["slowest"]["wall_waited_ms"];
+    EXPECT_GT(waited["max"], 0);
+    EXPECT_LT(waited["max"], 1e3 * kAhead / 2) << "times of arrivals";
+    EXPECT_EQ(result["slowest"]["rank"], 1);
+    EXPECT_LT(std::abs(result["latency_legs_ms"]["drawn"]["p99"].get<double>()), 1e3 * kAhead / 2) << "from arrivals";
+}
+
+TEST_F(Clocks, ThatDifferChangeNoTimeOfAPointer) {
+    const support::XServer server(folder_, {"640x480x24"});
+    setAhead(1);
+    environment_.push_back("DISPLAY=" + server.display());
+    const std::string oneTile = wall(1, 1, "mono");
+    std::ofstream(oneTile, std::ios::app) << "[[place]]\ntiles = [\"r1c1\"]\nwindows = [[10, 20]]\n";
+    const auto session =
+        start({"--wall", oneTile, "--scene", scene(), "--device", "pointer", "--no-pictures", "--out", out()});
+    expectFrames(*session);
+    {
+        const support::XScreen screen(server.display());
+        ASSERT_EQ(screen.windows().size(), 1U);
+        const auto window = screen.windows().front();
+        screen.point(window, 48, 36);
+        screen.button(window, 1, true);
+        int x = 48;
+        awaitStatus([&](const nlohmann::json& now) {
+            screen.point(window, x = x < 60 ? x + 1 : 40, 36);
+            return now["can_undo"] == true && now["step"] > 20;
+        });
+    }
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    const double latency = summary()["latency_ms"]["p50"];
+    EXPECT_GT(latency, 0) << "from the motion of the pointer to the picture";
+    EXPECT_LT(latency, 1e3 * kAhead / 2);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
@@ -51,6 +53,46 @@ TEST_F(Spacenav, APushIsASpeed) {
     ASSERT_TRUE(test::eventually([&] { return device.read(time).x == 0; }))
         << "the second button brings the hand back to the centre";
     EXPECT_FALSE(device.read(time).engaged);
+}
+
+// A pause is a server that was stopped, or a debugger. The hand would jump through the sand.
+TEST_F(Spacenav, APauseMovesTheHandByATenthOfASecondAtMost) {
+    SpacenavDevice device(library_);
+    call("fakeSpnavPush", 350, 350, 350);
+    double time = 0;
+    ASSERT_TRUE(test::eventually([&] {
+        const haptic_bridge::Pose pose = device.read(time += 1e-6);
+        return pose.x > 0 && pose.y > 0 && pose.z > 0;
+    }));
+    const haptic_bridge::Pose from = device.read(time), to = device.read(time += 5);
+    constexpr double kMost = 0.1;  // [s]
+    EXPECT_NEAR(to.x - from.x, SpacenavDevice::kSpeed * kMost, 1e-12);
+    EXPECT_NEAR(to.y - from.y, SpacenavDevice::kSpeed * kMost, 1e-12);
+    EXPECT_NEAR(to.z - from.z, SpacenavDevice::kClimb * kMost, 1e-12);
+    const haptic_bridge::Pose back = device.read(time - 5), again = device.read(time);
+    EXPECT_EQ(back.x, to.x) << "a clock that runs backwards does not move the hand";
+    EXPECT_EQ(again.x, to.x) << "the time up to the pause is not counted twice";
+    EXPECT_NEAR(device.read(time + 0.01).x - to.x, SpacenavDevice::kSpeed * 0.01, 1e-12) << "after the pause";
+}
+
+TEST_F(Spacenav, TheHandStaysInReachOfTheField) {
+    SpacenavDevice device(library_);
+    const auto pushed = [&](int push, double& time) {
+        call("fakeSpnavPush", push, push, push);
+        const haptic_bridge::Pose from = device.read(time);
+        EXPECT_TRUE(test::eventually([&] {
+            const haptic_bridge::Pose pose = device.read(time += 1e-6);
+            return (pose.x - from.x) * push > 0 && (pose.y - from.y) * push > 0 && (pose.z - from.z) * push > 0;
+        }));
+        for (int i = 0; i < 300; ++i) {
+            (void)device.read(time += 0.1);
+        }
+        return device.read(time);
+    };
+    double time = 0;
+    const haptic_bridge::Pose most = pushed(350, time), least = pushed(-350, time);
+    EXPECT_EQ((std::array{most.x, most.y, most.z}), (std::array{8.0, 8.0, 20.0}));
+    EXPECT_EQ((std::array{least.x, least.y, least.z}), (std::array{-8.0, -8.0, -3.0}));
 }
 
 TEST_F(Spacenav, SaysWhatIsMissing) {

@@ -182,40 +182,4 @@ TEST_F(LinkSecurityTest, WithoutASecretNoOpenSslIsMapped) {
     EXPECT_NE(maps(secret).find("libcrypto"), std::string::npos) << "the check finds a library that is loaded";
 }
 
-TEST_F(LinkSecurityTest, TheExampleOfAPositionServerProvesItsSecret) {
-    const std::string script = SANDWALL_SOURCE_DIR "/haptic_bridge/examples/position_sender.py";
-    const std::string run = "exec python3 " + script + " --listen 127.0.0.1:0 ";
-    const auto port = [](FILE* output) {
-        std::array<char, 200> line{};
-        const std::string text = fgets(line.data(), line.size(), output) != nullptr ? line.data() : "";
-        return static_cast<std::uint16_t>(std::atoi(text.substr(text.rfind(':') + 1).c_str()));
-    };
-    const std::string wrong = secretFile("wrong", "move another-secret-entirely\n");
-    for (const auto& [option, file, fits] :
-         std::vector<std::tuple<std::string, std::string, bool>>{{"--secret-file " + both_, both_, true},
-                                                                 {"--secret-file " + both_, wrong, false},
-                                                                 {"--secret-file " + both_, "", false},
-                                                                 {"", both_, false},
-                                                                 {"", "", true}}) {
-        // The server ends by the shell's timeout, even if this test fails.
-        FILE* sender =
-            popen(("timeout 60 " + run.substr(5) + option + " 2>/dev/null & echo $! >" + folder_.file("pid") + "; wait")
-                      .c_str(),
-                  "r");
-        ASSERT_NE(sender, nullptr);
-        const Address address{"127.0.0.1", port(sender)};
-        {
-            Client link(address, offerOf(scene_), file.empty() ? LinkSecurity{} : client(file));
-            EXPECT_TRUE(eventually([&] {
-                const Link now = link.link().link;
-                return now == Link::streaming || now == Link::refused || now == Link::lost ||
-                       link.link().message.find("does not answer") != std::string::npos;
-            }));
-            EXPECT_EQ(link.link().link == Link::streaming, fits) << option << file << ": " << link.link().message;
-        }
-        kill(std::atoi(folder_.read("pid").c_str()), SIGTERM);
-        pclose(sender);
-    }
-}
-
 }  // namespace

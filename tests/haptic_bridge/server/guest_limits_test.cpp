@@ -58,6 +58,41 @@ TEST(GuestLimits, HoldsBackWhoComesOftenAndNobodyElse) {
     EXPECT_TRUE(limits.mayCome(often, now + 10'000'000'000));
 }
 
+/// Returns one of many addresses.
+boost::asio::ip::address stranger(unsigned number) { return boost::asio::ip::address_v4(0x0a000000U + number); }
+
+TEST(GuestLimits, AFullTableForgetsOnlyWhoHasNoDebt) {
+    GuestLimits limits;
+    const auto debtor = boost::asio::ip::make_address("192.0.2.1");
+    const auto connections = [&limits](const boost::asio::ip::address& address, std::int64_t now) {
+        int came = 0;
+        while (limits.mayCome(address, now)) {
+            ++came;
+        }
+        return came;
+    };
+    for (int i = 0; i < 100; ++i) {
+        limits.refused(debtor, 0);
+    }
+    for (unsigned i = 0; i + 1 < GuestLimits::kAddresses; ++i) {
+        ASSERT_TRUE(limits.mayCome(stranger(i), 0));
+    }
+    // The table is full, and every address in it has connected. All further ones share one count.
+    EXPECT_EQ(connections(stranger(5000), 0), 16);
+    EXPECT_EQ(connections(stranger(5001), 0), 0);
+    EXPECT_FALSE(limits.mayCome(debtor, 0)) << "in debt, as before";
+    EXPECT_EQ(connections(stranger(0), 0), 15) << "it has connected once";
+
+    // After a second the addresses that have connected once may come as often as new ones, so they are forgotten. Then
+    // a further address is counted by itself. The debtor waits longer than that.
+    constexpr std::int64_t kSecond = 1'000'000'000;
+    EXPECT_EQ(connections(stranger(5002), kSecond), 16);
+    EXPECT_EQ(connections(stranger(5003), kSecond), 16) << "not of the shared count";
+    EXPECT_FALSE(limits.mayCome(debtor, kSecond));
+    EXPECT_EQ(connections(stranger(0), kSecond), 8) << "it was empty, and eight came back in a second";
+    EXPECT_EQ(connections(debtor, 5 * kSecond), 16);
+}
+
 TEST(GuestLimits, TakeANetworkOfIpv6ForOneGuest) {
     const auto of = [](const char* text) { return guestOf(boost::asio::ip::make_address(text)).to_string(); };
     EXPECT_EQ(of("192.0.2.1"), "192.0.2.1");
@@ -93,11 +128,25 @@ TEST(RefusalLog, SaysItOnceAndCountsTheRest) {
     EXPECT_TRUE(log.add(RefusalCode::secret, "b", "line", 1)) << "another peer";
     EXPECT_NE(log.add(RefusalCode::secret, "a", "line", RefusalLog::kQuietNs)->find("1 more"), std::string::npos);
     EXPECT_EQ(log.counts()[static_cast<std::size_t>(RefusalCode::secret) - 1], 4U);
-    std::size_t lines = 0;
-    for (int i = 0; i < 5000; ++i) {
-        lines += log.add(RefusalCode::garbage, "c" + std::to_string(i), "line", 2) ? 1 : 0;
-    }
-    EXPECT_LE(lines, RefusalLog::kRemembered + 1);
+}
+
+TEST(RefusalLog, AFullLogForgetsOnlyLinesOlderThanAMinute) {
+    RefusalLog log;
+    EXPECT_TRUE(log.add(RefusalCode::secret, "a", "line", 0));
+    const auto lines = [&log](const std::string& peer, std::int64_t now) {
+        std::size_t count = 0;
+        for (int i = 0; i < 5000; ++i) {
+            count += log.add(RefusalCode::garbage, peer + std::to_string(i), "line", now) ? 1 : 0;
+        }
+        return count;
+    };
+    // One line for each further peer that fits, and one for all others together.
+    EXPECT_EQ(lines("b", 1), RefusalLog::kRemembered - 1 + 1);
+    EXPECT_FALSE(log.add(RefusalCode::secret, "a", "line", RefusalLog::kQuietNs - 1)) << "its minute is not over";
+    EXPECT_EQ(lines("b", RefusalLog::kQuietNs), 0U) << "nor is theirs";
+    // Now all are older. Peers of another name take their places, and all that do not fit share a line as before.
+    EXPECT_EQ(lines("c", RefusalLog::kQuietNs + 1), RefusalLog::kRemembered + 1);
+    EXPECT_TRUE(log.add(RefusalCode::secret, "a", "line", RefusalLog::kQuietNs + 1)) << "its minute is over";
 }
 
 }  // namespace

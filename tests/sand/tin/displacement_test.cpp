@@ -259,17 +259,24 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
         const Displacement::Work done = press(layer, imprint, tool, at, rim);
         expectClear(layer, tool, at);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
-        // A quarter of the ring lies in the field, and three quarters lie beyond the rim.
-        double kept = 0;
+        // Each vertex of the ring takes sand in proportion to its star. A quarter of the ring lies in the field.
+        double kept = 0, stars = 0;
         forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
-            kept += std::max(height, 0.0) * static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
+            const auto star = static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
+            kept += std::max(height, 0.0) * star;
+            stars += height > 0 ? star : 0;
         });
-        const double ratio = static_cast<double>(done.outflow) / kept;
-        if (rim == Rim::open) {  // the strip along the rim belongs to the field's corners, which take little sand
-            EXPECT_NEAR(ratio, 3, 1);
-        } else {
-            EXPECT_EQ(ratio, 0);
+        // The ring is two cells wide. The ground beyond counts as a lattice of one vertex per cell. Each of its stars
+        // is six triangles of half a square with the weight two, so that it is six squares.
+        int squares = 0;  // of the ring in one quadrant
+        for (double y = 0.5; y < 6; ++y) {
+            for (double x = 0.5; x < 6; ++x) {
+                squares += x * x + y * y >= 4 * 4 && x * x + y * y <= 6 * 6 ? 1 : 0;
+            }
         }
+        EXPECT_EQ(squares, 15) << "of an area of 15.7 squares";
+        const double beyond = 3.0 * squares * 6 * sand::kProbePerCell * sand::kProbePerCell;
+        EXPECT_NEAR(static_cast<double>(done.outflow) / kept, rim == Rim::open ? beyond / stars : 0, 1e-9);
         tool.leave(layer, imprint);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
         EXPECT_TRUE(layer.mesh().constraints().empty());

@@ -3,11 +3,16 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
+#include "sand/grid/certificate.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/grid/settle.hpp"
 #include "scene/relax/steepness.hpp"
 #include "tests/scene/relax/relax_fixture.hpp"
+#include "tests/support/reference_sweep.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/tight_projection.hpp"
 
 namespace {
 
@@ -81,6 +86,55 @@ TEST_F(Relax, TellsWhatItDidInOneLine) {
     EXPECT_GT(early["steepest_over_talus"], 1.2) << "after one sweep the pile is far from rest";
     EXPECT_EQ(early["at_rest"], false);
     EXPECT_NE(early["state_hash"], json["state_hash"]);
+}
+
+/// Returns the certificate of the sand that the library relaxes, or for g_plain the plain sweeps of the tests.
+sand::grid::Certificate certificateOf(const std::string& scheme, const sand::HeightField& start,
+                                      const sand::Rules& rules) {
+    sand::HeightField rest = start;
+    sand::grid::NetFlux flux(start.columns(), start.rows());
+    if (scheme == "settle") {
+        (void)sand::grid::settle(rest, rules, &flux);
+    } else if (scheme == "g_plain") {
+        flux = reference::relax(rest, rules.threshold, reference::Isotropic());
+    } else {
+        sand::grid::Erosion erosion(rest, rules);
+        while (!erosion.settled()) {
+            erosion.sweep(rest, 1);
+            erosion.addFluxes(flux);
+        }
+    }
+    return certify(start, rest, flux, rules);
+}
+
+// The right pile is that of a slow solver, which shares no code with the program.
+TEST_F(Relax, CertifiesHowFarThePileIsFromTheRightOne) {
+    const sand::HeightField start = samples::cylinder(24, 6, 4);
+    writeGrid("in.asc", 24, 24, heightsOf(start));
+    sand::Rules rules = samples::flatScene(24, 24).rules;
+    rules.threshold = rules.startThreshold = sand::kUnitsPerCell;
+    reference::TightProjection right(start, sand::kUnitsPerCell);
+    ASSERT_TRUE(right.solve());
+    for (const std::string scheme : {"g", "g_plain", "settle"}) {
+        const auto json = relax("in.asc out.asc --talus 45 --scheme " + scheme);
+        const scene::EsriGrid out = scene::readEsriGrid(path("out.asc"));
+        sand::HeightField rest = start;
+        double moved = 0;  // [unit²]
+        for (int y = 0; y < 24; ++y) {
+            for (int x = 0; x < 24; ++x) {
+                rest.setHeight(x, y, static_cast<std::int32_t>(std::lround(out.at(x, y) / kUnit)));
+                const double change = static_cast<double>(rest.height(x, y)) - start.height(x, y);
+                moved += change * change;
+            }
+        }
+        const double bound = json["certificate"]["bound"], away = right.squaredDistanceTo(rest) / moved;
+        EXPECT_LE(away, bound) << scheme;
+        EXPECT_GT(away, 0) << scheme;
+        EXPECT_NEAR(bound, certificateOf(scheme, start, rules).relative(), 1e-12) << scheme;
+        EXPECT_NEAR(json["certificate"]["bound_rms"].get<double>(), std::sqrt(bound * moved / (24 * 24)) * kUnit,
+                    1e-9 * std::sqrt(bound * moved))
+            << scheme;
+    }
 }
 
 TEST_F(Relax, ThreadsChangeNothing) {
