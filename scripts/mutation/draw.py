@@ -4,7 +4,7 @@
 The product's sources are put in the order of a hash of the seed and their name. Each source gives one bug. Its kind is
 the hash modulo the number of kinds that the source has, and its place the one with the smallest hash of its line. So a
 change elsewhere in the source draws the same bug again. A bug that does not compile is drawn again from the same
-source; no other bug is discarded.
+source, and then from a spare one. No other bug is discarded.
 """
 
 import dataclasses
@@ -64,11 +64,9 @@ def candidates(seed, name, text):
 
 
 def drawn(seed, count, root=ROOT):
-    """Returns `count` lists of bugs, one per source. The first of a list that compiles is the drawn one."""
-    lists = []
-    for name in sorted(sources(root), key=lambda name: rank(seed, name)):
-        if len(lists) == count:
-            break
-        if bugs := list(candidates(seed, name, (root / name).read_text())):
-            lists.append(bugs)
-    return lists
+    """Returns `count` lists of bugs. The first bug of a list that compiles is the drawn one. A list has the bugs of one
+    source, and those of another source in case that none of them compiles."""
+    ranked = sorted(sources(root), key=lambda name: rank(seed, name))
+    lists = [bugs for bugs in (list(candidates(seed, name, (root / name).read_text())) for name in ranked) if bugs]
+    spare = lists[count:] + [[]] * count
+    return [bugs + more for bugs, more in zip(lists[:count], spare)]

@@ -52,11 +52,12 @@ class Patch:
 
 
 class DrawnBug:
-    """The first of `bugs` that compiles. A failure of any of `tests` counts."""
+    """The first of `bugs` that compiles. A failure of any test counts that `tests` gives for its source."""
 
     def __init__(self, bugs, tests):
         self.bugs = bugs
-        self.tests = tests
+        self.tests_of = {name: tests(name) for name in {bug.name for bug in bugs}}
+        self.tests = sorted(set().union(*self.tests_of.values()))
         self.names = [bugs[0].name]
         self.title, self.key = bugs[0].words(), key(bugs[0])
         self.test = None
@@ -65,21 +66,19 @@ class DrawnBug:
         return sorted({test.split()[0] for test in self.tests if ".py" not in test})
 
     def try_in(self, space):
-        original = space.read(self.names[0])
-        try:
-            for bug in self.bugs:
-                self.title, self.key = bug.words(), key(bug)
-                space.write(bug.name, bug.planted())
-                try:
-                    return self.run_tests(space)
-                except DoesNotCompile:
-                    continue
-            return False, "no bug of this file compiles"
-        finally:
-            space.write(self.names[0], original)
+        for bug in self.bugs:
+            self.title, self.key = bug.words(), key(bug)
+            space.write(bug.name, bug.planted())
+            try:
+                return self.run_tests(space, self.tests_of[bug.name])
+            except DoesNotCompile:
+                continue
+            finally:
+                space.write(bug.name, bug.text)
+        return False, "no bug of these sources compiles"
 
-    def run_tests(self, space):
-        for test in self.tests:
+    def run_tests(self, space, tests):
+        for test in tests:
             if ".py" not in test:
                 space.build([test.split()[0]])
             # A failure counts if it comes twice, because a test may also fail on a busy machine.
@@ -140,7 +139,7 @@ def selected(options, kept):
     programs = test_programs()
     drawn = [] if patches and not folders else draw.drawn(options.seed or kept["seed"], options.drawn)
     bugs = [Patch(path) for path in ([] if options.drawn_only else patches or sorted(PATCHES.glob("*.patch")))]
-    bugs += [DrawnBug(list_, tests_for(list_[0].name, programs)) for list_ in drawn]
+    bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in drawn]
     if folders:
         bugs = [bug for bug in bugs if any(common(name, folder) == len(folder.split("/"))
                                            for name in bug.names for folder in folders)]
@@ -190,7 +189,7 @@ def main():
     for space in spaces:
         space.seconds = dict(seconds)
     for bug in drawn:
-        bug.tests = [test for test in bug.tests if test not in useless]
+        bug.tests_of = {name: [test for test in tests if test not in useless] for name, tests in bug.tests_of.items()}
     print(f"== testing with each of {len(bugs)} bugs", flush=True)
     return try_all(bugs, spaces, kept.get("unseen", []))
 

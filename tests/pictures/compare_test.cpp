@@ -47,6 +47,17 @@ TEST(Compare, CountsPixelsBeyondTheLimitAndNotAtIt) {
     EXPECT_EQ(shown.at(4, 6)[0], 10);
 }
 
+TEST(Compare, LooksAtTheFirstAndTheLastPixel) {
+    const Image a = square();
+    for (const int corner : {0, 29}) {
+        Image b = a;
+        b.at(corner, corner)[2] = 90;
+        const Comparison comparison = compare(a, b, 8);
+        EXPECT_EQ(comparison.largestDifference, 50) << corner;
+        EXPECT_EQ(comparison.badPixels, 1) << corner;
+    }
+}
+
 TEST(Compare, FindsNoDifferenceBetweenAPictureAndItself) {
     const Comparison comparison = compare(square(), square(), 0);
     EXPECT_EQ(comparison.largestDifference, 0);

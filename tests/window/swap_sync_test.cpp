@@ -10,7 +10,6 @@
 
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/part_copy.hpp"
-#include "render_node/gl/screen_cover.hpp"
 #include "render_node/gl/window_context.hpp"
 
 namespace {
@@ -19,9 +18,7 @@ using render_node::BackBuffer;
 using render_node::EyesByRetrace;
 using render_node::GlxDrawable;
 using render_node::GlxLoader;
-using render_node::hiddenPixels;
 using render_node::PartCopy;
-using render_node::ScreenRect;
 using render_node::SwapGroup;
 
 /// Simulated driver. Its functions are plain pointers, so that all tests share one driver. Each test resets it.
@@ -229,23 +226,6 @@ TEST(PlatformRequest, AsksForTheWallsRefreshRateOfEveryScreenOfTheCave) {
     }
     const walls::Wall mono = walls::shownIn(cave, walls::Stereo::mono);
     EXPECT_FALSE(render_node::platformRequest(render_node::Backend::glfw, mono, mono.tiles[0]).eyesInTurn);
-}
-
-TEST(ScreenCover, CountsThePixelsThatNoMonitorShows) {
-    const ScreenRect window{{100, 50}, {300, 150}};
-    EXPECT_EQ(hiddenPixels(window, {}), 200 * 100);
-    const ScreenRect all{{0, 0}, {400, 300}};
-    const ScreenRect leftHalf{{0, 0}, {200, 300}};
-    const ScreenRect rightHalf{{200, 0}, {400, 300}};
-    const ScreenRect inside{{120, 60}, {130, 80}};
-    const ScreenRect elsewhere{{300, 0}, {400, 300}};
-    EXPECT_EQ(hiddenPixels(window, std::array{all}), 0);
-    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf}), 100 * 100);
-    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf, rightHalf}), 0);
-    EXPECT_EQ(hiddenPixels(window, std::array{leftHalf, leftHalf}), 100 * 100) << "mirrored monitors count once";
-    EXPECT_EQ(hiddenPixels(window, std::array{inside}), 200 * 100 - 10 * 20);
-    EXPECT_EQ(hiddenPixels(window, std::array{inside, inside, leftHalf}), 100 * 100);
-    EXPECT_EQ(hiddenPixels(window, std::array{elsewhere}), 200 * 100);
 }
 
 }  // namespace
