@@ -147,6 +147,32 @@ TEST_F(TinTerrain, AnUndoRestoresSandThatDoesNotSlide) {
     EXPECT_EQ(terrain.copySand()->encode(), first);
 }
 
+TEST_F(TinTerrain, AnUndoRestoresTheConstraintsOfEarlierStrokes) {
+    Replica terrain(scene("max_error = 0.01\nkeep_constraints = true\n"));
+    const auto stroke = [&terrain](std::int32_t x) {
+        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{x, 8000, 2000}}});
+        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}});
+    };
+    const auto constraints = [&terrain] {
+        int sides = 0;
+        for (const sand::tin::Triangle& triangle : samples::tinOf(terrain).triangles.triangles) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                sides += triangle.alive() && triangle.neighbour[k] >= 0 && triangle.constrained[k] ? 1 : 0;
+            }
+        }
+        return sides;
+    };
+    stroke(4000);
+    const base::Bytes first = terrain.copySand()->encode();
+    const int sides = constraints();
+    ASSERT_GT(sides, 0);
+    stroke(12000);
+    ASSERT_GT(constraints(), sides);
+    terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
+    EXPECT_EQ(constraints(), sides);
+    EXPECT_EQ(terrain.copySand()->encode(), first);
+}
+
 TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
     Replica terrain(scene());
     const std::uint64_t right = terrain.stateHash();
