@@ -68,6 +68,8 @@ TEST_F(TrackedViewerTest, HoldsAHeadThatWalksBehindAScreen) {
         if (frame == 120) {
             EXPECT_NEAR(now.eye.z, 1.0 / 30, 1e-9) << "the last frame in front of it: 29/60 s at 2 m/s";
         }
+        // The head is outside from frame 30 to 150. Its return is reported when it has been inside for more than 1 s.
+        EXPECT_EQ(lines_.size(), frame < 30 ? 0 : frame <= 150 + 60 ? 1 : 2) << "frame " << frame;
     }
     ASSERT_EQ(lines_.size(), 2U);
     EXPECT_EQ(lines_[0],
