@@ -3,6 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <utility>
+
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/scene_fixture.hpp"
 
@@ -57,6 +63,23 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
         for (const std::string value : {"-1", "nan", "-inf"}) {
             EXPECT_EQ(said(fmt::format("{} = {}", key, value)).find("s.toml:5: " + key + " must be"), 0U)
                 << key << " " << value;
+        }
+    }
+}
+
+TEST_F(ForceTable, BoundsAreThoseOfTheDocument) {
+    std::ifstream document(std::string(SANDWALL_SOURCE_DIR) + "/docs/forces.md");
+    const std::regex row(R"(^\|[^|]*\| `(\w+)` \|[^|]*\| (\S+) … (\S+) \|)");
+    std::map<std::string, std::pair<double, double>> bounds;
+    std::smatch found;
+    for (std::string line; std::getline(document, line);) {
+        if (std::regex_search(line, found, row)) {
+            bounds[found[1]] = {std::stod(found[2]), std::stod(found[3])};
+        }
+    }
+    for (const sand::ForceKey& key : sand::forceKeys()) {
+        if (key.constant != &sand::ForceConstants::unitLength) {  // it has no upper bound
+            EXPECT_EQ(bounds[key.name], std::pair(key.lowest, key.highest)) << key.name;
         }
     }
 }
