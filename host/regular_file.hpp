@@ -53,9 +53,10 @@ void keepOthersFromWriting();
 [[nodiscard]] int makeFile(const std::filesystem::path& path, mode_t mode = 0644);
 /// Removes a regular file or a symbolic link. Leaves everything else, such as a pipe, and reports no error.
 void forgetFile(const std::filesystem::path& path);
-/// Appends whole lines to a file, which it makes if it does not exist. If a crash has cut off the file's last line, they
-/// begin on a line of their own. They are on disk when the function returns, and so is the name of a new file. Refuses
-/// everything but a regular file, without waiting; also a symbolic link to one. Returns false with errno if it fails.
+/// Appends whole lines to a file, which it makes if it does not exist. If a crash has cut off the file's last line,
+/// they begin on a line of their own. They are on disk when the function returns, and so is the name of a new file.
+/// Refuses everything but a regular file, without waiting; also a symbolic link to one. Returns false with errno if it
+/// fails.
 [[nodiscard]] bool appendLines(const std::filesystem::path& path, std::string_view lines);
 
 /// Returns why a session must not use the folder `path`: it belongs to another user, or other users may write to it.

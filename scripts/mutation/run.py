@@ -20,6 +20,9 @@ PATCHES = ROOT / "tests" / "mutations"
 COUNT = 64  # bugs that are drawn
 # Sessions over real ranks, and comparisons with other libraries, are too slow to run for each drawn bug.
 SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_tests", "window_tests", "module_tests"}
+# A few sessions, for the parts of the programs that no unit test reaches.
+SESSIONS = "cluster_tests Lockstep.*:Resuming.*:WrongServer.*:Devices.*"
+WITH_SESSIONS = ("haptic_bridge", "lockstep", "master", "render_node", "tracking", "walls")
 # Python tests that start neither sessions nor windows.
 SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
 
@@ -107,10 +110,12 @@ def common(a, b):
 
 
 def tests_for(name, programs):
-    """Returns the tests that should see a bug in the source `name`, the nearest first: the unit tests of its top folder."""
+    """Returns the tests that should see a bug in the source `name`, the nearest first: the unit tests of its top folder,
+    and a few sessions."""
     if name.endswith(".cpp"):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
-        return sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
+        units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
+        return units + [SESSIONS] * name.startswith(WITH_SESSIONS)
     files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
     module = re.compile(rf"\b{pathlib.PurePath(name).stem}\b")
     return [f"{file}.py" for file in sorted(files, key=lambda file: not module.search(
