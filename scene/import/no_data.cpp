@@ -16,6 +16,10 @@ constexpr std::array<double, 3> kUsual{-9999, -32768, -99999};
 /// Returns whether a height is `number`. Dividing it by a unit and multiplying it again causes at most two roundings.
 bool isNumber(double height, double number) { return std::abs(height - number) <= 1e-15 * std::abs(number); }
 
+/// Size of the largest 32-bit float, as programs round it up or down that print few digits.
+constexpr double kLargestFloat = 3.4028234663852886e38;
+bool isLargest(double number) { return std::abs(std::abs(number) - kLargestFloat) <= 1e-5 * kLargestFloat; }
+
 std::string warning(const std::string& file, std::ptrdiff_t count, const char* what, double number,
                     const std::string& how) {
     return fmt::format("{}: {} {}{} the height {}, which usually means no data and is taken for a height here; {}",
@@ -24,6 +28,15 @@ std::string warning(const std::string& file, std::ptrdiff_t count, const char* w
 }
 
 }  // namespace
+
+bool meansNoData(double height, double noData) {
+    if (isLargest(height) && isLargest(noData)) {
+        return (height < 0) == (noData < 0);
+    }
+    // A double beyond the range of float cannot be converted.
+    const bool fits = std::abs(height) <= kLargestFloat && std::abs(noData) <= kLargestFloat;
+    return height == noData || (fits && static_cast<float>(height) == static_cast<float>(noData));
+}
 
 bool isUsualNoData(double number) {
     return std::any_of(kUsual.begin(), kUsual.end(), [&](double usual) { return isNumber(number, usual); });

@@ -9,6 +9,10 @@
 
 namespace scene {
 
+/// Returns whether a height is the number `noData` with which its file marks cells without data. Both are compared as
+/// 32-bit floats, which most programs hold and print with different digits: -9999.9 is also -9999.900391.
+[[nodiscard]] bool meansNoData(double height, double noData);
+
 /// Returns whether many programs use `number` for "no data", such as -9999.
 [[nodiscard]] bool isUsualNoData(double number);
 

@@ -41,7 +41,8 @@ TEST_F(NoData, EitherKindRefusesAnEsriGridWithTheSameLine) {
     for (const std::string kind : {"esri_ascii", "dem"}) {
         for (const std::string word : {"abc", "nan", "inf", "1,5", "1e999"}) {
             EXPECT_EQ(refusedAs(kind, "1 2 3\n4 " + word + " 6\n"),
-                      "t.asc:7: a height must be a finite number, got '" + word + "'")
+                      "t.asc:7: a height must be a finite number, got '" + word + "'" +
+                          (word == "1,5" ? "; write a decimal point" : ""))
                 << kind;
         }
         EXPECT_EQ(refusedAs(kind, "1 2 3\n4 abc 6\n", "NODATA_value -1\n"),
