@@ -22,6 +22,7 @@
 #include "host/whole_file.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/no_data.hpp"
+#include "scene/import/prj_file.hpp"
 
 namespace scene {
 namespace {
@@ -151,6 +152,11 @@ double heightOf(Words& words, const EsriGrid& grid) {
 }  // namespace
 
 EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check) {
+    if (const std::optional<PrjFile> prj = prjBeside(file); prj && prj->inDegrees()) {
+        throw base::InputError(fmt::format(
+            "{}: its coordinates ({}) are degrees, but sand needs lengths; make metres of them with gdalwarp -t_srs",
+            file.string(), prj->file.filename().string()));
+    }
     std::ifstream stream = opened(file);
     Words words(stream, file.string());
     EsriGrid grid;
@@ -240,6 +246,20 @@ EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
     return result;
 }
 
+/// Returns the grid's number for no data, or else a usual one that no height means when it is read again.
+double freeNoData(const EsriGrid& grid) {
+    const auto isFree = [&](double number) {
+        return std::none_of(grid.heights.begin(), grid.heights.end(),
+                            [&](double height) { return !std::isnan(height) && meansNoData(height, number); });
+    };
+    for (const double number : {grid.noData.value_or(-9999), -9999.0, -99999.0, -32768.0, -1e30}) {
+        if (isFree(number)) {
+            return number;
+        }
+    }
+    return kNoData;
+}
+
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
     host::WholeFile whole(file);
     const std::string cells = grid.cellDepth ? fmt::format("dx {}\ndy {}", grid.cellSize, *grid.cellDepth)
@@ -247,7 +267,7 @@ void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
     whole.stream() << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{}\n", grid.columns, grid.rows,
                                   grid.westEdge, grid.southEdge, cells);
     const auto& heights = grid.heights;
-    const double noData = grid.noData.value_or(-9999);
+    const double noData = freeNoData(grid);
     if (grid.noData || std::any_of(heights.begin(), heights.end(), [](double height) { return std::isnan(height); })) {
         whole.stream() << fmt::format("NODATA_value {}\n", noData);
     }

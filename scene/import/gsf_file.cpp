@@ -158,6 +158,7 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
     header.wantMetres("XYUnits");
     header.wantMetres("ZUnits");
     grid.units = {.lengthMetres = 1, .heightMetres = 1, .heightName = "m"};
+    grid.origins = {"format", "format"};
     grid.cellSize = header.length("XReal") / grid.columns;
     const double depth = header.length("YReal") / grid.rows;
     if (std::abs(depth - grid.cellSize) > kSquare * grid.cellSize) {

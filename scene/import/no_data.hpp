@@ -18,7 +18,8 @@ namespace scene {
 
 /// Returns a warning for each such number that a raster has as a height and does not declare as no data. A warning
 /// names the file, the number, and how many cells have it. It ends with `how`, the way to declare it, in which {0}
-/// stands for the number.
+/// stands for the number. Throws base::InputError if a height is the lowest or largest float, or Surfer's blank, which
+/// cannot be heights.
 [[nodiscard]] std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::string& how);
 /// Returns a warning for each such number among the heights of points from `file`.
 [[nodiscard]] std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file);

@@ -94,7 +94,9 @@ TEST_F(EsriFile, ComparesNoDataAsProgramsPrintIt) {
     EXPECT_TRUE(noData("16777216", "16777217"));
     EXPECT_FALSE(noData("16777216", "16777218"));
     EXPECT_TRUE(noData("-3.40282e+38", "-3.402823466e+38")) << "the lowest float with few and with many digits";
-    EXPECT_FALSE(noData("-3.40282e+38", "3.402823466e+38"));
+    EXPECT_EQ(complaint("ncols 1\nnrows 1\ncellsize 1\nNODATA_value -3.40282e+38\n3.402823466e+38\n"),
+              "t.asc: 1 cell has the height 3.402823466e+38, which means no data; declare it: add the line 'NODATA_value "
+              "3.402823466e+38' to the header");
     EXPECT_FALSE(noData("1e300", "1e299")) << "both would be the float infinity";
     EXPECT_TRUE(noData("1e300", "1e300"));
     for (const char* nan : {"nan", "-nan", "NaN", "1.#QNAN", "nan(ind)"}) {

@@ -136,7 +136,8 @@ TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
     const support::Ran ran =
         support::runProgram("sandwall-relax", path("t.tif") + " " + path("out.tif") + " --talus 34");
     EXPECT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(ran.output.find("sandwall-relax: warning: " + path("t.tif") + ": has no coordinate system"), 0U)
+    EXPECT_NE(ran.output.find("sandwall-relax: warning: " + path("t.tif") + ": has no coordinate system"),
+              std::string::npos)
         << ran.output;
     for (const Place& place : {Place{0, 2, 0, 0, 0, -2}, Place{7, 1, 0, 0, 0, -1}}) {
         raster.place = place;
@@ -156,7 +157,7 @@ TEST_F(NoData, RelaxingWarnsOfItToo) {
                                          path("t.asc") + " " + path("out.obj") + " --max-error 1"}) {
         const support::Ran ran = support::runProgram("sandwall-relax", arguments + " --talus 34");
         EXPECT_EQ(ran.status, 0) << ran.output;
-        EXPECT_EQ(ran.output.find("sandwall-relax: warning: "), 0U) << ran.output;
+        EXPECT_NE(ran.output.find("\nsandwall-relax: warning: "), std::string::npos) << ran.output;
         EXPECT_NE(ran.output.find("the height -9999, which usually means no data"), std::string::npos) << ran.output;
     }
 }

@@ -59,7 +59,7 @@ TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
     EXPECT_EQ(refused("1.234.5,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1.234.5'");
     EXPECT_EQ(refused("o,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'o'");
     EXPECT_EQ(refused("\"0\",\"0\",\"100\"\n" + rest), "p.csv:1: x must be a finite number, got '\"0\"'");
-    EXPECT_EQ(read("0,5;0,5;100,2\n1;0;1\n0;0;1\n")[0], (std::array<double, 3>{0.5, 0.5, 100.2}));
+    EXPECT_EQ(read("0,5;0,5;100,2\n1;0;1\n0;0;2\n")[0], (std::array<double, 3>{0.5, 0.5, 100.2}));
     EXPECT_EQ(refused(",,\n" + rest), "p.csv:1: x must be a finite number, got ''");
     EXPECT_EQ(refused("\xE2\x88\x92"
                       "5 0 1\n"),

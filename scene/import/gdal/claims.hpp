@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include "scene/import/gdal/gdal_raster.hpp"
+
+namespace scene {
+
+/// Compares what the header of a raster claims with what its files hold, where GDAL 3.6.2 does not: it reads heights of
+/// 0 behind the end of some files, concludes a type of numbers from the size, and reads "1,5" as two numbers or as 1.
+///
+/// Throws base::InputError with the file, and the line in a text, if a file is shorter or several times longer than its
+/// header says, or if a number in a text has a decimal comma.
+void checkClaims(const GdalRaster& raster);
+
+/// Returns the bytes that a NetCDF file of the classic format must have by its header [byte]. Returns nullopt for other
+/// files, and for a header that is damaged. `begin` are the first bytes of the file.
+[[nodiscard]] std::optional<std::uint64_t> classicNetcdfSize(std::string_view begin);
+
+}  // namespace scene
