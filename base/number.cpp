@@ -50,8 +50,9 @@ bool spellsNan(std::string_view word) {
     const bool withBits = lower.starts_with("nan(") && lower.back() == ')';
     constexpr std::string_view kWindows = "1.#";  // of Microsoft's older C libraries
     return lower == "nan" || withBits ||
-           (lower.starts_with(kWindows) && (lower.find("nan") == kWindows.size() + 1 || lower.find("ind") == kWindows.size() ||
-                                            lower.find("nan") == kWindows.size()));
+           (lower.starts_with(kWindows) &&
+            (lower.find("nan") == kWindows.size() + 1 || lower.find("ind") == kWindows.size() ||
+             lower.find("nan") == kWindows.size()));
 }
 
 std::optional<double> DecimalStyle::numberOf(std::string_view word, long line) {

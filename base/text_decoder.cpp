@@ -129,8 +129,7 @@ std::size_t TextDecoder::takeBytes(bool atEnd, std::string& text) {
         if (valid < length && at + valid == bytes.size() && !atEnd) {
             break;  // the rest of the character may follow
         }
-        const bool whole =
-            length > 0 && valid == length && isCharacter(characterAt(bytes, at, length), length);
+        const bool whole = length > 0 && valid == length && isCharacter(characterAt(bytes, at, length), length);
         put(whole ? characterAt(bytes, at, length) : char32_t{first}, text);  // Latin-1 has Unicode's numbers
         at += whole ? length : 1;
     }

@@ -15,8 +15,7 @@ namespace base {
 class TextReader {
 public:
     /// `stream` must outlive the reader. `file` is for messages.
-    TextReader(std::istream& stream, std::string file)
-        : stream_(&stream), file_(std::move(file)), decoder_(file_) {}
+    TextReader(std::istream& stream, std::string file) : stream_(&stream), file_(std::move(file)), decoder_(file_) {}
     /// Reads bytes that are in memory, which are copied.
     TextReader(std::string_view bytes, std::string file);
 

@@ -132,8 +132,8 @@ private:
             throw base::InputError(name_, number, "time runs backwards: '" + std::string(word) + "'");
         }
         if (elapsed > kLongest) {
-            throw base::InputError(name_, number,
-                                   "time jumps: '" + std::string(word) + "' is more than 30 years after the first sample");
+            throw base::InputError(
+                name_, number, "time jumps: '" + std::string(word) + "' is more than 30 years after the first sample");
         }
         return last_ = elapsed;
     }
@@ -149,9 +149,10 @@ private:
                 name_, number, "time is neither a number nor YYYY/MM/DD/HH:MM:SS.ffffff: '" + std::string(word) + "'");
         }
         if (std::abs(*value) * settings_.secondsPerTick > kLatest) {
-            throw base::InputError(name_, number,
-                                   "time '" + std::string(word) +
-                                       "' would be thousands of years after 1970; give its unit: --map time=ms, us or ns");
+            throw base::InputError(
+                name_, number,
+                "time '" + std::string(word) +
+                    "' would be thousands of years after 1970; give its unit: --map time=ms, us or ns");
         }
         const Ticks ticks = ticksOf(word, *value);
         firstTicks_ = firstTicks_.value_or(ticks);

@@ -100,8 +100,7 @@ void readHeader(Words& words, EsriGrid& grid) {
     bool centreX = false, centreY = false;  // files of some programs give the corner of one and the centre of the other
     double square = 0;
     const auto isKey = [](std::string_view word) {
-        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
-               !base::spellsNan(word);
+        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 && !base::spellsNan(word);
     };
     while (isKey(words.peekWord())) {
         const std::string key = base::lowerCase(words.nextWord());

@@ -37,9 +37,8 @@ public:
 
     /// Reads one band of heights with a place, from a local file. Its format must neither use the network nor run code.
     /// Heights are returned in the unit of lengths; pixels are areas; pixels that the file masks are NaN. Refuses
-    /// degrees, turned rasters, files that are shorter than their header says, and rasters beyond kMostRasterBytes. These
-    /// checks, and `check` unless it is empty, come
-    /// before pixels are read.
+    /// degrees, turned rasters, files that are shorter than their header says, and rasters beyond kMostRasterBytes.
+    /// These checks, and `check` unless it is empty, come before pixels are read.
     [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
     /// Returns the units of readDem()'s lengths and heights without reading pixels. For a text grid they come from the

@@ -39,8 +39,8 @@ void refuseLargest(const Heights& heights, HeightOf heightOf, const std::string&
     const auto first = std::find_if(heights.begin(), heights.end(), found);
     if (first != heights.end()) {
         const auto count = std::count_if(first, heights.end(), found);
-        throw base::InputError(fmt::format("{}: {} {}{} the height {}, which means no data; declare it: {}", file, count,
-                                           what, count == 1 ? " has" : "s have", heightOf(*first),
+        throw base::InputError(fmt::format("{}: {} {}{} the height {}, which means no data; declare it: {}", file,
+                                           count, what, count == 1 ? " has" : "s have", heightOf(*first),
                                            fmt::format(fmt::runtime(how), heightOf(*first))));
     }
 }

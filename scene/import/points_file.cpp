@@ -35,8 +35,8 @@ std::vector<std::string_view> wordsIn(std::string_view text) {
     return words;
 }
 
-/// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers with
-/// decimal commas.
+/// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers
+/// with decimal commas.
 std::vector<std::string_view> fieldsOf(std::string_view text) {
     if (text.find(';') != std::string_view::npos) {
         return base::split(text, ';');
@@ -217,11 +217,11 @@ private:
     void readTitle(const std::vector<std::string_view>& fields, long line) {
         if (fields.size() != 3) {
             const auto degrees = std::find_if(fields.begin(), fields.end(), isDegrees);
-            fail(line, fmt::format(
-                           "expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0], fields.size(),
-                           degrees == fields.end()
-                               ? ""
-                               : fmt::format("; '{}' is in degrees, but sand needs lengths", base::unquoted(*degrees))));
+            fail(line, fmt::format("expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0],
+                                   fields.size(),
+                                   degrees == fields.end() ? ""
+                                                           : fmt::format("; '{}' is in degrees, but sand needs lengths",
+                                                                         base::unquoted(*degrees))));
         }
         for (const std::string_view name : {fields[0], fields[1]}) {
             if (isDegrees(name) && !degrees_) {
@@ -251,7 +251,8 @@ private:
         for (std::size_t i = 0; i < 3; ++i) {
             if (axis.at(i) == kUnknown) {
                 // A name that tells nothing stands for its own place, or for the only one that is left.
-                const auto left = static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+                const auto left =
+                    static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
                 const bool only = std::count(taken.begin(), taken.end(), false) == 1;
                 if (taken.at(i) && !only) {
                     failForNames(fields, line);

@@ -16,7 +16,8 @@ using Points = std::vector<std::array<double, 3>>;
 /// once.
 ///
 /// Throws base::InputError with file, line and value for:
-/// - a value that is not a finite number, a title with degrees or with x, y and z in another order, a line without exactly three values,
+/// - a value that is not a finite number, a title with degrees or with x, y and z in another order, a line without
+/// exactly three values,
 /// - two heights at one place, fewer than three points, points that all lie on one line,
 /// - more than kMostPoints points.
 [[nodiscard]] Points readPoints(const std::filesystem::path& file);

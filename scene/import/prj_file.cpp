@@ -30,7 +30,7 @@ std::string valueOf(const std::string& text, std::string_view key) {
 }  // namespace
 
 bool PrjFile::inDegrees() const {
-    constexpr std::array<std::string_view, 6> kGeographic{"geogcs", "geogcrs",       "geodcrs",
+    constexpr std::array<std::string_view, 6> kGeographic{"geogcs",      "geogcrs",       "geodcrs",
                                                           "geodeticcrs", "geographiccrs", "basegeogcrs"};
     const std::string begin = base::lowerCase(text.substr(0, text.find('[')));
     const bool wkt = std::find(kGeographic.begin(), kGeographic.end(), base::trimmed(begin)) != kGeographic.end();

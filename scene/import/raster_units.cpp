@@ -48,12 +48,18 @@ RasterStatement statementOf(const EsriGrid& grid) {
         result.noData = fmt::format("{}", *grid.noData);
     }
     const auto empty = std::count_if(grid.heights.begin(), grid.heights.end(), [](double h) { return std::isnan(h); });
-    result.noDataShare = grid.heights.empty() ? 0 : static_cast<double>(empty) / static_cast<double>(grid.heights.size());
+    result.noDataShare =
+        grid.heights.empty() ? 0 : static_cast<double>(empty) / static_cast<double>(grid.heights.size());
     return result;
 }
 
 RasterStatement statementOf(const Points& /*points*/, const std::string& file) {
-    return {.file = file, .across = unitName(0), .acrossFrom = "points", .up = "the same", .upFrom = "points", .noData = {}};
+    return {.file = file,
+            .across = unitName(0),
+            .acrossFrom = "points",
+            .up = "the same",
+            .upFrom = "points",
+            .noData = {}};
 }
 
 void requireSameUnits(const RasterUnits& sand, const std::string& file, const EsriGrid& rock) {
@@ -68,15 +74,17 @@ void requireSameUnits(const RasterUnits& sand, const std::string& file, const Es
     // Rock without units has those of the sand. If the sand has two, the rock's heights could be in either.
     const bool noUnits = below.lengthMetres == 0 && below.heightMetres == 0;
     if (noUnits && sand.heightsPerLength != 1) {
-        fail(fmt::format("the rock declares no units, and the sand has {} across and {} up, so that the rock's heights "
-                         "could be in either; put a .prj file beside the rock, as the sand has it",
-                         unitName(sand.lengthMetres), unitName(sand.heightMetres)));
+        fail(
+            fmt::format("the rock declares no units, and the sand has {} across and {} up, so that the rock's heights "
+                        "could be in either; put a .prj file beside the rock, as the sand has it",
+                        unitName(sand.lengthMetres), unitName(sand.heightMetres)));
     }
     const bool sandHasNone = sand.lengthMetres == 0 && sand.heightMetres == 0;
     if (sandHasNone && below.heightsPerLength != 1) {
-        fail(fmt::format("the sand declares no units, and the rock has {} across and {} up, so that the sand's heights "
-                         "could be in either; put a .prj file beside the sand, as the rock has it",
-                         unitName(below.lengthMetres), unitName(below.heightMetres)));
+        fail(
+            fmt::format("the sand declares no units, and the rock has {} across and {} up, so that the sand's heights "
+                        "could be in either; put a .prj file beside the sand, as the rock has it",
+                        unitName(below.lengthMetres), unitName(below.heightMetres)));
     }
 }
 

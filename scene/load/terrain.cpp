@@ -209,7 +209,8 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
             }
         };
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);
-        requireSameUnits(scene.georeference.units, terrain.has("file") ? terrain.text("file") : terrain.text("kind"), rock);
+        requireSameUnits(scene.georeference.units, terrain.has("file") ? terrain.text("file") : terrain.text("kind"),
+                         rock);
         scene.statements.push_back(statementOf(rock));
         scene.warnings.insert(scene.warnings.end(), rock.warnings.begin(), rock.warnings.end());
         if (rock.columns != field.columns() || rock.rows != field.rows()) {

@@ -100,12 +100,12 @@ void relaxTin(const Options& options) {
         warnings = undeclaredNoData(points, options.in);
         statement = statementOf(points, options.in);
     } else {
-        const EsriGrid raster =
-            readRaster(options.in, fitsSolver(options.in, host::freeMemoryOfProcess()));
+        const EsriGrid raster = readRaster(options.in, fitsSolver(options.in, host::freeMemoryOfProcess()));
         checkLengths(raster, options);
         statement = statementOf(raster);
         warnings = raster.warnings;
-        thinned = thin(withoutEmptyEdges(raster), {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+        thinned =
+            thin(withoutEmptyEdges(raster), {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
     host::requireWritable(options.out);  // to report a faulty OUT before hours of work

@@ -10,9 +10,7 @@
 
 namespace scene::relax {
 
-void printStatement(const RasterStatement& statement) {
-    host::printLine("{}: {}", statement.file, statement.text());
-}
+void printStatement(const RasterStatement& statement) { host::printLine("{}: {}", statement.file, statement.text()); }
 
 nlohmann::ordered_json jsonOf(const RasterStatement& statement) {
     nlohmann::ordered_json json;

@@ -11,8 +11,8 @@
 #include <random>
 
 #include "base/input_error.hpp"
-#include "tests/support/seed.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 

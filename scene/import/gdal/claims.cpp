@@ -53,8 +53,8 @@ std::optional<std::string> valueIn(const fs::path& header, std::string_view key)
 }
 
 std::optional<fs::path> fileWithEnding(const std::vector<fs::path>& files, std::string_view ending) {
-    const auto found = std::find_if(files.begin(), files.end(),
-                                    [&](const fs::path& file) { return base::endingOf(file) == ending; });
+    const auto found =
+        std::find_if(files.begin(), files.end(), [&](const fs::path& file) { return base::endingOf(file) == ending; });
     return found == files.end() ? std::nullopt : std::optional(*found);
 }
 
@@ -82,9 +82,10 @@ void checkSize(const GdalRaster& raster, std::uintmax_t bytes, std::uint64_t nee
     }
     // Without a header inside, a whole number of times the cells means numbers of another type, or other sides.
     if (alone && needed > 0 && bytes >= 2 * needed && bytes % needed == 0) {
-        raster.fail(fmt::format("it has {} times the bytes that its header says ({}); correct the type of numbers, the "
-                                "columns or the rows in the header",
-                                bytes / needed, needed));
+        raster.fail(
+            fmt::format("it has {} times the bytes that its header says ({}); correct the type of numbers, the "
+                        "columns or the rows in the header",
+                        bytes / needed, needed));
     }
 }
 
@@ -140,7 +141,7 @@ void checkSizes(const GdalRaster& raster, const std::vector<fs::path>& files) {
 /// Returns whether a file beside the raster is a text of keys and numbers. A comma may separate numbers in others.
 bool isHeaderOfNumbers(const fs::path& file, const std::string& driver) {
     const std::string ending = base::endingOf(file);
-    const bool world = ending == ".wld" || (ending.size() == 4 && ending.back() == 'w') || ending.ends_with("fw");
+    const bool world = ending == ".wld" || (ending.size() == 4 && ending.back() == 'w');
     return world || (ending == ".hdr" && driver != "ENVI") || ending == ".rdc" || ending == ".sgrd" ||
            ending == ".rsc" || ending == ".ers";
 }
@@ -166,15 +167,16 @@ void checkSurferText(const GdalRaster& raster) {
         static_cast<std::uint64_t>(raster.columns()) * static_cast<std::uint64_t>(raster.rows());
     std::uint64_t count = 0;
     for (std::string word(words.nextWord()); !word.empty(); word = words.nextWord(), ++count) {
-        if (base::numberOf(word)) {
+        if (base::numberOf(word) || base::spellsNan(word)) {
             continue;
         }
         words.fail(base::commaNumberOf(word) ? fmt::format("'{}' has a decimal comma; write a decimal point", word)
                                              : fmt::format("expected a number, got '{}'", word));
     }
     if (count != kHeader + cells) {
-        raster.fail(fmt::format("its header says that {} x {} = {} numbers follow, but there are {}; the file may be cut",
-                                raster.columns(), raster.rows(), cells, count < kHeader ? 0 : count - kHeader));
+        raster.fail(
+            fmt::format("its header says that {} x {} = {} numbers follow, but there are {}; the file may be cut",
+                        raster.columns(), raster.rows(), cells, count < kHeader ? 0 : count - kHeader));
     }
 }
 
@@ -184,7 +186,7 @@ void checkClaims(const GdalRaster& raster) {
     const std::vector<fs::path> files = filesOf(raster);
     checkSizes(raster, files);
     for (const fs::path& file : files) {
-        if (isHeaderOfNumbers(file, raster.driver())) {
+        if (file != files.front() && isHeaderOfNumbers(file, raster.driver())) {
             checkDecimalSigns(file);
         }
     }

@@ -119,8 +119,9 @@ public:
     [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
         if (raster.isWhiteZero()) {
-            raster.fail("its 0 is white, so that it could be the lowest or the highest; invert it, or read its numbers as "
-                        "heights with kind = \"dem\"");
+            raster.fail(
+                "its 0 is white, so that it could be the lowest or the highest; invert it, or read its numbers as "
+                "heights with kind = \"dem\"");
         }
         const double white = whiteOf(raster);
         EsriGrid grid = gridOf(raster);

@@ -76,10 +76,10 @@ void GdalRaster::chooseBand() {
         failForVariables();
     }
     if (values != 1) {
-        fail(fmt::format("has {} bands, but heights are only one; choose it: gdal_translate -b NUMBER {} dem.tif", values,
-                         fs::path(name_).filename().string()));
+        fail(fmt::format("has {} bands, but heights are only one; choose it: gdal_translate -b NUMBER {} dem.tif",
+                         values, fs::path(name_).filename().string()));
     }
-    if (GDALGetRasterColorTable(band_) != nullptr && !isWhiteZero()) {
+    if (GDALGetRasterColorTable(band_) != nullptr && !isWhiteZero() && !isGreyPalette()) {
         fail("holds colours from a palette instead of heights");
     }
     if (GDALDataTypeIsComplex(GDALGetRasterDataType(band_)) != 0) {
@@ -117,6 +117,17 @@ bool GdalRaster::isWhiteZero() const {
     return mark != nullptr && std::string_view(mark) == "YES";
 }
 
+bool GdalRaster::isGreyPalette() const {
+    GDALColorTableH table = GDALGetRasterColorTable(band_);
+    for (int i = 0; i < GDALGetColorEntryCount(table); ++i) {
+        const GDALColorEntry* const entry = GDALGetColorEntry(table, i);
+        if (entry->c1 != i || entry->c2 != i || entry->c3 != i) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool GdalRaster::isSignedByte() const {
     const char* const type = GDALGetMetadataItem(band_, "PIXELTYPE", "IMAGE_STRUCTURE");
     return GDALGetRasterDataType(band_) == GDT_Byte && type != nullptr && std::string_view(type) == "SIGNEDBYTE";
@@ -136,7 +147,7 @@ std::optional<double> GdalRaster::noData() const {
 
 bool GdalRaster::complete() const {
     const bool whole = GDALDataTypeIsInteger(GDALGetRasterDataType(band_)) != 0;
-    return whole && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
+    return whole && !isSignedByte() && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
 }
 
 std::vector<double> GdalRaster::numbers() const {
@@ -174,13 +185,16 @@ std::vector<double> GdalRaster::pixels() const {
 
 void GdalRaster::mask(std::vector<double>& pixels) const {
     const int flags = GDALGetMaskFlags(band_);
-    if ((flags & GMF_ALL_VALID) != 0) {
-        return;
+    if (isSignedByte() || (isPng() && (flags & GMF_NODATA) != 0)) {
+        // GDAL's mask would compare the number without its sign, or a transparent grey as GDAL has read it.
+        int declared = 0;
+        const double noData = GDALGetRasterNoDataValue(band_, &declared);
+        if (declared != 0) {
+            std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
+            return;
+        }
     }
-    if ((isPng() || isSignedByte()) && (flags & GMF_NODATA) != 0) {
-        // GDAL's mask would compare the transparent grey, or the number with a sign, with the numbers that GDAL has read.
-        const double noData = GDALGetRasterNoDataValue(band_, nullptr);
-        std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
+    if ((flags & GMF_ALL_VALID) != 0) {
         return;
     }
     GDALRasterBandH mask = GDALGetMaskBand(band_);

@@ -27,6 +27,8 @@ public:
     [[nodiscard]] std::string driver() const { return GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get())); }
     /// Returns whether 0 would be drawn white. GDAL then adds a table of greys, which is not a palette.
     [[nodiscard]] bool isWhiteZero() const;
+    /// Returns whether the band has a palette in which every number has its own grey, as each BMP of greys has.
+    [[nodiscard]] bool isGreyPalette() const;
     /// Returns the number that means no data, as a height: with scale and offset. Returns nullopt if the file declares
     /// none.
     [[nodiscard]] std::optional<double> noData() const;

@@ -74,10 +74,11 @@ SpatialReference referenceOf(const PrjFile& prj) {
                OSRIsLocal(system) != 0;
     };
     if (!good || !isHorizontal(reference.get())) {
-        throw base::InputError(fmt::format(
-            "{}: its coordinate system cannot be read, so that the unit of lengths is unknown; write it as WKT, or remove "
-            "the file if the raster is in lengths",
-            prj.file.string()));
+        throw base::InputError(
+            fmt::format("{}: its coordinate system cannot be read, so that the unit of lengths is unknown; write it as "
+                        "WKT, or remove "
+                        "the file if the raster is in lengths",
+                        prj.file.string()));
     }
     return reference;
 }
@@ -98,8 +99,8 @@ void readReference(const GdalRaster& raster, OGRSpatialReferenceH reference, Ras
     const char* const authority = OSRGetAuthorityName(reference, nullptr);
     const char* const name = OSRGetName(reference);
     described.origins.across = code != nullptr && authority != nullptr ? fmt::format("{}:{}", authority, code)
-                               : name != nullptr                      ? name
-                                                                      : "coordinate system";
+                               : name != nullptr                       ? name
+                                                                       : "coordinate system";
 }
 
 /// Sets the unit of lengths from the axes of a NetCDF file without a coordinate system. GDAL leaves it to its users to
@@ -117,25 +118,26 @@ void readAxes(const GdalRaster& raster, RasterDescription& described) {
         }
         const std::string axis(text.substr(0, at)), unit(text.substr(at + kUnits.size()));
         if (isAngle(unit)) {
-            raster.fail(fmt::format("its axis '{}' is in {}, but sand needs lengths; make metres of them: {}", axis, unit,
-                                    warpCommandOf(raster, nullptr)));
+            raster.fail(fmt::format("its axis '{}' is in {}, but sand needs lengths; make metres of them: {}", axis,
+                                    unit, warpCommandOf(raster, nullptr)));
         }
-        const std::string name = GDALGetMetadataItem(raster.dataset(), (axis + "#standard_name").c_str(), nullptr) == nullptr
-                                     ? ""
-                                     : GDALGetMetadataItem(raster.dataset(), (axis + "#standard_name").c_str(), nullptr);
-        const bool horizontal = name.starts_with("projection_") || axis == "x" || axis == "y" || axis == "easting" ||
-                                axis == "northing";
+        const std::string name =
+            GDALGetMetadataItem(raster.dataset(), (axis + "#standard_name").c_str(), nullptr) == nullptr
+                ? ""
+                : GDALGetMetadataItem(raster.dataset(), (axis + "#standard_name").c_str(), nullptr);
+        const bool horizontal =
+            name.starts_with("projection_") || axis == "x" || axis == "y" || axis == "easting" || axis == "northing";
         if (!horizontal || meansNoUnit(unit)) {
             continue;
         }
         const std::optional<double> metres = metresOf(unit);
         if (!metres) {
-            raster.fail(fmt::format("its axis '{}' is in '{}', which is not a known unit of length; write the axis in metres",
-                                    axis, unit));
+            raster.fail(fmt::format(
+                "its axis '{}' is in '{}', which is not a known unit of length; write the axis in metres", axis, unit));
         }
         if (!firstUnit.empty() && *metres != described.units.lengthMetres) {
-            raster.fail(fmt::format("its axis '{}' is in {}, and '{}' in {}; write both in metres", firstAxis, firstUnit,
-                                    axis, unit));
+            raster.fail(fmt::format("its axis '{}' is in {}, and '{}' in {}; write both in metres", firstAxis,
+                                    firstUnit, axis, unit));
         }
         described.units.lengthMetres = *metres;
         described.origins.across = "axes";
@@ -166,9 +168,10 @@ std::optional<Declared> declaredUnit(const GdalRaster& raster, const std::string
     }
     const std::optional<double> metres = metresOf(name);
     if (!metres) {
-        raster.fail(fmt::format("heights in '{}' ({}), which is not a known unit; known are m, ft, us-ft, cm, mm and km; "
-                                "set it: gdal_edit.py -units m",
-                                name, by));
+        raster.fail(
+            fmt::format("heights in '{}' ({}), which is not a known unit; known are m, ft, us-ft, cm, mm and km; "
+                        "set it: gdal_edit.py -units m",
+                        name, by));
     }
     return Declared{*metres, name, by};
 }
@@ -184,9 +187,10 @@ void readHeightUnit(const GdalRaster& raster, OGRSpatialReferenceH reference, co
     }
     constexpr double kSame = 1e-9;
     if (band && other && std::abs(band->metres - other->metres) > kSame * other->metres) {
-        raster.fail(fmt::format("its heights are in '{}' ({}) or in '{}' ({}); set the right unit: gdal_edit.py -units {}, "
-                                "or -a_srs with another vertical datum",
-                                band->name, band->by, other->name, other->by, other->name));
+        raster.fail(
+            fmt::format("its heights are in '{}' ({}) or in '{}' ({}); set the right unit: gdal_edit.py -units {}, "
+                        "or -a_srs with another vertical datum",
+                        band->name, band->by, other->name, other->by, other->name));
     }
     RasterUnits& units = described.units;
     if (const std::optional<Declared>& found = band ? band : other) {

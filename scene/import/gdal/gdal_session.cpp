@@ -15,7 +15,7 @@ GdalSession::GdalSession() {
     static const bool kReady = [] {
         // Plugins are code from any place where GDAL looks, and PROJ would download grids. Heights do not need either.
         CPLSetConfigOption("GDAL_DRIVER_PATH", "disable");
-        CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");  // so that no digit of a text is lost
+        CPLSetConfigOption("AAIGRID_DATATYPE", "Float64");           // so that no digit of a text is lost
         CPLSetConfigOption("GDAL_ERROR_ON_LIBJPEG_WARNING", "YES");  // a JPEG that is cut would end in grey
         CPLSetConfigOption("GTIFF_REPORT_COMPD_CS", "YES");  // otherwise GDAL drops the vertical datum of older files
         OSRSetPROJEnableNetwork(0);

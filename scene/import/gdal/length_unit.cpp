@@ -60,8 +60,8 @@ std::optional<double> metresOf(std::string_view unit) {
 }
 
 bool meansNoUnit(std::string_view unit) {
-    constexpr std::array<std::string_view, 9> kNone{"",     "unspecified", "unknown", "none", "undefined",
-                                                    "n/a",  "na",          "-",       "unit"};
+    constexpr std::array<std::string_view, 9> kNone{"",    "unspecified", "unknown", "none", "undefined",
+                                                    "n/a", "na",          "-",       "unit"};
     return std::find(kNone.begin(), kNone.end(), base::lowerCase(base::trimmed(unit))) != kNone.end();
 }
 

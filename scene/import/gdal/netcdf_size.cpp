@@ -46,8 +46,8 @@ std::uint64_t bytesOf(std::uint64_t type) {
     return type < kBytes.size() ? kBytes.at(type) : 0;
 }
 
-/// The format of Unidata's manual, "NetCDF Classic Format Specification". Version 2 has long offsets, and version 5 long
-/// counts, too.
+/// The format of Unidata's manual, "NetCDF Classic Format Specification". Version 2 has long offsets, and version 5
+/// long counts, too.
 class Classic {
 public:
     explicit Classic(std::string_view begin) : header_(begin) {

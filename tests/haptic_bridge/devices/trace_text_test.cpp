@@ -71,9 +71,10 @@ TEST(TraceText, TimesMayCountFrom1970InAnyUnit) {
 }
 
 TEST(TraceText, TimesThatCannotBeSecondsAskForTheirUnit) {
-    EXPECT_EQ(handRefusal("time,x,y,z\n1693934358000,0,0,0\n1693934358010,1,0,0\n"),
-              "hand.csv:2: time '1693934358000' would be thousands of years after 1970; give its unit: --map time=ms, us "
-              "or ns");
+    EXPECT_EQ(
+        handRefusal("time,x,y,z\n1693934358000,0,0,0\n1693934358010,1,0,0\n"),
+        "hand.csv:2: time '1693934358000' would be thousands of years after 1970; give its unit: --map time=ms, us "
+        "or ns");
     EXPECT_EQ(handRefusal("time,x,y,z\n0,0,0,0\n1693934358,1,0,0\n"),
               "hand.csv:3: time jumps: '1693934358' is more than 30 years after the first sample");
     EXPECT_EQ(handRefusal("time,x,y,z\n1e999,0,0,0\n1,1,0,0\n"),

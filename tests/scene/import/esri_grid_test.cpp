@@ -65,7 +65,8 @@ TEST_F(EsriFile, IsReadInEveryFormOfText) {
         EXPECT_EQ(grid.westEdge, 10) << form.name;
         EXPECT_TRUE(scene::holdsEsriGrid(file())) << form.name;
     }
-    EXPECT_EQ(complaint("ncols 2\nnrows 1\ncellsize 1\n1\n\0022\n"), "t.asc:5: a height must be a finite number, got '?2'");
+    EXPECT_EQ(complaint("ncols 2\nnrows 1\ncellsize 1\n1\n\0022\n"),
+              "t.asc:5: a height must be a finite number, got '?2'");
     EXPECT_TRUE(complaint(std::string("ncols 2\nnrows 1\ncellsize 1\n1\n\0 2\n", 33)).starts_with("t.asc:5: a byte 0"));
     EXPECT_EQ(complaint("ncols 2\nnrows 1\ncellsize 1\n1,5 2\n"),
               "t.asc:4: a height must be a finite number, got '1,5'; write a decimal point");
@@ -94,9 +95,10 @@ TEST_F(EsriFile, ComparesNoDataAsProgramsPrintIt) {
     EXPECT_TRUE(noData("16777216", "16777217"));
     EXPECT_FALSE(noData("16777216", "16777218"));
     EXPECT_TRUE(noData("-3.40282e+38", "-3.402823466e+38")) << "the lowest float with few and with many digits";
-    EXPECT_EQ(complaint("ncols 1\nnrows 1\ncellsize 1\nNODATA_value -3.40282e+38\n3.402823466e+38\n"),
-              "t.asc: 1 cell has the height 3.402823466e+38, which means no data; declare it: add the line 'NODATA_value "
-              "3.402823466e+38' to the header");
+    EXPECT_EQ(
+        complaint("ncols 1\nnrows 1\ncellsize 1\nNODATA_value -3.40282e+38\n3.402823466e+38\n"),
+        "t.asc: 1 cell has the height 3.402823466e+38, which means no data; declare it: add the line 'NODATA_value "
+        "3.402823466e+38' to the header");
     EXPECT_FALSE(noData("1e300", "1e299")) << "both would be the float infinity";
     EXPECT_TRUE(noData("1e300", "1e300"));
     for (const char* nan : {"nan", "-nan", "NaN", "1.#QNAN", "nan(ind)"}) {
@@ -140,7 +142,8 @@ TEST_F(EsriFile, ComplaintsNameTheLine) {
     const std::string head = "ncols 2\nnrows 2\ncellsize 1\n";
     EXPECT_EQ(complaint(head + "1 2\n3\n"), "t.asc:6: the file ends where a height should be");
     EXPECT_EQ(complaint(head + "1 2\n3 nan\n"), "t.asc:5: a height must be a finite number, got 'nan'");
-    EXPECT_EQ(complaint(head + "1 2\n3 4,5\n"), "t.asc:5: a height must be a finite number, got '4,5'; write a decimal point");
+    EXPECT_EQ(complaint(head + "1 2\n3 4,5\n"),
+              "t.asc:5: a height must be a finite number, got '4,5'; write a decimal point");
     EXPECT_EQ(complaint(head + "1 2\n3 4 5\n"), "t.asc:5: more values than ncols x nrows = 4");
     EXPECT_EQ(complaint("ncols 0\n"), "t.asc:1: ncols must be a whole number within [1, 16384], got 0");
     EXPECT_EQ(complaint("cellsize 0\n"), "t.asc:1: cellsize must be positive, got 0");

@@ -81,9 +81,10 @@ TEST_F(PointsFile, DecimalCommasAreReadWhereNoCommaSeparates) {
     EXPECT_EQ(read("0,5\t0\t1,5\n1\t0\t-2,25\n0\t1\t3\n"), points);
     EXPECT_EQ(refused("0,5,0,0,1,5\n"),
               "p.csv:1: expected x, y and z, got 6 values; separate numbers with decimal commas by semicolons");
-    EXPECT_EQ(refused("0.5;0;1\n1;0;1,500\n"),
-              "p.csv:2: '1,500' in line 2 has a decimal comma, and '0.5' in line 1 a decimal point, so that the comma could "
-              "separate thousands; write decimal points in all numbers");
+    EXPECT_EQ(
+        refused("0.5;0;1\n1;0;1,500\n"),
+        "p.csv:2: '1,500' in line 2 has a decimal comma, and '0.5' in line 1 a decimal point, so that the comma could "
+        "separate thousands; write decimal points in all numbers");
 }
 
 TEST_F(PointsFile, NamesOfColumnsDecideTheirOrder) {
@@ -99,14 +100,16 @@ TEST_F(PointsFile, NamesOfColumnsDecideTheirOrder) {
     }
     EXPECT_EQ(read("Elevation,Easting,Northing\n1,0,0\n2,20,0\n3,0,10\n"), points);
     for (const char* title : {"POINT_Y,POINT_X,POINT_Z", "y,x,z"}) {
-        EXPECT_TRUE(refused(std::string(title) + '\n' + northFirst).starts_with("p.csv:1: the columns must be x, y, z, "))
+        EXPECT_TRUE(
+            refused(std::string(title) + '\n' + northFirst).starts_with("p.csv:1: the columns must be x, y, z, "))
             << title;
     }
     for (const char* title : {"Northing,b,c", "x,east,z", "X (Northing),Y (Easting),Z", "a,Easting,c"}) {
         EXPECT_TRUE(refused(std::string(title) + '\n' + northFirst).starts_with("p.csv:1: the columns '"))
             << refused(std::string(title) + '\n' + northFirst);
     }
-    for (const char* title : {"Breite;Laenge;Hoehe", "L\u00e4nge;Breite;H\u00f6he", "L\xE4nge;Breite;H", "Latitud;Longitud;z"}) {
+    for (const char* title :
+         {"Breite;Laenge;Hoehe", "L\u00e4nge;Breite;H\u00f6he", "L\xE4nge;Breite;H", "Latitud;Longitud;z"}) {
         EXPECT_NE(refused(std::string(title) + "\n47.1;10.2;3\n").find(") are degrees, but sand needs lengths"),
                   std::string::npos)
             << title;
