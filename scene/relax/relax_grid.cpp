@@ -19,7 +19,6 @@
 #include "scene/import/raster_units.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/relaxation.hpp"
-#include "scene/relax/report.hpp"
 #include "scene/relax/steepness.hpp"
 #include "scene/relax/ticker.hpp"
 

@@ -18,7 +18,6 @@
 #include "scene/import/raster_memory.hpp"
 #include "scene/import/raster_units.hpp"
 #include "scene/relax/options.hpp"
-#include "scene/relax/report.hpp"
 #include "scene/relax/ticker.hpp"
 #include "scene/relax/tin_sand.hpp"
 

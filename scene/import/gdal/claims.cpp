@@ -182,6 +182,37 @@ void checkSurferText(const GdalRaster& raster) {
 
 }  // namespace
 
+std::optional<std::string> lengthUnitInHeader(const GdalRaster& raster) {
+    const bool idrisi = raster.driver() == "RST";
+    if (!idrisi && raster.driver() != "ENVI") {
+        return std::nullopt;
+    }
+    const std::optional<fs::path> header = fileWithEnding(filesOf(raster), idrisi ? ".rdc" : ".hdr");
+    if (!header) {
+        return std::nullopt;
+    }
+    if (!idrisi) {
+        const std::string map = valueIn(*header, "map info").value_or("");
+        constexpr std::string_view kUnits = "units=";
+        const std::size_t at = map.find(kUnits);
+        const std::string_view rest = at == std::string::npos ? "" : std::string_view(map).substr(at + kUnits.size());
+        const std::string unit(base::trimmed(rest.substr(0, rest.find_first_of(",}"))));
+        return unit.empty() ? std::nullopt : std::optional(unit);
+    }
+    const auto value = [&](std::string_view key) {
+        const std::string text = valueIn(*header, key).value_or("");
+        return std::string(base::trimmed(text.substr(std::min(text.find_first_not_of(": "), text.size()))));
+    };
+    const std::string scale = value("unit dist.");
+    if (!scale.empty() && base::numberOf(scale) != 1.0) {
+        throw base::InputError(fmt::format(
+            "{}: its unit of lengths is {} times '{}' (unit dist.); write its coordinates with unit dist. 1",
+            header->string(), scale, value("ref. units")));
+    }
+    const std::string unit = value("ref. units");
+    return unit.empty() ? std::nullopt : std::optional(unit);
+}
+
 void checkClaims(const GdalRaster& raster) {
     const std::vector<fs::path> files = filesOf(raster);
     checkSizes(raster, files);

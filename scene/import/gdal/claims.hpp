@@ -2,6 +2,11 @@
 // Private to this folder.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "scene/import/gdal/gdal_raster.hpp"
 
 namespace scene {
@@ -12,6 +17,11 @@ namespace scene {
 /// Throws base::InputError with the file, and the line in a text, if a file is shorter or several times longer than its
 /// header says, or if a number in a text has a decimal comma.
 void checkClaims(const GdalRaster& raster);
+
+/// Returns the unit of lengths that the text header of an Idrisi or ENVI raster names, in small letters. GDAL 3.6.2
+/// takes metres for a unit that it does not know, also for degrees. Returns nullopt for other formats and without a
+/// unit. Throws base::InputError if an Idrisi header scales the unit.
+[[nodiscard]] std::optional<std::string> lengthUnitInHeader(const GdalRaster& raster);
 
 /// Returns the bytes that a NetCDF file of the classic format must have by its header [byte]. Returns nullopt for other
 /// files, and for a header that is damaged. `begin` are the first bytes of the file.

@@ -14,6 +14,7 @@
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "base/text_reader.hpp"
+#include "scene/import/gdal/claims.hpp"
 #include "scene/import/gdal/length_unit.hpp"
 #include "scene/import/metric_system.hpp"
 #include "scene/import/prj_file.hpp"
@@ -88,19 +89,27 @@ void readReference(const GdalRaster& raster, OGRSpatialReferenceH reference, Ras
     const char* unit = nullptr;
     described.units.lengthMetres = OSRGetLinearUnits(reference, const_cast<char**>(&unit));
     const bool local = OSRIsProjected(reference) == 0;
+    const std::optional<std::string> named = local ? lengthUnitInHeader(raster) : std::nullopt;
     if (OSRIsGeographic(reference) != 0 || OSRIsGeocentric(reference) != 0 ||
-        (local && unit != nullptr && isAngle(unit))) {
+        (local && unit != nullptr && isAngle(unit)) || (named && isAngle(*named))) {
         const char* name = OSRGetName(reference);
         raster.fail(fmt::format("its coordinates ({}) are degrees, but sand needs lengths; make metres of them: {}",
                                 name == nullptr ? "no name" : name, warpCommandOf(raster, reference)));
+    }
+    if (named && !meansNoUnit(*named) && !metresOf(*named)) {
+        raster.fail(
+            fmt::format("its lengths are in '{}', which is not a known unit; write its coordinates in metres", *named));
     }
     described.units.crs = wktOf(reference);
     const char* const code = OSRGetAuthorityCode(reference, nullptr);
     const char* const authority = OSRGetAuthorityName(reference, nullptr);
     const char* const name = OSRGetName(reference);
-    described.origins.across = code != nullptr && authority != nullptr ? fmt::format("{}:{}", authority, code)
-                               : name != nullptr                       ? name
-                                                                       : "coordinate system";
+    if (code != nullptr && authority != nullptr) {
+        described.origins.across = fmt::format("{}:{}", authority, code);
+    } else {
+        const bool hasName = name != nullptr && std::string_view(name) != "unnamed";
+        described.origins.across = hasName ? name : "coordinate system";
+    }
 }
 
 /// Sets the unit of lengths from the axes of a NetCDF file without a coordinate system. GDAL leaves it to its users to

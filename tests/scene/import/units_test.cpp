@@ -153,6 +153,31 @@ TEST_F(Units, NamesThatStandForNoUnitAreNone) {
     EXPECT_EQ(statementOf("t.tif"), "metres across (EPSG:32633), feet up (band), no data -1 in 16.7 % of cells");
 }
 
+TEST_F(Units, TextHeadersNameTheUnitThatGdalDoesNotKnow) {
+    const auto idrisi = [&](const std::string& unit, const std::string& scale) {
+        write("t.rst", std::string(24, '\0'));
+        write(
+            "t.rdc",
+            "file format : IDRISI Raster A.1\ndata type   : real\nfile type   : binary\ncolumns     : 3\nrows        : "
+            "2\n"
+            "ref. system : plane\nref. units  : " +
+                unit + "\nunit dist.  : " + scale +
+                "\nmin. X      : 0\nmax. X      : 30\nmin. Y      : 0\nmax. Y      : 20\nvalue units : unspecified\n");
+        const std::string refused = refusedRaster("t.rst");
+        return refused == "nothing" ? statementOf("t.rst") : refused;
+    };
+    EXPECT_EQ(idrisi("m", "1.0"), "metres across (Plane), the same up (no unit of heights), no cells without data");
+    EXPECT_EQ(idrisi("ft", "1.0"), "feet across (Plane), the same up (no unit of heights), no cells without data");
+    EXPECT_NE(idrisi("deg", "1.0").find("but sand needs lengths"), std::string::npos);
+    EXPECT_NE(idrisi("rods", "1.0").find("its lengths are in 'rods', which is not a known unit"), std::string::npos);
+    EXPECT_NE(idrisi("m", "1000").find("t.rdc: its unit of lengths is 1000 times 'm'"), std::string::npos);
+    write("t.dat", std::string(24, '\0'));
+    write("t.hdr",
+          "ENVI\nsamples = 3\nlines = 2\nbands = 1\ndata type = 4\nbyte order = 0\n"
+          "map info = {Arbitrary, 1, 1, 9, 50, 0.001, 0.001, 0, units=Degrees}\n");
+    EXPECT_NE(refusedRaster("t.dat").find("but sand needs lengths"), std::string::npos) << refusedRaster("t.dat");
+}
+
 /// Writes a NetCDF file of 4 x 3 heights 1 to 12 on axes in these units.
 std::string netcdf(const std::string& x, const std::string& y, const std::string& z,
                    const std::string& name = "projection_") {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/relax/report.hpp"
-
+// What sandwall-relax says about the units of its files.
 #include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "base/input_error.hpp"
 #include "host/print_line.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/raster_memory.hpp"
+#include "scene/relax/options.hpp"
 
 namespace scene::relax {
 
