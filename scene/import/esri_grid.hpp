@@ -13,7 +13,7 @@
 
 namespace scene {
 
-/// What named the units of a raster: "EPSG:32633", "vertical datum", "axes", "valley.prj". Empty if nothing did.
+/// Sources of the units of a raster: "EPSG:32633", "vertical datum", "axes", "valley.prj". Empty without a source.
 struct UnitOrigins {
     std::string across, up;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sandwall-relax says about the units of its files.
+// Prints and checks units and sizes of the files of sandwall-relax.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -29,7 +29,7 @@ std::vector<std::string> linesOf(base::TextReader& reader) {
     return lines;
 }
 
-/// Returns the lines of a text of which `most` bytes come at a time, so that a character can be cut anywhere.
+/// Returns the lines of a text. `most` bytes come at a time, so that a character can be cut anywhere.
 std::vector<std::string> linesOfPieces(const std::string& bytes, std::size_t most) {
     base::TextDecoder decoder("t");
     std::string text;

@@ -30,7 +30,7 @@ void requireText(const std::string& text) {
             throw std::logic_error("a text keeps a byte that ends lines or texts");
         }
     }
-    // What is decoded is UTF-8, so that decoding it again changes nothing, except for an invisible mark of UTF-16.
+    // The decoded text is UTF-8, so that decoding it again changes nothing.
     if (decoded(text, text.size() + 1) != text) {
         throw std::logic_error("a text changes when it is decoded twice");
     }

@@ -11,11 +11,12 @@
 
 namespace scene {
 
-/// Compares what the header of a raster claims with what its files hold, where GDAL 3.6.2 does not: it reads heights of
-/// 0 behind the end of some files, concludes a type of numbers from the size, and reads "1,5" as two numbers or as 1.
+/// Compares what the header of a raster claims with what its files hold. GDAL 3.6.2 does not do so in these cases: it
+/// reads heights of 0 behind the end of some files, and concludes a type of numbers from the size. It also reads "1,5"
+/// as two numbers or as 1.
 ///
-/// Throws base::InputError with the file, and the line in a text, if a file is shorter or several times longer than its
-/// header says, or if a number in a text has a decimal comma.
+/// Throws base::InputError if a file is shorter or several times longer than its header says. Also throws if a number
+/// in a text has a decimal comma. The line has the file, and in a text the line.
 void checkClaims(const GdalRaster& raster);
 
 /// Returns the unit of lengths that the text header of an Idrisi or ENVI raster names, in small letters. GDAL 3.6.2

@@ -43,8 +43,8 @@ std::string wktOf(OGRSpatialReferenceH reference) {
     return error == OGRERR_NONE && text != nullptr ? text : "";
 }
 
-/// Reads a .prj file, for rasters whose driver has not read it: GDAL 3.6.2 takes only ESRI's WKT and lines of ArcInfo,
-/// and takes any other text for no system.
+/// Reads a .prj file if the driver of the raster has not read it. GDAL 3.6.2 takes only ESRI's WKT and lines of
+/// ArcInfo, and takes any other text for no system.
 SpatialReference referenceOf(const PrjFile& prj) {
     const std::string text(base::trimmed(prj.text.substr(0, prj.text.find_last_not_of(" \t\n") + 1)));
     SpatialReference reference(OSRNewSpatialReference(nullptr));
@@ -231,7 +231,7 @@ RasterDescription describe(const GdalRaster& raster) {
     if (units.heightMetres == 0) {
         units.heightMetres = units.lengthMetres;  // heights without a unit have that of lengths
     } else if (units.lengthMetres == 0) {
-        units.lengthMetres = units.heightMetres;  // and lengths without a unit have that of heights
+        units.lengthMetres = units.heightMetres;  // lengths without a unit have that of heights
         described.origins.across = "unit of heights";
     }
     if (units.heightMetres != units.lengthMetres) {

@@ -8,8 +8,8 @@
 namespace scene {
 
 /// Returns the units of the raster's lengths and heights: those of its own coordinate system, of the .prj file beside
-/// it, or of its axes. Throws base::InputError for degrees, with the command that turns them into metres, for a .prj
-/// file that cannot be read, for unknown units, and for two units of heights that differ. Returns no warnings.
+/// it, or of its axes. Throws base::InputError for degrees, with the command that turns them into metres. Also throws
+/// for a .prj file that cannot be read, for unknown units, and for two different units of heights. Returns no warnings.
 [[nodiscard]] RasterDescription describe(const GdalRaster& raster);
 
 /// Returns the reference system of a WKT. Throws base::InputError, whose message begins with `file`.

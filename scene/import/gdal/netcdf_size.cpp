@@ -94,7 +94,7 @@ private:
     };
 
     std::uint64_t readRecords() {
-        // A file that is still being written counts its records as -1, which is no size.
+        // A file that is still being written has -1 as the number of its records.
         const std::string_view bytes = header_.skip(count_);
         const bool streaming = std::all_of(bytes.begin(), bytes.end(), [](char c) { return c == '\xFF'; });
         Header number(bytes);
@@ -134,7 +134,7 @@ private:
         }
         skipAttributes();
         variable.bytes = cells * bytesOf(header_.number(4));
-        header_.skip(count_);  // its size, which is wrong for large variables
+        header_.skip(count_);  // the variable's size, which is wrong for large variables
         variable.begin = header_.number(offset_);
         return variable;
     }

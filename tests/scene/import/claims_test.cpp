@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the header of a raster claims, against what its files hold.
+// Compares the claims of a raster's header with the contents of its files.
 #include <fmt/format.h>
 
 #include <cmath>

@@ -88,10 +88,10 @@ TEST_F(EsriFile, ComparesNoDataAsProgramsPrintIt) {
     const auto noData = [&](const std::string& declared, const std::string& cell) {
         return read("ncols 2\nnrows 1\ncellsize 1\nNODATA_value " + declared + "\n7 " + cell + "\n").isNoData(1, 0);
     };
-    // -9999.9 is no 32-bit float. The nearest one is -9999.900390625, and the next one -9999.8994140625.
+    // The 32-bit float that is nearest to -9999.9 is -9999.900390625, and the next one -9999.8994140625.
     EXPECT_TRUE(noData("-9999.9", "-9999.900391"));
     EXPECT_FALSE(noData("-9999.9", "-9999.8994140625"));
-    // 2^24 + 1 is no 32-bit float, so that it is the same one as 2^24.
+    // 2^24 + 1 is rounded to the 32-bit float 2^24.
     EXPECT_TRUE(noData("16777216", "16777217"));
     EXPECT_FALSE(noData("16777216", "16777218"));
     EXPECT_TRUE(noData("-3.40282e+38", "-3.402823466e+38")) << "the lowest float with few and with many digits";

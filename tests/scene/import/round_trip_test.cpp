@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is written comes back with the same heights and the same place: here, in GDAL, and in CGAL.
+// Written files come back with the same heights and the same place: here, in GDAL, and in CGAL.
 #include <CGAL/IO/PLY.h>
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>

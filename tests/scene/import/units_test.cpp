@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the numbers of a raster mean: the units of lengths and heights, and where they come from.
+// Units of the lengths and heights of a raster, and where they come from.
 #include <fmt/format.h>
 
 #include "scene/import/importer.hpp"
