@@ -60,6 +60,7 @@ SpatialReference referenceOf(const PrjFile& prj) {
             lines.emplace_back(line);
         }
         std::vector<char*> list;
+        list.reserve(lines.size() + 1);
         for (std::string& line : lines) {
             list.push_back(line.data());
         }
