@@ -2,8 +2,6 @@
 #include "base/text.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 
 #include "base/input_error.hpp"
 
@@ -35,13 +33,6 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         }
         text.remove_prefix(end + 1);
     }
-}
-
-std::optional<double> numberOf(std::string_view word) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool whole = error == std::errc{} && end == word.data() + word.size();
-    return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 std::size_t indexOf(std::string_view name, const std::string_view* names, std::size_t count, std::string_view what) {

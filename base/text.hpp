@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,6 @@ namespace base {
 
 /// Returns the trimmed parts of `text` between separators. An empty text is one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
-
-/// Returns the number that the whole of `word` spells, in any locale. Returns nullopt if it spells no finite number.
-[[nodiscard]] std::optional<double> numberOf(std::string_view word);
 
 /// Returns the index of `name` in `names`. Throws InputError, "no WHAT 'name'; there are …", if it is not there.
 [[nodiscard]] std::size_t indexOf(std::string_view name, const std::string_view* names, std::size_t count,

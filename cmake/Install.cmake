@@ -22,7 +22,7 @@ install(FILES
     scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py
     scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/screens.py
     scripts/session_control.py scripts/session_folder.py scripts/session_lines.py scripts/session_report.py
-    scripts/session_results.py scripts/session_rules.py scripts/spare_hosts.py scripts/supervisor.py scripts/this_machine.py
+    scripts/session_results.py scripts/session_rules.py scripts/spare_hosts.py scripts/supervisor.py scripts/text_file.py scripts/this_machine.py
     docs/schemas/summary.schema.json
     DESTINATION ${private}/python)
 install(DIRECTORY scenes/ DESTINATION ${shared}/scenes)

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <set>
-#include <sstream>
 
 #include "base/input_error.hpp"
+#include "base/text_reader.hpp"
 
 namespace host {
 
@@ -54,9 +54,13 @@ TomlTable TomlTable::load(const std::filesystem::path& file) {
     if (!stream || std::filesystem::is_directory(file, ignored)) {
         throw base::InputError(fmt::format("{}: cannot be read; check the path", file.string()));
     }
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return parse(text.str(), file.string());
+    // toml++ reads UTF-8 alone. Texts of Windows may be in UTF-16.
+    base::TextReader lines(stream, file.string());
+    std::string text;
+    for (std::string_view line; lines.nextLine(line);) {
+        text.append(line).push_back('\n');
+    }
+    return parse(text, file.string());
 }
 
 TomlTable TomlTable::parse(std::string_view text, const std::string& name) {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
@@ -39,9 +39,8 @@ std::string_view givenLimit() {
 /// Returns the number of seconds in `text`, or nullopt if it is not a number from 1 to kPatientLimit.
 std::optional<double> readLimit(std::string_view text) {
     double seconds = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seconds);
-    const bool good =
-        error == std::errc() && end == text.data() + text.size() && seconds >= 1 && seconds <= kPatientLimit;
+    const bool whole = !text.empty() && base::readNumber(text, seconds) == text.size();
+    const bool good = whole && seconds >= 1 && seconds <= kPatientLimit;
     return good ? std::optional(seconds) : std::nullopt;
 }
 

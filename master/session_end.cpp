@@ -42,6 +42,7 @@ Summary Session::summary() {
     const Incidents all = incidents();
     Summary summary;
     summary.scene = scene_.name;
+    summary.terrain = scene_.statements;
     summary.wall = wall_.name;
     summary.frames = frame_;
     summary.steps = sand.stepNumber();

@@ -132,10 +132,26 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"frame_buffer_bytes", report.frameBufferBytes}};
 }
 
+/// Returns what the numbers of each file of terrain mean.
+ordered_json jsonOf(const std::vector<scene::RasterStatement>& terrain) {
+    ordered_json json = ordered_json::array();
+    for (const scene::RasterStatement& file : terrain) {
+        json.push_back({{"file", file.file},
+                        {"across", file.across},
+                        {"across_from", file.acrossFrom},
+                        {"up", file.up},
+                        {"up_from", file.upFrom},
+                        {"no_data", file.noData ? ordered_json(*file.noData) : ordered_json(nullptr)},
+                        {"no_data_share", file.noDataShare}});
+    }
+    return json;
+}
+
 ordered_json jsonOf(const Summary& summary) {
     ordered_json json;
     json["version"] = kSummaryVersion;
     json["scene"] = summary.scene;
+    json["terrain"] = jsonOf(summary.terrain);
     json["wall"] = summary.wall;
     json["frames"] = summary.frames;
     json["steps"] = summary.steps;

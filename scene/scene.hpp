@@ -11,6 +11,7 @@
 #include "sand/start.hpp"
 #include "scene/georeference.hpp"
 #include "scene/material.hpp"
+#include "scene/raster_statement.hpp"
 
 namespace scene {
 
@@ -30,9 +31,10 @@ struct Scene : sand::Start {
     std::string name;
     sand::ForceConstants force;
     Look look;
-    Georeference georeference;          // origin of the terrain; default values if it came from no file
-    std::vector<std::string> warnings;  // one line each, for the program that loads the scene to print
-    Material material;                  // source of the rules; not encoded, and neither are the warnings
+    Georeference georeference;                // origin of the terrain; default values if it came from no file
+    std::vector<RasterStatement> statements;  // units and no data of the files of terrain; not encoded
+    std::vector<std::string> warnings;        // one line each, for the program that loads the scene to print
+    Material material;                        // source of the rules; not encoded, and neither are the warnings
 
     /// Returns the numbers of this scene with which a material is used.
     [[nodiscard]] MaterialGrid grid() const {
@@ -40,7 +42,7 @@ struct Scene : sand::Start {
     }
     /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins.
     [[nodiscard]] base::Bytes encode() const;
-    /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes.
+    /// Reads what encode() wrote, except statements, warnings and material. Throws base::FormatError for invalid bytes.
     static Scene decode(std::span<const std::uint8_t> bytes);
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);

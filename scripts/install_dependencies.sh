@@ -12,6 +12,7 @@ packages=(
     libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, hiding the cursor
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
     libxxhash-dev libzstd-dev libpng-dev nlohmann-json3-dev # hashes, states, pictures, summaries
+    libfast-float-dev                                       # numbers in texts
     libgdal-dev libmuparser-dev                             # terrain from rasters, pictures and formulas
     libssl-dev                                              # secrets and TLS on the haptic link
     libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster

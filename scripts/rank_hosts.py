@@ -4,6 +4,7 @@
 import ipaddress
 import itertools
 import os
+import pathlib
 import re
 import shlex
 import socket
@@ -11,6 +12,7 @@ import subprocess
 import time
 
 import checked_json
+import text_file
 
 HERE = "localhost"  # mpirun's name for its own machine, on which the master always runs
 NO_HOST = "-"  # sandwall-check prints it for a tile without a host
@@ -28,9 +30,30 @@ class BadInput(Exception):
 
 
 def is_here(host):
-    """Returns whether `host` is a name of this machine."""
+    """Returns whether `host` is a name of this machine. Its own name and the one in the list may be short or full."""
     name = socket.gethostname()
-    return host in (HERE, "127.0.0.1", name, name.split(".")[0])
+    if host in (HERE, "127.0.0.1", name):
+        return True
+    # Machines of several domains may have the same first label, so that two full names must be equal.
+    if host.split(".")[0] != name.split(".")[0] or ("." in host and "." in name):
+        return False
+    return has_address_here(host) is not False
+
+
+def has_address_here(host):
+    """Returns whether `host` has an address of this machine, or None if the name cannot be resolved."""
+    try:
+        addresses = socket.getaddrinfo(host, None, type=socket.SOCK_DGRAM)
+    except (OSError, UnicodeError):
+        return None
+    for family, kind, _, _, address in addresses:
+        with socket.socket(family, kind) as tried:
+            try:
+                tried.bind((address[0], 0, *address[2:]))  # only a machine's own addresses can be bound
+                return True
+            except OSError:
+                pass
+    return False
 
 
 def checked_host(host, where):
@@ -69,10 +92,11 @@ def entries_of_file(path):
     """Returns (host, slots, whether it is a spare) of every line of a file of hosts."""
     entries = []
     try:
-        with open(path, encoding="utf-8") as file:
-            lines = file.read().split("\n")
-    except (OSError, UnicodeDecodeError) as error:
+        lines = text_file.lines_of(pathlib.Path(path).read_bytes())
+    except OSError as error:
         raise BadInput(f"--hosts {path}: cannot be read; check the path") from error
+    except text_file.NotText as error:
+        raise BadInput(f"{path}:{error.line}: {error}") from error
     for number, line in enumerate(lines, start=1):
         words = line.split("#")[0].split()
         if words:
@@ -114,7 +138,8 @@ def transport(hosts, network):
             raise BadInput("--network: every rank runs on this machine; leave --network out")
         # The ranks do not listen for connections. mpirun itself still listens on all addresses (docs/how_it_works.md).
         return ["--mca", "btl", "self,vader", "--mca", "oob_tcp_if_include", "lo"]
-    options = ["--mca", "btl", "self,vader,tcp"]
+    # Otherwise Open MPI cuts names at the first dot, and starts the ranks of node.1.org and node.2.org on one machine.
+    options = ["--mca", "btl", "self,vader,tcp", "--mca", "orte_keep_fqdn_hostnames", "1"]
     if network is not None:
         network = checked_network(network)
         options += ["--mca", "btl_tcp_if_include", network, "--mca", "oob_tcp_if_include", network]

@@ -99,6 +99,7 @@ RULES = (
 UNREAD = {
     "version": "the reader of the file compares it",
     "scene": "the first line of the report has it",
+    "terrain[]": "the session prints it when it reads the scene",
     "frame_ms.p50": "the line frames has the mean rate and the time lost",
     "frame_ms.p99": "the line frames has the time lost, which counts each slow frame",
     "frame_ms.mean": "the line frames has the mean rate",

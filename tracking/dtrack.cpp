@@ -7,7 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <type_traits>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 
 namespace tracking {
@@ -31,9 +33,15 @@ public:
     template <class Number>
     bool number(Number& value) {
         skipBlanks();
-        const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-        good_ = good_ && error == std::errc{};
-        rest_.remove_prefix(good_ ? static_cast<std::size_t>(end - rest_.data()) : 0);
+        std::size_t length = 0;
+        if constexpr (std::is_floating_point_v<Number>) {
+            length = base::readNumber(rest_, value);
+        } else {
+            const auto [end, error] = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
+            length = error == std::errc{} ? static_cast<std::size_t>(end - rest_.data()) : 0;
+        }
+        good_ = good_ && length > 0;
+        rest_.remove_prefix(good_ ? length : 0);
         return good_;
     }
     template <std::size_t Count>

@@ -10,7 +10,9 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
+#include "base/text_reader.hpp"
 
 namespace tracking {
 namespace {
@@ -25,10 +27,11 @@ enum Group : std::size_t { kPlace = 0, kAngles = 4, kQuaternion = 7, kRight = 11
 class LineReader {
 public:
     LineReader(const std::string& name, const RoomMapping& mapping, std::string_view header)
-        : name_(name), mapping_(mapping) {
+        : name_(name), mapping_(mapping), separator_(base::separatorOf(header)), style_(name) {
         cell_.fill(kNone);
-        const auto titles = base::split(header, ',');
+        auto titles = base::split(header, separator_);
         for (std::size_t i = 0; i < titles.size(); ++i) {
+            titles[i] = base::unquoted(titles[i]);
             const auto* known = std::find(kTitles.begin(), kTitles.end(), titles[i]);
             if (known == kTitles.end()) {
                 fail(1, fmt::format("column '{}' is not known; the columns are time,x,y,z and one of yaw,pitch,roll or "
@@ -49,8 +52,8 @@ public:
         double time;  // [s]
         Pose pose;
     };
-    [[nodiscard]] Line read(std::string_view text, long number) const {
-        const auto cells = base::split(text, ',');
+    [[nodiscard]] Line read(std::string_view text, long number) {
+        const auto cells = base::split(text, separator_);
         if (cells.size() != columns_) {
             fail(number, fmt::format("{} values expected, got {}", columns_, cells.size()));
         }
@@ -59,7 +62,7 @@ public:
             if (cell_[i] == kNone) {
                 continue;
             }
-            const std::optional<double> read = base::numberOf(cells[cell_[i]]);
+            const std::optional<double> read = style_.numberOf(cells[cell_[i]], number);
             if (!read) {
                 fail(number, fmt::format("{} is not a number: '{}'", kTitles[i], cells[cell_[i]].substr(0, 80)));
             }
@@ -136,6 +139,8 @@ private:
     const RoomMapping& mapping_;
     std::array<std::size_t, kEnd> cell_{};
     std::size_t columns_ = 0;
+    char separator_;
+    base::DecimalStyle style_;
 };
 
 }  // namespace
@@ -149,24 +154,24 @@ HeadTrace HeadTrace::load(const std::filesystem::path& file, const RoomMapping& 
 }
 
 HeadTrace HeadTrace::parse(std::istream& text, const std::string& name, const RoomMapping& mapping) {
-    std::string line;
-    if (!std::getline(text, line)) {
-        throw base::InputError(name, 1, "the trace is empty; a header such as time,x,y,z comes first");
+    base::TextReader lines(text, name);
+    std::string_view line;
+    if (!lines.nextLine(line)) {
+        lines.fail("the trace is empty; a header such as time,x,y,z comes first");
     }
-    const std::string header = line;
-    const LineReader reader(name, mapping, header);
+    LineReader reader(name, mapping, line);
     HeadTrace trace;
     double first = 0, last = 0;
-    for (long number = 2; std::getline(text, line); ++number) {
-        if (line.empty() || line == "\r") {
+    while (lines.nextLine(line)) {
+        if (base::trimmed(line).empty()) {
             continue;
         }
-        const LineReader::Line read = reader.read(line, number);
+        const LineReader::Line read = reader.read(line, lines.line());
         if (trace.samples_.empty()) {
             first = last = read.time;
         }
         if (read.time < last) {
-            throw base::InputError(name, number, fmt::format("time runs backwards: {} after {}", read.time, last));
+            lines.fail(fmt::format("time runs backwards: {} after {}", read.time, last));
         }
         last = read.time;
         trace.samples_.push_back({last - first, read.pose});

@@ -13,9 +13,9 @@ namespace tracking {
 /// Recorded poses of a head. Equal times give equal poses, bit for bit, because at() uses only + - * / and square
 /// roots.
 ///
-/// The file is a CSV with a header. Its columns are time [s] and x, y, z [m]. If the head turns, one of three groups
-/// follows: yaw, pitch, roll [degree]; qx, qy, qz, qw; or right_x, right_y, right_z. The last group is the direction
-/// from the left eye to the right one.
+/// The file is a CSV with a header, separated by commas, or by semicolons or tabs with decimal points or commas. Its
+/// columns are time [s] and x, y, z [m]. If the head turns, one of three groups follows: yaw, pitch, roll [degree]; qx,
+/// qy, qz, qw; or right_x, right_y, right_z. The last group is the direction from the left eye to the right one.
 class HeadTrace {
 public:
     /// Both functions throw base::InputError with file, line and value. Messages give `name` as the file's name.

@@ -3,9 +3,11 @@
 
 #include <string>
 
+#include "base/input_error.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
+#include "walls/check_scene.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
@@ -13,11 +15,20 @@
 namespace {
 
 struct Options {
-    std::string wall, stereo, svg;
+    std::string wall, scene, stereo, svg;
     bool mono = false, ranks = false, hosts = false, outputs = false;
 };
 
 int check(const Options& options) {
+    if (!options.scene.empty()) {
+        fmt::print("{}", walls::describeScene(options.scene));
+        if (options.wall.empty()) {
+            return 0;
+        }
+    }
+    if (options.wall.empty()) {
+        throw base::InputError("name a WALL, or a scene with --scene");
+    }
     const walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
     if (!options.svg.empty()) {
         host::WholeFile file(options.svg);
@@ -40,9 +51,10 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-check")) {
         return 0;
     }
-    host::CommandLine line("Checks a wall file and prints what it describes.", "sandwall-check");
+    host::CommandLine line("Checks a wall file or a scene file and prints what it describes.", "sandwall-check");
     Options options;
-    line.option("WALL", options.wall, "a wall file (docs/wall_files.md)").required();
+    line.option("WALL", options.wall, "a wall file (docs/wall_files.md)");
+    line.option("--scene", options.scene, "check this scene file, too, and print units and no data of its terrain");
     const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
     line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
     line.option("--svg", options.svg, "draw front view and plan into this file");

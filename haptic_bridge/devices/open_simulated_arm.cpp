@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/hand/arm_numbers.hpp"
@@ -37,8 +37,7 @@ struct Spec {
     [[nodiscard]] double number(std::string_view key, std::string_view word, const Allowed& allowed,
                                 const std::string& bounds) const {
         double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc{} || end != word.data() + word.size() || !allowed(value)) {
+        if (word.empty() || base::readNumber(word, value) != word.size() || !allowed(value)) {
             fail(fmt::format("{} needs {}, got '{}'", key, bounds, word));
         }
         return value;

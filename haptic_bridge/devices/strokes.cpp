@@ -4,11 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
+#include "base/text_reader.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -30,12 +31,11 @@ struct Line {
     }
     [[nodiscard]] double value(std::size_t index, double lowest, double highest) const {
         const std::string_view word = words[index];
-        double number_ = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number_);
-        if (error != std::errc{} || end != word.data() + word.size() || !(number_ >= lowest && number_ <= highest)) {
+        const std::optional<double> read = base::numberOf(word);
+        if (!read || *read < lowest || *read > highest) {
             fail(fmt::format("'{}' needs a number from {} to {}, got '{}'", words[0], lowest, highest, word));
         }
-        return number_;
+        return *read;
     }
     [[nodiscard]] double coordinate(std::size_t index) const { return value(index, -kReach, kReach); }
 };
@@ -163,16 +163,14 @@ private:
 
 Strokes Strokes::parse(std::string_view text, const std::string& name) {
     StrokeReader reader;
-    long number = 0;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        Line line{name, ++number, cutWords(text.substr(0, end))};
-        text.remove_prefix(std::min(end + 1, text.size()));
+    base::TextReader lines(text, name);
+    for (std::string_view read; lines.nextLine(read);) {
+        const Line line{name, lines.line(), cutWords(read)};
         if (!line.words.empty()) {
             reader.take(line);
         }
     }
-    return reader.finish({name, std::max(number, 1L), {}});
+    return reader.finish({name, lines.line(), {}});
 }
 
 StrokeDevice::StrokeDevice(const Strokes& strokes) : hoverHeight_(1 + strokes.lift) {

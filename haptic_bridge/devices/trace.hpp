@@ -20,8 +20,9 @@ struct Trace {
     };
     std::vector<Sample> samples;  // at least two
 
-    /// Parses a CSV with a header line. Times are numbers, or have the form "YYYY/MM/DD/HH:MM:SS.ffffff". Throws
-    /// base::InputError with `name`, which messages show as the file, and with the line.
+    /// Parses a CSV with a header line, separated by commas, or by semicolons or tabs with decimal points or commas.
+    /// Times are numbers, or have the form "YYYY/MM/DD/HH:MM:SS.ffffff". Throws base::InputError with `name`, which
+    /// messages show as the file, and with the line.
     static Trace parse(std::istream& text, const std::string& name, const HandSettings& settings);
 };
 

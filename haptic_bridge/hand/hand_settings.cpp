@@ -4,11 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 
 namespace haptic_bridge {
 namespace {
@@ -23,12 +23,11 @@ struct Option {
     }
 
     [[nodiscard]] double number(std::string_view word) const {
-        double result = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), result);
-        if (error != std::errc{} || end != word.data() + word.size() || !std::isfinite(result)) {
+        const std::optional<double> result = base::numberOf(word);
+        if (!result) {
             fail(fmt::format("'{}' is not a number", word));
         }
-        return result;
+        return *result;
     }
     [[nodiscard]] double positive(std::string_view word) const {
         const double result = number(word);

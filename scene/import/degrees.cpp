@@ -9,6 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "scene/import/metric_system.hpp"
+#include "scene/import/no_data.hpp"
 
 namespace scene {
 namespace {
@@ -33,15 +34,20 @@ private:
 
 bool mostSlopesAreSteep(const EsriGrid& grid) {
     const double depth = grid.cellDepth.value_or(grid.cellSize);
+    // A number that usually means no data makes steep slopes around it, whatever the lengths are.
+    const auto heightAt = [&](int column, int row) {
+        const double height = grid.at(column, row);
+        return isUsualNoData(height * grid.units.heightsPerLength) ? std::nan("") : height;
+    };
     Slopes slopes;
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
-            const double here = grid.at(column, row);
+            const double here = heightAt(column, row);
             if (column + 1 < grid.columns) {
-                slopes.add(grid.at(column + 1, row) - here, grid.cellSize);
+                slopes.add(heightAt(column + 1, row) - here, grid.cellSize);
             }
             if (row + 1 < grid.rows) {
-                slopes.add(grid.at(column, row + 1) - here, depth);
+                slopes.add(heightAt(column, row + 1) - here, depth);
             }
         }
     }
@@ -53,11 +59,12 @@ std::optional<std::string> whyDegrees(const EsriGrid& grid) {
     const double depth = grid.cellDepth.value_or(grid.cellSize);
     const double east = grid.westEdge + grid.columns * grid.cellSize;
     const double north = grid.southEdge + grid.rows * depth;
+    // Some data count longitudes from 0 to 360.
     // A grid whose outer cells have their middles on the date line or a pole reaches half a cell beyond. The rest is
     // for rounded corners and cell sizes.
     constexpr double kSlack = 0.51;
     const double beyond = kSlack * grid.cellSize, beyondPole = kSlack * depth;
-    const bool onGlobe = grid.westEdge >= -180 - beyond && east <= 180 + beyond && grid.southEdge >= -90 - beyondPole &&
+    const bool onGlobe = grid.westEdge >= -180 - beyond && east <= 360 + beyond && grid.southEdge >= -90 - beyondPole &&
                          north <= 90 + beyondPole;
     if (!grid.units.crs.empty() || !onGlobe || !mostSlopesAreSteep(grid)) {
         return std::nullopt;

@@ -11,8 +11,8 @@ namespace scene {
 /// command that makes metres of them, and then `otherwise`, which says how to insist on lengths.
 ///
 /// Lengths seem to be degrees if all coordinates can be a longitude and a latitude, and the median slope would be
-/// steeper than 80 degrees. No sand and hardly any terrain is so steep. The grid may reach half a cell beyond the date
-/// line and the poles.
+/// steeper than 80 degrees. Longitudes may count from -180 or from 0. No sand and hardly any terrain is so steep. The
+/// grid may reach half a cell beyond the date line and the poles.
 void requireLengths(const EsriGrid& grid, const std::string& otherwise);
 
 }  // namespace scene

@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
-#include <istream>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -18,82 +16,35 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
+#include "base/text_reader.hpp"
 #include "host/whole_file.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/no_data.hpp"
+#include "scene/import/prj_file.hpp"
 
 namespace scene {
 namespace {
 
-constexpr std::size_t kPiece = 1 << 16;  // of a file [byte]
-
-/// Words of a text, each with its line. The text is read while its words are taken.
-class Words {
+/// Words of the text of a grid.
+class Words : public base::TextReader {
 public:
-    Words(std::istream& stream, std::string file) : stream_(stream), file_(std::move(file)) {}
+    using base::TextReader::TextReader;
 
-    /// Returns the next word, which is valid until the next call. Returns an empty word at the end of the text.
-    std::string_view next() {
-        line_ += std::exchange(linesBefore_, 0);
-        while (at_ < text_.size() || readOn()) {
-            if (!isSpace(text_[at_])) {
-                break;
-            }
-            line_ += text_[at_++] == '\n' ? 1 : 0;
-        }
-        std::size_t length = 0;
-        while ((at_ + length < text_.size() || readOn()) && !isSpace(text_[at_ + length])) {
-            ++length;
-        }
-        at_ += length;
-        return std::string_view(text_).substr(at_ - length, length);
-    }
-    /// Returns the word that next() will return. Does not change line().
-    std::string_view peek() {
-        const long line = line_;
-        const std::string_view word = next();
-        at_ -= word.size();
-        linesBefore_ = line_ - line;
-        line_ = line;
-        return word;
-    }
     /// Returns the next word as a finite number. Ignores the locale.
     double number(std::string_view what) {
-        const std::string_view word = next();
-        double value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        const std::string word(nextWord());
         if (word.empty()) {
             fail(fmt::format("the file ends where {} should be", what));
         }
-        if (error != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) {
-            fail(fmt::format("{} must be a finite number, got '{}'", what, word));
+        const std::optional<double> value = base::numberOf(word);
+        if (!value) {
+            fail(fmt::format("{} must be a finite number, got '{}'{}", what, word,
+                             base::commaNumberOf(word) ? "; write a decimal point" : ""));
         }
-        return value;
+        return *value;
     }
-    [[nodiscard]] long line() const { return line_; }
-    [[noreturn]] void fail(const std::string& message) const { throw base::InputError(file_, line_, message); }
-
-private:
-    static bool isSpace(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
-
-    /// Reads another piece behind the text that is not taken yet. Returns false at the end of the file.
-    bool readOn() {
-        text_.erase(0, at_);
-        at_ = 0;
-        const std::size_t size = text_.size();
-        text_.resize(size + kPiece);
-        stream_.read(text_.data() + size, static_cast<std::streamsize>(kPiece));
-        text_.resize(size + static_cast<std::size_t>(stream_.gcount()));
-        return text_.size() > size;
-    }
-
-    std::istream& stream_;
-    std::string file_;
-    std::string text_;      // current piece
-    std::size_t at_ = 0;    // position in text_, behind the last word
-    long line_ = 1;         // line of the last word
-    long linesBefore_ = 0;  // lines between the last word and a word that peek() has read
 };
 
 int sideOf(Words& words, const std::string& key) {
@@ -138,22 +89,21 @@ std::size_t mostHeightsIn(const std::filesystem::path& file) {
 
 /// Reads the number that means no data: any number, or the "nan" that GDAL writes.
 double noDataOf(Words& words, const std::string& key) {
-    if (base::lowerCase(words.peek()) == "nan") {
-        words.next();
+    if (base::spellsNan(words.peekWord())) {
+        (void)words.nextWord();
         return kNoData;
     }
     return words.number(key);
 }
 
 void readHeader(Words& words, EsriGrid& grid) {
-    bool centres = false;
+    bool centreX = false, centreY = false;  // files of some programs give the corner of one and the centre of the other
     double square = 0;
     const auto isKey = [](std::string_view word) {
-        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 &&
-               base::lowerCase(word) != "nan";
+        return !word.empty() && std::isalpha(static_cast<unsigned char>(word.front())) != 0 && !base::spellsNan(word);
     };
-    while (isKey(words.peek())) {
-        const std::string key = base::lowerCase(words.next());
+    while (isKey(words.peekWord())) {
+        const std::string key = base::lowerCase(words.nextWord());
         if (key == "ncols") {
             grid.columns = sideOf(words, key);
         } else if (key == "nrows") {
@@ -166,9 +116,10 @@ void readHeader(Words& words, EsriGrid& grid) {
             grid.cellDepth = sizeOf(words, key);
         } else if (key == "xllcorner" || key == "xllcenter") {
             grid.westEdge = words.number(key);
-            centres = key == "xllcenter";
+            centreX = key == "xllcenter";
         } else if (key == "yllcorner" || key == "yllcenter") {
             grid.southEdge = words.number(key);
+            centreY = key == "yllcenter";
         } else if (key == "nodata_value") {
             grid.noData = noDataOf(words, key);
         } else {
@@ -183,25 +134,28 @@ void readHeader(Words& words, EsriGrid& grid) {
     if (square > 0) {
         grid.cellSize = square;
     }
-    if (centres) {
-        grid.westEdge -= grid.cellSize / 2;
-        grid.southEdge -= grid.cellDepth.value_or(grid.cellSize) / 2;
-    }
+    grid.westEdge -= centreX ? grid.cellSize / 2 : 0;
+    grid.southEdge -= centreY ? grid.cellDepth.value_or(grid.cellSize) / 2 : 0;
 }
 
 /// Reads the next word as a height, or as no data.
 double heightOf(Words& words, const EsriGrid& grid) {
-    if (grid.noData && std::isnan(*grid.noData) && base::lowerCase(words.peek()) == "nan") {
-        words.next();
+    if (grid.noData && std::isnan(*grid.noData) && base::spellsNan(words.peekWord())) {
+        (void)words.nextWord();
         return kNoData;
     }
     const double height = words.number("a height");
-    return grid.noData && height == *grid.noData ? kNoData : height;
+    return grid.noData && meansNoData(height, *grid.noData) ? kNoData : height;
 }
 
 }  // namespace
 
 EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check) {
+    if (const std::optional<PrjFile> prj = prjBeside(file); prj && prj->inDegrees()) {
+        throw base::InputError(fmt::format(
+            "{}: its coordinates ({}) are degrees, but sand needs lengths; make metres of them with gdalwarp -t_srs",
+            file.string(), prj->file.filename().string()));
+    }
     std::ifstream stream = opened(file);
     Words words(stream, file.string());
     EsriGrid grid;
@@ -218,7 +172,7 @@ EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& chec
             grid.lines.push_back(words.line());
         }
     }
-    if (!words.next().empty()) {
+    if (!words.nextWord().empty()) {
         words.fail(fmt::format("more values than ncols x nrows = {}", cells));
     }
     if (stream.bad()) {
@@ -236,10 +190,14 @@ bool holdsEsriGrid(const std::filesystem::path& file) {
     std::array<char, 256> first{};
     std::ifstream stream(file, std::ios::binary);
     stream.read(first.data(), first.size());
-    const std::string_view text(first.data(), static_cast<std::size_t>(stream.gcount()));
-    constexpr std::string_view kBlanks = " \t\r\n";
-    const std::string_view begun = text.substr(std::min(text.find_first_not_of(kBlanks), text.size()));
-    const std::string word = base::lowerCase(begun.substr(0, begun.find_first_of(kBlanks)));
+    std::string word;
+    try {
+        base::TextReader text(std::string_view(first.data(), static_cast<std::size_t>(stream.gcount()) / 4 * 4),
+                              file.string());
+        word = base::lowerCase(text.nextWord());
+    } catch (const base::InputError&) {
+        return false;  // bytes of another format
+    }
     return std::find(kKeys.begin(), kKeys.end(), word) != kKeys.end();
 }
 
@@ -287,6 +245,20 @@ EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
     return result;
 }
 
+/// Returns the grid's number for no data, or else a usual one that no height means when it is read again.
+double freeNoData(const EsriGrid& grid) {
+    const auto isFree = [&](double number) {
+        return std::none_of(grid.heights.begin(), grid.heights.end(),
+                            [&](double height) { return !std::isnan(height) && meansNoData(height, number); });
+    };
+    for (const double number : {grid.noData.value_or(-9999), -9999.0, -99999.0, -32768.0, -1e30}) {
+        if (isFree(number)) {
+            return number;
+        }
+    }
+    return kNoData;
+}
+
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
     host::WholeFile whole(file);
     const std::string cells = grid.cellDepth ? fmt::format("dx {}\ndy {}", grid.cellSize, *grid.cellDepth)
@@ -294,7 +266,7 @@ void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {
     whole.stream() << fmt::format("ncols {}\nnrows {}\nxllcorner {}\nyllcorner {}\n{}\n", grid.columns, grid.rows,
                                   grid.westEdge, grid.southEdge, cells);
     const auto& heights = grid.heights;
-    const double noData = grid.noData.value_or(-9999);
+    const double noData = freeNoData(grid);
     if (grid.noData || std::any_of(heights.begin(), heights.end(), [](double height) { return std::isnan(height); })) {
         whole.stream() << fmt::format("NODATA_value {}\n", noData);
     }

@@ -13,6 +13,11 @@
 
 namespace scene {
 
+/// Sources of the units of a raster: "EPSG:32633", "vertical datum", "axes", "valley.prj". Empty without a source.
+struct UnitOrigins {
+    std::string across, up;
+};
+
 /// Raster in the form of an ESRI ASCII grid: rows from the north, cells that may have no data. Rasters from other
 /// formats have more details about their units (scene/import/importer.hpp).
 struct EsriGrid {
@@ -25,6 +30,7 @@ struct EsriGrid {
     std::string file{};                   // the file that it was read from, for messages
     std::vector<long> lines{};            // line in which each row begins, north first; empty unless the file is text
     RasterUnits units{};                  // unknown for an ESRI ASCII grid
+    UnitOrigins origins{};                // of `units`
     std::vector<std::string> warnings{};  // one line each, with the file's name, for the program to print
 
     [[nodiscard]] double at(int column, int rowFromSouth) const { return heights[index(column, rowFromSouth)]; }
@@ -50,7 +56,8 @@ struct EsriGrid {
 using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 
 /// Reads an ESRI ASCII grid piece by piece. `check` may be empty. Cells that are not square have dx and dy in place of
-/// cellsize, as GDAL writes them. Throws base::InputError with file and line for an invalid header, and for values that
+/// cellsize, as GDAL writes them. The units of a .prj file are left to readTextWithUnits(), but degrees are refused.
+/// Throws base::InputError with file and line for an invalid header, and for values that
 /// are missing, too many or not finite.
 [[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check = {});
 /// Returns whether a regular file is an ESRI ASCII grid by its first word, which must be a key of the header.
@@ -63,6 +70,9 @@ using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 /// Returns the grid without the rows and columns at its edges that hold no data at all. Exporters leave such edges
 /// around a rotated or resampled raster. Throws base::InputError if no cell has data.
 [[nodiscard]] EsriGrid withoutEmptyEdges(const EsriGrid& grid);
+
+/// Returns the number with which writeEsriGrid() marks cells without data.
+[[nodiscard]] double freeNoData(const EsriGrid& grid);
 
 /// Writes the shortest decimals from which the same numbers are read again. An existing `file` is replaced when
 /// everything is written. Throws base::InputError if the file cannot be written completely.

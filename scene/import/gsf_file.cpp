@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <istream>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/no_data.hpp"
@@ -104,13 +105,11 @@ private:
         return found == entries_.end() ? nullptr : &found->second;
     }
     [[nodiscard]] double number(const std::string& name, const Entry& entry) const {
-        double value = 0;
-        const char* last = entry.value.data() + entry.value.size();
-        const auto [end, error] = std::from_chars(entry.value.data(), last, value);
-        if (error != std::errc() || end != last || !std::isfinite(value)) {
+        const std::optional<double> value = base::numberOf(entry.value);
+        if (!value) {
             fail(entry, fmt::format("{} must be a finite number, got '{}'", name, entry.value));
         }
-        return value;
+        return *value;
     }
     [[noreturn]] void fail(const Entry& entry, const std::string& message) const {
         throw base::InputError(file_, entry.line, message);
@@ -159,6 +158,7 @@ EsriGrid readGsf(const std::filesystem::path& file, const RasterCheck& check) {
     header.wantMetres("XYUnits");
     header.wantMetres("ZUnits");
     grid.units = {.lengthMetres = 1, .heightMetres = 1, .heightName = "m"};
+    grid.origins = {"format", "format"};
     grid.cellSize = header.length("XReal") / grid.columns;
     const double depth = header.length("YReal") / grid.rows;
     if (std::abs(depth - grid.cellSize) > kSquare * grid.cellSize) {

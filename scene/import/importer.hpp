@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "base/byte_stream.hpp"
 #include "scene/import/esri_grid.hpp"
@@ -14,6 +15,13 @@ struct Function {
     std::string text;
     double west = 0, east = 1, south = 0, north = 1;  // sides of the rectangle [function's unit]
     int columns = 1, rows = 1;
+};
+
+/// Units of a raster, without its pixels.
+struct RasterDescription {
+    RasterUnits units;
+    UnitOrigins origins;
+    std::vector<std::string> warnings;  // of GDAL, one line each, with the file's name
 };
 
 /// Functions of the module that loads GDAL and muParser. Call them from one thread at a time.
@@ -29,13 +37,13 @@ public:
 
     /// Reads one band of heights with a place, from a local file. Its format must neither use the network nor run code.
     /// Heights are returned in the unit of lengths; pixels are areas; pixels that the file masks are NaN. Refuses
-    /// degrees, turned rasters, and rasters beyond kMostRasterBytes. These checks, and `check` unless it is empty, come
-    /// before pixels are read.
+    /// degrees, turned rasters, files that are shorter than their header says, and rasters beyond kMostRasterBytes.
+    /// These checks, and `check` unless it is empty, come before pixels are read.
     [[nodiscard]] virtual EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const = 0;
 
     /// Returns the units of readDem()'s lengths and heights without reading pixels. For a text grid they come from the
     /// .prj file beside it. Refuses degrees.
-    [[nodiscard]] virtual RasterUnits readUnits(const std::filesystem::path& file) const = 0;
+    [[nodiscard]] virtual RasterDescription readUnits(const std::filesystem::path& file) const = 0;
 
     /// Reads one band of 8 or 16 bits without a place. Heights are shares of the largest number, from 0 to 1, and cells
     /// have side 1. Calls `check` as readDem() does.
@@ -56,7 +64,7 @@ inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
 /// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport3";
+inline constexpr const char* kImportSymbol = "sandwallImport4";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function

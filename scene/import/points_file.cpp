@@ -14,44 +14,47 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
+#include "base/text_reader.hpp"
 #include "scene/import/metric_system.hpp"
 
 namespace scene {
 namespace {
 
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of UTF-8; spreadsheets write it
 constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
 constexpr double kFlat = 1e-9;  // width / length below which a cloud counts as a line; doubles resolve little more
 
-std::vector<std::string_view> fieldsOf(std::string_view text) {
-    for (const char separator : {';', ','}) {
-        if (text.find(separator) != std::string_view::npos) {
-            return base::split(text, separator);
-        }
+std::vector<std::string_view> wordsIn(std::string_view text) {
+    std::vector<std::string_view> words;
+    for (text = base::trimmed(text); !text.empty();) {  // blanks in a row are one separator
+        const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
+        words.push_back(text.substr(0, end));
+        text = base::trimmed(text.substr(end));
     }
-    std::vector<std::string_view> fields;
-    for (;;) {  // blanks in a row are one separator
-        const std::size_t end = text.find_first_of(" \t");
-        fields.push_back(base::trimmed(text.substr(0, end)));
-        if (end == std::string_view::npos) {
-            return fields;
-        }
-        text = base::trimmed(text.substr(end + 1));
-    }
+    return words;
 }
 
-std::optional<double> numberOf(std::string_view field) {
-    field.remove_prefix(field.size() > 1 && field.front() == '+' ? 1 : 0);
-    return base::numberOf(field);
+/// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers
+/// with decimal commas.
+std::vector<std::string_view> fieldsOf(std::string_view text) {
+    if (text.find(';') != std::string_view::npos) {
+        return base::split(text, ';');
+    }
+    std::vector<std::string_view> words = wordsIn(text);
+    if (text.find(',') == std::string_view::npos) {
+        return words;
+    }
+    const bool decimal = words.size() > 1 && std::all_of(words.begin(), words.end(), [](std::string_view word) {
+                             return base::numberOf(word) || base::commaNumberOf(word);
+                         });
+    return decimal ? words : base::split(text, ',');
 }
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
-bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-std::string_view unquoted(std::string_view field) {
-    const bool quoted = field.size() > 1 && field.front() == '"' && field.back() == '"';
-    return quoted ? field.substr(1, field.size() - 2) : field;
+/// Bytes of other letters in UTF-8 count as letters: "L\u00e4nge" is one word.
+bool isLetter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (static_cast<unsigned char>(c) & 0x80U) != 0;
 }
 
 /// Returns the words of a field: "WGS84_Lat [deg]" holds wgs, lat and deg.
@@ -80,10 +83,37 @@ bool meansNumber(std::string_view field) {
     return holds({wordsOf(field).front()}, {"nan", "inf", "infinity"});
 }
 
-bool isLatitude(std::string_view name) { return holds(wordsOf(name), {"lat", "latitude"}); }
-bool isDegrees(std::string_view name) {
-    return isLatitude(name) || holds(wordsOf(name), {"lon", "long", "lng", "longitude", "deg", "degree", "degrees"});
+bool isLatitude(std::string_view name) {
+    return holds(wordsOf(name), {"lat", "latitude", "latitud", "latitudine", "breite", "breitengrad"});
 }
+bool isDegrees(std::string_view name) {
+    return isLatitude(name) ||
+           holds(wordsOf(name), {"lon", "long", "lng", "longitude", "longitud", "longitudine", "laenge", "l\u00e4nge",
+                                 "l\u00c4nge", "laengengrad", "l\u00e4ngengrad", "deg", "degree", "degrees", "grad"});
+}
+
+/// Returns the axes that a column's name can mean: 0 for east, 1 for north, 2 for up. x and y are east and north as in
+/// mathematics and maps, and not as in the grids of some surveyors.
+std::vector<std::size_t> axesOf(std::string_view name) {
+    const std::vector<std::string> words = wordsOf(name);
+    std::vector<std::size_t> axes;
+    if (holds(words, {"x", "e", "east", "easting", "eastings", "rechtswert", "rechts", "ost", "ostwert", "est", "este",
+                      "xcoord", "coordx"})) {
+        axes.push_back(0);
+    }
+    if (holds(words, {"y", "n", "north", "northing", "northings", "hochwert", "hoch", "nord", "nordwert", "norte",
+                      "ycoord", "coordy"})) {
+        axes.push_back(1);
+    }
+    if (holds(words, {"z", "h", "height", "elev", "elevation", "alt", "altitude", "hoehe", "h\u00f6he", "cota",
+                      "zcoord", "coordz"})) {
+        axes.push_back(2);
+    }
+    return axes;
+}
+
+/// Returns whether a name has one of the letters x, y and z as a word: "x", "POINT_X", "y [m]".
+bool isLettered(std::string_view name) { return holds(wordsOf(name), {"x", "y", "z"}); }
 
 /// Returns whether a value is an angle as people write it: "47.1°", "47°06'30\"", "10.2E".
 bool isAngle(std::string_view field) {
@@ -91,13 +121,13 @@ bool isAngle(std::string_view field) {
         return true;  // a degree sign in UTF-8 or Latin-1, or the ordinal sign that is often typed for it
     }
     const bool facing = !field.empty() && std::string_view("NSEW").find(field.back()) != std::string_view::npos;
-    return facing && numberOf(base::trimmed(field.substr(0, field.size() - 1)));
+    return facing && base::numberOf(base::trimmed(field.substr(0, field.size() - 1)));
 }
 
 /// Points with the lines that contain them.
 class Cloud {
 public:
-    explicit Cloud(const std::filesystem::path& file) : file_(file.string()) {
+    explicit Cloud(const std::filesystem::path& file) : file_(file.string()), style_(file_) {
         std::error_code ignored;
         std::ifstream stream(file, std::ios::binary);
         if (!stream || std::filesystem::is_directory(file, ignored) ||
@@ -105,15 +135,11 @@ public:
             throw base::InputError(file_ + ": cannot be read; check the path");
         }
         bool first = true;
-        std::string text;
-        for (long line = 1; std::getline(stream, text); ++line) {
-            std::string_view content = text;
-            if (line == 1 && content.starts_with(kByteOrderMark)) {
-                content.remove_prefix(kByteOrderMark.size());
-            }
-            content = base::trimmed(content.substr(0, content.find('#')));
+        base::TextReader lines(stream, file_);
+        for (std::string_view text; lines.nextLine(text);) {
+            const std::string_view content = base::trimmed(text.substr(0, text.find('#')));
             if (!content.empty()) {
-                add(fieldsOf(content), line, std::exchange(first, false));
+                add(fieldsOf(content), lines.line(), std::exchange(first, false));
             }
         }
         if (stream.bad()) {
@@ -154,27 +180,29 @@ public:
 private:
     void add(const std::vector<std::string_view>& fields, long line, bool mayBeTitle) {
         if (mayBeTitle && !fields[0].empty() && std::none_of(fields.begin(), fields.end(), meansNumber)) {
-            checkTitle(fields, line);
+            readTitle(fields, line);
             return;
         }
         if (fields.size() != 3) {
-            fail(line, fmt::format("expected x, y and z, got {} values", fields.size()));
+            fail(line, fmt::format("expected x, y and z, got {} values{}", fields.size(),
+                                   fields.size() == 6 ? "; separate numbers with decimal commas by semicolons" : ""));
         }
         if (points_.size() == kMostPoints) {
             fail(line, fmt::format("more than {} points; thin them out", kMostPoints));
         }
         std::array<double, 3> point{};
         for (std::size_t i = 0; i < 3; ++i) {
-            const std::optional<double> value = numberOf(fields[i]);
-            if (!value && isAngle(fields[i])) {
+            const std::string_view field = fields[columns_.at(i)];
+            const std::optional<double> value = style_.numberOf(field, line);
+            if (!value && isAngle(field)) {
                 fail(line,
                      fmt::format("its coordinates ('{}') are degrees, but sand needs lengths; write them as plain "
                                  "decimals, longitude first, and make metres of them: {}CODE, CODE being that of their "
                                  "UTM zone",
-                                 fields[i], kTransform));
+                                 field, kTransform));
             }
             if (!value) {
-                fail(line, fmt::format("{} must be a finite number, got '{}'", "xyz"[i], fields[i]));
+                fail(line, fmt::format("{} must be a finite number, got '{}'", "xyz"[i], field));
             }
             point.at(i) = *value;
         }
@@ -184,28 +212,63 @@ private:
         points_.push_back(point);
         lines_.push_back(line);
     }
-    /// Checks a title. It may name the columns freely, but x, y and z only where they belong.
-    void checkTitle(const std::vector<std::string_view>& fields, long line) {
-        for (std::size_t i = 0; i < fields.size(); ++i) {
-            const std::string_view name = unquoted(fields[i]);
-            const std::size_t axis = name.size() == 1 ? std::string_view("xyzXYZ").find(name.front()) : i;
-            if (axis != std::string_view::npos && axis % 3 != i) {
-                fail(line, fmt::format("the columns must be x, y, z, and '{}' is number {}", name, i + 1));
-            }
-        }
+    /// Reads a title. It may name the columns freely, but x, y and z only where they belong. Names such as northing may
+    /// be in any order.
+    void readTitle(const std::vector<std::string_view>& fields, long line) {
         if (fields.size() != 3) {
             const auto degrees = std::find_if(fields.begin(), fields.end(), isDegrees);
-            fail(line, fmt::format(
-                           "expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0], fields.size(),
-                           degrees == fields.end()
-                               ? ""
-                               : fmt::format("; '{}' is in degrees, but sand needs lengths", unquoted(*degrees))));
+            fail(line, fmt::format("expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0],
+                                   fields.size(),
+                                   degrees == fields.end() ? ""
+                                                           : fmt::format("; '{}' is in degrees, but sand needs lengths",
+                                                                         base::unquoted(*degrees))));
         }
         for (const std::string_view name : {fields[0], fields[1]}) {
             if (isDegrees(name) && !degrees_) {
-                degrees_ = Degrees{std::string(unquoted(name)), line, isLatitude(fields[0])};
+                degrees_ = Degrees{std::string(base::unquoted(name)), line, isLatitude(fields[0])};
             }
         }
+        if (!degrees_) {
+            orderColumns(fields, line);
+        }
+    }
+    /// Sets columns_ by the names in a title. Names that tell nothing keep their place.
+    void orderColumns(const std::vector<std::string_view>& fields, long line) {
+        constexpr std::size_t kUnknown = 3;
+        std::array<std::size_t, 3> axis{};  // of each column
+        std::array<bool, 3> taken{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::string_view name = base::unquoted(fields[i]);
+            const std::vector<std::size_t> axes = axesOf(name);
+            axis.at(i) = axes.empty() ? kUnknown : axes[0];
+            if (axes.size() == 1 && axes[0] != i && isLettered(name)) {
+                fail(line, fmt::format("the columns must be x, y, z, and '{}' is number {}", name, i + 1));
+            }
+            if (axes.size() > 1 || (!axes.empty() && std::exchange(taken.at(axes[0]), true))) {
+                failForNames(fields, line);
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (axis.at(i) == kUnknown) {
+                // A name that tells nothing stands for its own place, or for the only one that is left.
+                const auto left =
+                    static_cast<std::size_t>(std::find(taken.begin(), taken.end(), false) - taken.begin());
+                const bool only = std::count(taken.begin(), taken.end(), false) == 1;
+                if (taken.at(i) && !only) {
+                    failForNames(fields, line);
+                }
+                axis.at(i) = taken.at(i) ? left : i;
+                taken.at(axis.at(i)) = true;
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) {
+            columns_.at(axis.at(i)) = i;
+        }
+    }
+    [[noreturn]] void failForNames(const std::vector<std::string_view>& fields, long line) const {
+        fail(line, fmt::format("the columns '{}', '{}' and '{}' can be read in several orders; name them x, y, z, from "
+                               "west to east, from south to north, and up",
+                               base::unquoted(fields[0]), base::unquoted(fields[1]), base::unquoted(fields[2])));
     }
     /// Throws base::InputError with the command that converts degrees to metres, in the UTM zone of the first point.
     [[noreturn]] void failForDegrees(const std::array<double, 3>& point) const {
@@ -228,6 +291,8 @@ private:
     };
 
     std::string file_;
+    base::DecimalStyle style_;
+    std::array<std::size_t, 3> columns_{0, 1, 2};  // of x, y and z
     Points points_;
     std::vector<long> lines_;
     std::optional<Degrees> degrees_;

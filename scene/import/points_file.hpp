@@ -10,11 +10,14 @@ namespace scene {
 /// Points [x, y, z] of a survey, in the order of the file, each place once [file's length unit].
 using Points = std::vector<std::array<double, 3>>;
 
-/// Reads lines of x, y and z, separated by a comma, a semicolon, or blanks. # begins a comment. The first line may be a
-/// title, which holds no number. A point that the file repeats is returned once.
+/// Reads lines of x, y and z, separated by a comma, a semicolon, or blanks. Numbers may have decimal commas unless a
+/// comma separates them. # begins a comment. The first line may be a title, which holds no number. If it names
+/// northing, easting and height, or the like, the columns may have any order. A point that the file repeats is returned
+/// once.
 ///
 /// Throws base::InputError with file, line and value for:
-/// - a value that is not a finite number, a title with degrees, a line without exactly three values,
+/// - a value that is not a finite number, a title with degrees or with x, y and z in another order, a line without
+/// exactly three values,
 /// - two heights at one place, fewer than three points, points that all lie on one line,
 /// - more than kMostPoints points.
 [[nodiscard]] Points readPoints(const std::filesystem::path& file);

@@ -9,18 +9,12 @@
 #include "host/whole_file.hpp"
 #include "scene/import/importer.hpp"
 #include "scene/import/no_data.hpp"
+#include "scene/import/prj_file.hpp"
 
 namespace scene {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Returns whether a .prj file, from which GDAL reads a reference system, is beside `file`.
-bool hasPrj(const fs::path& file) {
-    std::error_code none;
-    return fs::exists(fs::path(file).replace_extension(".prj"), none) ||
-           fs::exists(fs::path(file).replace_extension(".PRJ"), none);
-}
 
 void write(const base::Bytes& bytes, const fs::path& file) {
     host::WholeFile whole(file);
@@ -45,14 +39,14 @@ void checkRasterName(const fs::path& file) {
     }
 }
 
-EsriGrid readRaster(const fs::path& file, bool withReference, const RasterCheck& check) {
+EsriGrid readRaster(const fs::path& file, const RasterCheck& check) {
     const std::string ending = base::endingOf(file);
     std::error_code none;
     const bool plain = fs::is_regular_file(file, none);
     if (plain && !ending.empty() && ending != ".asc" && ending != ".txt" && !holdsEsriGrid(file)) {
         return readByGdal(file, loadImporter(file.string()), check);
     }
-    if (!withReference || !plain || !hasPrj(file)) {
+    if (!plain || !prjBeside(file)) {
         return readEsriGrid(file, check);
     }
     return readTextWithUnits(file, loadImporter(file.string()), check);
@@ -68,9 +62,11 @@ EsriGrid readByGdal(const fs::path& file, const Importer& importer, const Raster
 
 EsriGrid readTextWithUnits(const fs::path& file, const Importer& importer, const RasterCheck& check) {
     // GDAL only reads the units. It reads a word in place of a height as 0; readEsriGrid() reports the line.
-    const RasterUnits units = importer.readUnits(file);
+    const RasterDescription described = importer.readUnits(file);
     EsriGrid grid = readEsriGrid(file, check);
-    grid.units = units;
+    grid.units = described.units;
+    grid.origins = described.origins;
+    grid.warnings.insert(grid.warnings.begin(), described.warnings.begin(), described.warnings.end());
     grid.countHeightsInLengths();
     return grid;
 }

@@ -20,10 +20,9 @@ void checkRasterName(const std::filesystem::path& file);
 /// file. It also reads a file if its name ends in .asc or .txt, or has no ending. Importer::readDem() reads all other
 /// files.
 ///
-/// A text file loads GDAL only if `withReference` is true and a .prj file beside it has a reference system. The grid
-/// then has units, and degrees are refused. `check` may be empty. Throws base::InputError.
-[[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, bool withReference = false,
-                                  const RasterCheck& check = {});
+/// A text file loads GDAL only if a .prj file is beside it. The grid then has units, and degrees are refused. `check`
+/// may be empty. Throws base::InputError.
+[[nodiscard]] EsriGrid readRaster(const std::filesystem::path& file, const RasterCheck& check = {});
 
 /// Reads a raster by Importer::readDem(), and adds warnings about its heights. Throws base::InputError.
 [[nodiscard]] EsriGrid readByGdal(const std::filesystem::path& file, const Importer& importer,

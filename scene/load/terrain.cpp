@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "sand/grid/dunes.hpp"
+#include "scene/import/degrees.hpp"
 #include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
+#include "scene/import/raster_units.hpp"
 #include "scene/load/terrain_source.hpp"
 #include "scene/load/tin_table.hpp"
 
@@ -100,6 +102,9 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     AskedBeforeHeights asked(file, terrain, checks);
     const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
     scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
+    if (source.statement) {
+        scene.statements.push_back(*source.statement);
+    }
     if (!source.points.empty()) {
         if (!file.has("tin")) {
             terrain.fail("kind",
@@ -107,6 +112,9 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
                          "\"dem\": gdal_grid");
         }
         return layOutPoints(file, terrain, source.points, scene);
+    }
+    if (source.mayBeDegrees && !terrain.flagOr("lengths", false)) {
+        requireLengths(source.raster, "; or insist on lengths with lengths = true");
     }
     requireSquareCells(terrain, sourceKinds().at(static_cast<std::size_t>(kind)), source.raster);
     // A grid of rock has the same cells, including those at the edges.
@@ -185,7 +193,7 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
 }
 
 void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
-                 std::shared_ptr<sand::Ground>& ground, std::vector<std::string>& warnings) {
+                 std::shared_ptr<sand::Ground>& ground, Scene& scene) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: each gives the height of the rock");
     }
@@ -200,8 +208,11 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
                 checks.raster(columns, rows);
             }
         };
-        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), false, check);
-        warnings.insert(warnings.end(), rock.warnings.begin(), rock.warnings.end());
+        const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);
+        requireSameUnits(scene.georeference.units, terrain.has("file") ? terrain.text("file") : terrain.text("kind"),
+                         rock);
+        scene.statements.push_back(statementOf(rock));
+        scene.warnings.insert(scene.warnings.end(), rock.warnings.begin(), rock.warnings.end());
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
             terrain.fail("bedrock",
                          fmt::format("the rock has {} x {} cells, the terrain {} x {}: they must be the same",
@@ -231,7 +242,7 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     std::shared_ptr<sand::Ground> ground;
     scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
                              : fromSource(file, terrain, kind - 2, scene, ground, checks);
-    readBedrock(terrain, scene.terrain, checks, ground, scene.warnings);
+    readBedrock(terrain, scene.terrain, checks, ground, scene);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     if (scene.tin == nullptr) {

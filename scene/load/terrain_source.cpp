@@ -13,6 +13,7 @@
 #include "scene/import/importer.hpp"
 #include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
+#include "scene/import/raster_units.hpp"
 
 namespace scene {
 namespace {
@@ -161,6 +162,12 @@ TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& ter
     }
     TerrainSource source = readKind(file, terrain, kind, check);
     source.georeference.units = source.raster.units;
+    source.mayBeDegrees = kind == kDem || kind == kEsriAscii;
+    if (source.mayBeDegrees || kind == kGsf) {
+        source.statement = statementOf(source.raster);
+    } else if (kind == kPoints) {
+        source.statement = statementOf(source.points, fileOf(terrain).string());
+    }
     source.warnings =
         source.points.empty() ? source.raster.warnings : undeclaredNoData(source.points, fileOf(terrain).string());
     source.georeference.datum = terrain.numberOr("datum", 0);

@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,14 +12,17 @@
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/points_file.hpp"
 #include "scene/load/scene_file.hpp"
+#include "scene/raster_statement.hpp"
 
 namespace scene {
 
 /// Heights from another file or a function, as a scene names them: a raster, or points.
 struct TerrainSource {
-    EsriGrid raster{};                    // cells, corner and heights in scene units, before the datum is subtracted
-    Points points{};                      // in scene units, before the datum is subtracted; empty for a raster
-    Georeference georeference{};          // without the corner, which referenceAt() sets
+    EsriGrid raster{};            // cells, corner and heights in scene units, before the datum is subtracted
+    Points points{};              // in scene units, before the datum is subtracted; empty for a raster
+    Georeference georeference{};  // without the corner, which referenceAt() sets
+    std::optional<RasterStatement> statement{};  // nullopt unless the heights are from a file
+    bool mayBeDegrees = false;            // the lengths are those of a map, and nothing says that they are lengths
     std::vector<std::string> warnings{};  // one line each
 
     /// Returns the georeference of a field whose south-west corner is that of `part`, a part of the raster.

@@ -10,6 +10,7 @@
 #include "host/command_line.hpp"
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
+#include "scene/import/raster_file.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/tin_sand.hpp"
 
@@ -49,6 +50,7 @@ void check(const Options& options) {
 void checkKind(const Options& options, bool toMesh) {
     const bool points = scene::relax::holdsPoints(options.in);
     if (!toMesh) {
+        scene::checkRasterName(options.out);
         require(!points, "OUT", "a mesh, .ply or .obj, where IN holds points", options.out);
         require(!options.maxError && !options.vertices, "--max-error and --vertices",
                 "left out unless OUT is a mesh, .ply or .obj", options.out);

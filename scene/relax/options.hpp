@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "scene/import/esri_grid.hpp"
+#include "scene/raster_statement.hpp"
 
 namespace scene::relax {
 
@@ -27,5 +29,14 @@ void checkLengths(const EsriGrid& raster, const Options& options);
 /// Both functions read IN, write OUT and print the report line. They throw base::InputError.
 void relaxGrid(const Options& options);
 void relaxTin(const Options& options);
+
+/// Prints "FILE: metres across (EPSG:32633), …" on stderr.
+void printStatement(const RasterStatement& statement);
+
+/// Returns the statement as the object `units` of the report (docs/relax.md).
+[[nodiscard]] nlohmann::ordered_json jsonOf(const RasterStatement& statement);
+
+/// Returns a check for a raster that the solver reads: its sides and the free memory. `file` is for the message.
+[[nodiscard]] RasterCheck fitsSolver(const std::string& file, std::int64_t freeBytes);
 
 }  // namespace scene::relax

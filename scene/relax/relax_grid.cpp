@@ -16,6 +16,7 @@
 #include "scene/import/degrees.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_memory.hpp"
+#include "scene/import/raster_units.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/relaxation.hpp"
 #include "scene/relax/steepness.hpp"
@@ -101,6 +102,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
     if (swept) {
         json["note"] = "settle supports neither walls nor bedrock; g swept the sand to rest instead";
     }
+    json["units"] = jsonOf(statementOf(grid));
     json["talus_deg"] = options.talus;
     json["band"] = options.band;
     json["columns"] = grid.columns;
@@ -132,11 +134,12 @@ void checkLengths(const EsriGrid& raster, const Options& options) {
 
 void relaxGrid(const Options& options) {
     const std::int64_t free = host::freeMemoryOfProcess();
-    const EsriGrid grid = readRaster(options.in, true, fitsMemory(options.in, free));
+    const EsriGrid grid = readRaster(options.in, fitsSolver(options.in, free));
     checkLengths(grid, options);
     std::optional<EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
-        bedrock = readRaster(options.bedrock, false, fitsMemory(options.bedrock, free));
+        bedrock = readRaster(options.bedrock, fitsSolver(options.bedrock, free));
+        requireSameUnits(grid, *bedrock);
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
@@ -146,6 +149,10 @@ void relaxGrid(const Options& options) {
         warnings.insert(warnings.end(), bedrock->warnings.begin(), bedrock->warnings.end());
     }
     warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
+    printStatement(statementOf(grid));
+    if (bedrock) {
+        printStatement(statementOf(*bedrock));
+    }
     for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);
     }

@@ -16,6 +16,7 @@
 #include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_memory.hpp"
+#include "scene/import/raster_units.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/ticker.hpp"
 #include "scene/relax/tin_sand.hpp"
@@ -49,12 +50,14 @@ Slid slide(TinSand& sand, const Options& options) {
     return slid;
 }
 
-nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, const std::optional<Thinned>& thinned,
-                                std::int64_t volumeBefore, const Slid& slid, const Mesh& mesh) {
+nlohmann::ordered_json reportOf(const TinSand& sand, const Options& options, const RasterStatement& statement,
+                                const std::optional<Thinned>& thinned, std::int64_t volumeBefore, const Slid& slid,
+                                const Mesh& mesh) {
     const double talus = std::tan(options.talus * std::numbers::pi / 180);
     const Steepness steepness = steepnessOf(mesh, talus);
     nlohmann::ordered_json json;
     json["scheme"] = options.scheme;
+    json["units"] = jsonOf(statement);
     json["talus_deg"] = options.talus;
     json["band"] = options.band;
     json["vertices"] = mesh.vertices.size();
@@ -89,20 +92,24 @@ void relaxTin(const Options& options) {
     const TalusSettings material{options.talus, options.band};
     std::optional<Thinned> thinned;
     Points points;
+    RasterStatement statement;
     std::vector<std::string> warnings;
     if (holdsPoints(options.in)) {
         points = readPoints(options.in);
         warnings = undeclaredNoData(points, options.in);
+        statement = statementOf(points, options.in);
     } else {
-        const EsriGrid raster =
-            withoutEmptyEdges(readRaster(options.in, true, fitsMemory(options.in, host::freeMemoryOfProcess())));
+        const EsriGrid raster = readRaster(options.in, fitsSolver(options.in, host::freeMemoryOfProcess()));
         checkLengths(raster, options);
+        statement = statementOf(raster);
         warnings = raster.warnings;
-        thinned = thin(raster, {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
+        thinned =
+            thin(withoutEmptyEdges(raster), {options.maxError.value_or(0), options.vertices.value_or(kMostVertices)});
     }
     TinSand sand = thinned ? toTin(*thinned, options.in, material) : toTin(points, options.in, material);
     host::requireWritable(options.out);  // to report a faulty OUT before hours of work
     warnings.insert(warnings.end(), sand.warnings.begin(), sand.warnings.end());
+    printStatement(statement);
     for (const std::string& warning : warnings) {
         host::printLine("warning: {}", warning);
     }
@@ -110,7 +117,7 @@ void relaxTin(const Options& options) {
     const Slid slid = slide(sand, options);
     const Mesh mesh = sand.toMesh();
     writeMesh(mesh, options.out);
-    fmt::print("{}\n", reportOf(sand, options, thinned, volumeBefore, slid, mesh).dump());
+    fmt::print("{}\n", reportOf(sand, options, statement, thinned, volumeBefore, slid, mesh).dump());
 }
 
 }  // namespace scene::relax

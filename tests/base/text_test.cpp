@@ -22,14 +22,6 @@ TEST(Text, SplitsAtEverySeparator) {
     EXPECT_EQ(base::split(",", ','), (Parts{"", ""}));
 }
 
-TEST(Text, ReadsNumbersThatFillTheWord) {
-    EXPECT_EQ(base::numberOf("-2.5e3"), -2500);
-    EXPECT_EQ(base::numberOf("0"), 0);
-    for (const char* word : {"", "x", "1x", " 1", "1 ", "+1", "1,5", "nan", "inf", "1e999", "0x10"}) {
-        EXPECT_EQ(base::numberOf(word), std::nullopt) << word;
-    }
-}
-
 TEST(Text, WritesSmallLettersOfAsciiAlone) {
     EXPECT_EQ(base::lowerCase("Ab-Z\xC3\x84"), "ab-z\xC3\x84");
     EXPECT_EQ(base::endingOf("folder.d/A.b.TIF"), ".tif");

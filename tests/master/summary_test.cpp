@@ -43,6 +43,19 @@ nlohmann::json written(const master::Summary& summary) {
     return json;
 }
 
+TEST(Summary, HasTheUnitsOfEachFileOfTerrain) {
+    master::Summary summary = draggedWall(false);
+    EXPECT_EQ(written(summary)["terrain"], nlohmann::json::array());
+    summary.terrain = {{"valley.asc", "metres", "EPSG:32633", "feet", "vertical datum", "-9999", 0.25},
+                       {"rock.asc", "metres", "EPSG:32633", "the same", "no unit of heights", std::nullopt, 0}};
+    const nlohmann::json terrain = written(summary)["terrain"];
+    ASSERT_EQ(terrain.size(), 2U);
+    EXPECT_EQ(terrain[0],
+              nlohmann::json::parse(R"({"file": "valley.asc", "across": "metres", "across_from": "EPSG:32633",
+        "up": "feet", "up_from": "vertical datum", "no_data": "-9999", "no_data_share": 0.25})"));
+    EXPECT_EQ(terrain[1]["no_data"], nullptr);
+}
+
 TEST(Summary, NamesTheRankThatDragsTheWall) {
     const master::Summary summary = draggedWall(true);
     EXPECT_NE(

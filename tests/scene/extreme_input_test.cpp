@@ -56,7 +56,8 @@ TEST_F(ExtremeInput, GridsOfNoNumbersAreRefused) {
     const std::string head = "ncols 2\nnrows 2\ncellsize 1\n";
     EXPECT_EQ(complaintOf(head, "4"), "accepted");
     for (const std::string value : {"nan", "NaN", "inf", "-inf", "1e999", "0x4", "4,5", "-"}) {
-        EXPECT_EQ(complaintOf(head, value), "t.asc:5: a height must be a finite number, got '" + value + "'");
+        EXPECT_EQ(complaintOf(head, value), "t.asc:5: a height must be a finite number, got '" + value + "'" +
+                                                (value == "4,5" ? "; write a decimal point" : ""));
     }
     const std::string tall = complaintOf(head, "1e9");
     EXPECT_NE(tall.find("a height of 1000000000 is beyond the range of ±4096 (4096 cells)"), std::string::npos) << tall;

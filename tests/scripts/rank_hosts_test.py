@@ -5,6 +5,7 @@
 import socket
 import tempfile
 import unittest
+from unittest import mock
 
 import launcher_fixture  # finds scripts/
 import rank_hosts
@@ -23,6 +24,31 @@ class HostsOfWall(unittest.TestCase):
         for name in ("-oProxyCommand=x", "a,b", "a:2", "a/b", "a;b", "x" * 300):
             with self.assertRaisesRegex(rank_hosts.BadInput, "wall.toml: '.*' is not a host name"):
                 rank_hosts.hosts_of_wall(name, "wall.toml")
+
+
+class ThisMachine(unittest.TestCase):
+    """This machine has the address 127.0.0.1 here. 192.0.2.1 is an address for documentation, which no machine has."""
+
+    def here(self, own, listed, address):
+        def resolve(host, port, **kinds):
+            if address is None:
+                raise socket.gaierror(f"{host} is unknown")
+            return [(socket.AF_INET, socket.SOCK_DGRAM, 17, "", (address, 0))]
+        with mock.patch("socket.gethostname", return_value=own), mock.patch("socket.getaddrinfo", resolve):
+            return rank_hosts.is_here(listed)
+
+    def test_short_and_full_names_are_this_machine(self):
+        for own in ("node01", "node01.example.org"):
+            for listed in ("node01", "node01.example.org"):
+                for address in ("127.0.0.1", None):
+                    self.assertTrue(self.here(own, listed, address), (own, listed, address))
+
+    def test_a_machine_of_another_domain_is_not_this_one(self):
+        self.assertFalse(self.here("wall-node.1.example.org", "wall-node.2.example.org", None))
+        self.assertFalse(self.here("wall-node.1.example.org", "wall-node.2.example.org", "127.0.0.1"))
+        self.assertFalse(self.here("node01", "node01.example.com", "192.0.2.1"))
+        self.assertFalse(self.here("node01.example.org", "node01", "192.0.2.1"))
+        self.assertFalse(self.here("node01", "node02", "127.0.0.1"))
 
 
 class HostsOfFile(unittest.TestCase):
@@ -54,9 +80,30 @@ class HostsOfFile(unittest.TestCase):
         self.assertEqual(self.hosts("a slots=9999\n", 2), "FILE:1: slots must be from 1 to 1024, got 9999")
         self.assertIn("FILE:3: 'a,b' is not a host name", self.hosts("\n\na,b\n", 2))
 
+    def test_a_file_in_any_encoding_is_read(self):
+        text = "# B\u00fcro\r\nnode01 slots=2\r\n"
+        for encoding in ("utf-8", "utf-8-sig", "latin-1", "utf-16"):
+            with tempfile.NamedTemporaryFile("wb", suffix=".hosts") as file:
+                file.write(text.encode(encoding))
+                file.flush()
+                self.assertEqual(rank_hosts.hosts_of_file(file.name, 2), ["node01", "node01"], encoding)
+
+    def test_a_file_that_is_no_text_is_refused_with_its_line(self):
+        with tempfile.NamedTemporaryFile("wb", suffix=".hosts") as file:
+            file.write(b"node01\n\0node02\n")
+            file.flush()
+            with self.assertRaisesRegex(rank_hosts.BadInput, r"\.hosts:2: a byte 0 is inside the text"):
+                rank_hosts.hosts_of_file(file.name, 1)
+
     def test_a_file_that_is_not_there_is_named(self):
         with self.assertRaisesRegex(rank_hosts.BadInput, "--hosts /nowhere: cannot be read"):
             rank_hosts.hosts_of_file("/nowhere", 1)
+
+
+class Transport(unittest.TestCase):
+    def test_open_mpi_keeps_what_is_behind_the_first_dot_of_a_name(self):
+        words = rank_hosts.transport(["wall-node.1.example.org", "wall-node.2.example.org"], None)
+        self.assertIn("--mca orte_keep_fqdn_hostnames 1", " ".join(words))
 
 
 class Network(unittest.TestCase):

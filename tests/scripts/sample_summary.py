@@ -21,7 +21,7 @@ def rank(number):
 
 # 600 frames at 60 frames/s: 599 periods take 9.983 s.
 SUMMARY = {
-    "version": 1, "scene": "dunes", "wall": "small", "frames": 600, "steps": 590, "frames_before": 0, "steps_before": 0, "pace": "realtime",
+    "version": 1, "scene": "dunes", "terrain": [], "wall": "small", "frames": 600, "steps": 590, "frames_before": 0, "steps_before": 0, "pace": "realtime",
     "refresh_hz": 60.0, "ranks": 2, "state_hash": "0123456789abcdef", "divergences": 0, "healed": 0, "outvoted": 0, "master_healed": 0,
     "server_divergences": 0, "unhealed": 0, "steps_left_out": 0, "volume_initial": 900, "volume_final": 890, "edits": 0, "volume_outflow": 10,
     "compared": {"at_end": True, "server_at_end": True, "last_whole": 600, "frames_since": 0, "first_difference": None},

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 
 /// Puts nan and inf into scene files and wall files. TOML has both as numbers.

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "tests/support/refusal.hpp"
+#include "tests/support/text_forms.hpp"
 #include "tests/tracking/tracking_samples.hpp"
 
 namespace {
@@ -98,6 +99,17 @@ TEST(HeadTrace, NamesFileLineAndValue) {
               "head.csv:2: the quaternion must have length 1, got 0");
     EXPECT_EQ(refusal("time,x,y,z,right_x,right_y,right_z\n0,0,0,0,2,0,0\n"),
               "head.csv:2: right_x,right_y,right_z must have length 1, got 2");
+}
+
+TEST(HeadTrace, IsReadInEveryFormOfText) {
+    for (const test::TextForm& form : test::formsOf("time,x,y,z\n+10,0,1.5,2\n12,1,1.5,2\n")) {
+        const HeadTrace trace = parse(form.bytes);
+        EXPECT_EQ(trace.duration(), 2) << form.name;
+        EXPECT_EQ(trace.at(1).position, glm::dvec3(0.5, 1.5, 2)) << form.name;
+    }
+    EXPECT_EQ(parse("time;x;y;z\n10;0;1,5;2\n12;1;1,5;2\n").at(1).position, glm::dvec3(0.5, 1.5, 2));
+    EXPECT_EQ(parse("time\tx\ty\tz\n10\t0\t1.5\t2\n12\t1\t1.5\t2\n").at(1).position, glm::dvec3(0.5, 1.5, 2));
+    EXPECT_TRUE(refusal("time;x;y;z\n0;0;1,5;2\n1;1.5;0;2\n").starts_with("head.csv:3: '1,5' in line 2"));
 }
 
 TEST(HeadTrace, NamesWhatIsWrongWithTheColumns) {

@@ -41,6 +41,25 @@ TEST(CheckProgram, ExitsWithTwoAndOneLineForWhatItCannotUse) {
     }
 }
 
+TEST(CheckProgram, ChecksASceneAndPrintsTheUnitsOfItsTerrain) {
+    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "sandwall_check_scene";
+    std::filesystem::create_directory(folder);
+    const std::string scene = (folder / "hills.toml").string(), grid = (folder / "t.asc").string();
+    std::ofstream(scene) << "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 30\n";
+    std::ofstream(grid)
+        << "ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -1\n1 2\n3 -1\n";
+    const support::Ran ran = support::runProgram("sandwall-check", "--scene " + scene);
+    EXPECT_EQ(ran.status, 0);
+    EXPECT_EQ(ran.output,
+              "scene 'hills': 2 x 2 cells of 10\n" + grid +
+                  ": units of unknown length across (no coordinate system), the same up (no unit of heights), no "
+                  "data -1 in 25 % of cells\n");
+    std::ofstream(grid) << "ncols 2\n";
+    EXPECT_EQ(support::runProgram("sandwall-check", "--scene " + scene).status, 2);
+    EXPECT_EQ(support::runProgram("sandwall-check", pathOf("desktop.toml") + " --scene " + scene).status, 2);
+    std::filesystem::remove_all(folder);
+}
+
 TEST(CheckProgram, CountsOutputsAndThoseWithAPlace) {
     for (const auto& [arguments, line] : {std::pair{"desktop.toml", "1 0\n"},
                                           {"tiled_3x4.toml", "24 0\n"},

@@ -30,7 +30,11 @@ void setPlace(const GdalRaster& raster, EsriGrid& grid) {
         }
     }
     const auto [west, width, turn, north, otherTurn, depth] = place;
-    if (turn != 0 || otherTurn != 0 || !(width > 0) || depth == 0) {
+    // Programs leave rounding errors where a raster is not turned. The farthest corner then moves by less than this.
+    constexpr double kTurned = 1e-3;  // [cell]
+    const bool turned = std::abs(turn) * raster.rows() > kTurned * width ||
+                        std::abs(otherTurn) * raster.columns() > kTurned * std::abs(depth);
+    if (turned || !(width > 0) || depth == 0) {
         raster.fail(fmt::format("is turned or mirrored; straighten it: gdalwarp -r bilinear {} straight.tif",
                                 std::filesystem::path(raster.name()).filename().string()));
     }
@@ -94,23 +98,31 @@ public:
     [[nodiscard]] EsriGrid readDem(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
         EsriGrid grid = gridOf(raster);
-        grid.units = unitsOf(raster);  // refuses a raster in degrees before it is read
+        const RasterDescription described = describe(raster);  // refuses a raster in degrees before it is read
+        grid.units = described.units;
+        grid.origins = described.origins;
         ask(check, raster);
         grid.heights = raster.pixels();
         setPlace(raster, grid);
-        int hasNoData = 0;
-        const double noData = GDALGetRasterNoDataValue(raster.band(), &hasNoData);
-        if (hasNoData != 0) {
-            grid.noData = noData;
-        }
+        grid.noData = raster.noData();
         grid.countHeightsInLengths();
+        const std::vector<std::string> warnings = raster.warnings();
+        grid.warnings.insert(grid.warnings.begin(), warnings.begin(), warnings.end());
         return grid;
     }
-    [[nodiscard]] RasterUnits readUnits(const std::filesystem::path& file) const override {
-        return unitsOf(GdalRaster(file));
+    [[nodiscard]] RasterDescription readUnits(const std::filesystem::path& file) const override {
+        const GdalRaster raster(file);
+        RasterDescription described = describe(raster);
+        described.warnings = raster.warnings();
+        return described;
     }
     [[nodiscard]] EsriGrid readImage(const std::filesystem::path& file, const RasterCheck& check) const override {
         const GdalRaster raster(file);
+        if (raster.isWhiteZero()) {
+            raster.fail(
+                "its 0 is white, so that it could be the lowest or the highest; invert it, or read its numbers as "
+                "heights with kind = \"dem\"");
+        }
         const double white = whiteOf(raster);
         EsriGrid grid = gridOf(raster);
         ask(check, raster);
@@ -119,6 +131,7 @@ public:
         for (double& height : grid.heights) {
             height /= white;
         }
+        grid.warnings = raster.warnings();
         return grid;
     }
     [[nodiscard]] EsriGrid evaluate(const Function& function) const override { return evaluateFunction(function); }
@@ -128,6 +141,7 @@ public:
     [[nodiscard]] std::string esriWkt(const std::string& crs, const std::string& file) const override {
         const GdalSession session;
         const SpatialReference reference = referenceOf(crs, file);
+        OSRStripVertical(reference.get());  // heights of the grid are in the unit of lengths, whatever it says
         char* text = nullptr;
         const std::array<const char*, 2> options = {"FORMAT=WKT1_ESRI", nullptr};
         const OGRErr error = OSRExportToWktEx(reference.get(), &text, options.data());
@@ -145,7 +159,7 @@ public:
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport3() {
+extern "C" const scene::Importer* sandwallImport4() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
+#include "scene/import/gdal/claims.hpp"
 #include "scene/import/gdal/png_greys.hpp"
 #include "scene/import/importer.hpp"
 
@@ -47,6 +48,7 @@ GdalRaster::GdalRaster(const fs::path& file)
         fail("cannot be read as a raster: " + session_.complaint());
     }
     chooseBand();
+    checkClaims(*this);
     const double bytes = kRasterBytesPerPixel * columns() * rows();
     if (bytes > kMostRasterBytes) {
         fail(
@@ -70,11 +72,14 @@ void GdalRaster::chooseBand() {
             ++values;
         }
     }
-    if (values != 1) {
-        fail(fmt::format("has {} bands, but heights are only one; {}", values,
-                         values == 0 ? "list them with gdalinfo" : "choose it: gdal_translate -b NUMBER"));
+    if (values == 0) {
+        failForVariables();
     }
-    if (GDALGetRasterColorTable(band_) != nullptr) {
+    if (values != 1) {
+        fail(fmt::format("has {} bands, but heights are only one; choose it: gdal_translate -b NUMBER {} dem.tif",
+                         values, fs::path(name_).filename().string()));
+    }
+    if (GDALGetRasterColorTable(band_) != nullptr && !isWhiteZero() && !isGreyPalette()) {
         fail("holds colours from a palette instead of heights");
     }
     if (GDALDataTypeIsComplex(GDALGetRasterDataType(band_)) != 0) {
@@ -82,13 +87,67 @@ void GdalRaster::chooseBand() {
     }
 }
 
-bool GdalRaster::complete() const {
-    const bool whole = GDALDataTypeIsInteger(GDALGetRasterDataType(band_)) != 0;
-    return whole && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
+void GdalRaster::failForVariables() const {
+    std::vector<std::string> names;
+    char** const items = GDALGetMetadata(dataset_.get(), "SUBDATASETS");
+    for (char** item = items; item != nullptr && *item != nullptr; ++item) {
+        const std::string text = *item;
+        if (const std::size_t at = text.find("_NAME="); at != std::string::npos) {
+            names.push_back(text.substr(at + std::string_view("_NAME=").size()));
+        }
+    }
+    if (names.empty()) {
+        fail("holds no band of numbers; list what it holds with gdalinfo");
+    }
+    std::string variables;
+    constexpr std::size_t kMost = 6;
+    for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+        variables += (i == 0 ? "" : ", ") + names[i].substr(names[i].rfind(':') + 1);
+    }
+    std::string first = names[0];
+    if (const std::size_t at = first.find(fs::absolute(name_).string()); at != std::string::npos) {
+        first.replace(at, fs::absolute(name_).string().size(), fs::path(name_).filename().string());
+    }
+    fail(fmt::format("holds {} variables ({}{}), but heights are only one; choose it: gdal_translate {} dem.tif",
+                     names.size(), variables, names.size() > kMost ? ", ..." : "", first));
 }
 
-bool GdalRaster::isPng() const {
-    return std::string_view(GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get()))) == "PNG";
+bool GdalRaster::isWhiteZero() const {
+    const char* const mark = GDALGetMetadataItem(dataset_.get(), "MINISWHITE", "IMAGE_STRUCTURE");
+    return mark != nullptr && std::string_view(mark) == "YES";
+}
+
+bool GdalRaster::isGreyPalette() const {
+    GDALColorTableH table = GDALGetRasterColorTable(band_);
+    for (int i = 0; i < GDALGetColorEntryCount(table); ++i) {
+        const GDALColorEntry* const entry = GDALGetColorEntry(table, i);
+        if (entry->c1 != i || entry->c2 != i || entry->c3 != i) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool GdalRaster::isSignedByte() const {
+    const char* const type = GDALGetMetadataItem(band_, "PIXELTYPE", "IMAGE_STRUCTURE");
+    return GDALGetRasterDataType(band_) == GDT_Byte && type != nullptr && std::string_view(type) == "SIGNEDBYTE";
+}
+
+double GdalRaster::heightOf(double number) const {
+    const double scale = GDALGetRasterScale(band_, nullptr);
+    const double offset = GDALGetRasterOffset(band_, nullptr);
+    return scale == 1 && offset == 0 ? number : number * scale + offset;
+}
+
+std::optional<double> GdalRaster::noData() const {
+    int declared = 0;
+    const double number = GDALGetRasterNoDataValue(band_, &declared);
+    return declared == 0 ? std::nullopt : std::optional(heightOf(number));
+}
+
+bool GdalRaster::complete() const {
+    const bool whole = GDALDataTypeIsInteger(GDALGetRasterDataType(band_)) != 0;
+    return whole && !isSignedByte() && (GDALGetMaskFlags(band_) & GMF_ALL_VALID) != 0;
 }
 
 std::vector<double> GdalRaster::numbers() const {
@@ -100,16 +159,19 @@ std::vector<double> GdalRaster::numbers() const {
         CE_None) {
         failToRead();
     }
+    if (isSignedByte()) {
+        for (double& number : numbers) {
+            number -= number > 127 ? 256 : 0;
+        }
+    }
     return numbers;
 }
 
 std::vector<double> GdalRaster::pixels() const {
     std::vector<double> pixels = numbers();
     mask(pixels);
-    const double scale = GDALGetRasterScale(band_, nullptr);
-    const double offset = GDALGetRasterOffset(band_, nullptr);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        pixels[i] = scale == 1 && offset == 0 ? pixels[i] : pixels[i] * scale + offset;
+        pixels[i] = heightOf(pixels[i]);
         if (std::isinf(pixels[i])) {
             const auto width = static_cast<std::size_t>(columns());
             fail(
@@ -123,13 +185,16 @@ std::vector<double> GdalRaster::pixels() const {
 
 void GdalRaster::mask(std::vector<double>& pixels) const {
     const int flags = GDALGetMaskFlags(band_);
-    if ((flags & GMF_ALL_VALID) != 0) {
-        return;
+    if (isSignedByte() || (isPng() && (flags & GMF_NODATA) != 0)) {
+        // GDAL's mask would compare the number without its sign, or a transparent grey as GDAL has read it.
+        int declared = 0;
+        const double noData = GDALGetRasterNoDataValue(band_, &declared);
+        if (declared != 0) {
+            std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
+            return;
+        }
     }
-    if (isPng() && (flags & GMF_NODATA) != 0) {
-        // GDAL's mask would compare the transparent grey with the numbers that GDAL has read.
-        const double noData = GDALGetRasterNoDataValue(band_, nullptr);
-        std::replace(pixels.begin(), pixels.end(), noData, std::numeric_limits<double>::quiet_NaN());
+    if ((flags & GMF_ALL_VALID) != 0) {
         return;
     }
     GDALRasterBandH mask = GDALGetMaskBand(band_);

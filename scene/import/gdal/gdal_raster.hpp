@@ -3,6 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/gdal/gdal_session.hpp"
@@ -20,6 +23,17 @@ public:
     [[nodiscard]] GDALDatasetH dataset() const { return dataset_.get(); }
     [[nodiscard]] GDALRasterBandH band() const { return band_; }
     [[nodiscard]] const std::string& name() const { return name_; }
+    /// Returns GDAL's short name of the format, such as "GTiff".
+    [[nodiscard]] std::string driver() const { return GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get())); }
+    /// Returns whether 0 would be drawn white. GDAL then adds a table of greys, which is not a palette.
+    [[nodiscard]] bool isWhiteZero() const;
+    /// Returns whether the band has a palette in which every number has its own grey, as each BMP of greys has.
+    [[nodiscard]] bool isGreyPalette() const;
+    /// Returns the number that means no data, as a height: with scale and offset. Returns nullopt if the file declares
+    /// none.
+    [[nodiscard]] std::optional<double> noData() const;
+    /// Returns GDAL's warnings so far, one line each.
+    [[nodiscard]] std::vector<std::string> warnings() const { return session_.warnings(name_); }
 
     /// Returns whether every pixel has data: the file masks no pixel, and its pixels are whole numbers, which are never
     /// NaN.
@@ -31,7 +45,11 @@ public:
 private:
     /// Chooses the one band that is not a mask of opacity.
     void chooseBand();
-    [[nodiscard]] bool isPng() const;
+    [[noreturn]] void failForVariables() const;
+    [[nodiscard]] bool isPng() const { return driver() == "PNG"; }
+    /// Returns whether the numbers are bytes with a sign, which GDAL before 3.7 reads without it.
+    [[nodiscard]] bool isSignedByte() const;
+    [[nodiscard]] double heightOf(double number) const;
     /// Returns the numbers of the band as the file holds them.
     [[nodiscard]] std::vector<double> numbers() const;
     void mask(std::vector<double>& pixels) const;

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace scene {
 
@@ -39,11 +40,16 @@ public:
     /// Returns the first error of the session, or else the first warning. Returns "GDAL gives no reason" without
     /// either.
     [[nodiscard]] std::string complaint() const;
+    /// Returns every warning once, and errors that did not stop GDAL, as lines that begin with `file`. At most a few;
+    /// the last line counts the rest.
+    [[nodiscard]] std::vector<std::string> warnings(const std::string& file) const;
 
 private:
     static void keep(CPLErr severity, CPLErrorNum number, const char* message);
 
-    std::string error_, warning_;
+    std::string error_;
+    std::vector<std::string> heard_;  // different messages, in their order
+    std::size_t unheard_ = 0;         // further different messages
 };
 
 }  // namespace scene

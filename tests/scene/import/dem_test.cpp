@@ -160,9 +160,11 @@ TEST_F(Import, RastersThatAreNoFieldSayWhy) {
     EXPECT_EQ(refused([](Raster& r) { r.place.reset(); }),
               "t.tif: has no position and no pixel size; kind = \"image\" takes pictures");
     EXPECT_EQ(refused([](Raster& r) { r.bands = 3; }),
-              "t.tif: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER");
-    EXPECT_EQ(refused([](Raster& r) { r.unit = "fathom"; }),
-              "t.tif: heights in 'fathom', which is not a known unit; set their unit: gdal_edit.py -units m");
+              "t.tif: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER t.tif dem.tif");
+    EXPECT_EQ(
+        refused([](Raster& r) { r.unit = "fathom"; }),
+        "t.tif: heights in 'fathom' (band), which is not a known unit; known are m, ft, us-ft, cm, mm and km; set it: "
+        "gdal_edit.py -units m");
     EXPECT_EQ(refused([](Raster& r) { r.type = GDT_CFloat32; }), "t.tif: holds complex numbers instead of heights");
     EXPECT_EQ(
         refused([](Raster& r) { r.heights[2] = std::numeric_limits<double>::infinity(); }),

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/text_forms.hpp"
 
 namespace {
 
@@ -55,6 +57,56 @@ TEST_F(EsriFile, ComesBackWithCellsThatAreNotSquare) {
     EXPECT_EQ(this->text(), text);
 }
 
+TEST_F(EsriFile, IsReadInEveryFormOfText) {
+    const std::string text = "ncols 2\nnrows 1\nxllcorner +10\nyllcorner -3\ncellsize 1\n+1.5 -2\n";
+    for (const test::TextForm& form : test::formsOf(text)) {
+        const EsriGrid grid = read(form.bytes);
+        EXPECT_EQ(grid.heights, (std::vector<double>{1.5, -2})) << form.name;
+        EXPECT_EQ(grid.westEdge, 10) << form.name;
+        EXPECT_TRUE(scene::holdsEsriGrid(file())) << form.name;
+    }
+    EXPECT_EQ(complaint("ncols 2\nnrows 1\ncellsize 1\n1\n\0022\n"),
+              "t.asc:5: a height must be a finite number, got '?2'");
+    EXPECT_TRUE(complaint(std::string("ncols 2\nnrows 1\ncellsize 1\n1\n\0 2\n", 33)).starts_with("t.asc:5: a byte 0"));
+    EXPECT_EQ(complaint("ncols 2\nnrows 1\ncellsize 1\n1,5 2\n"),
+              "t.asc:4: a height must be a finite number, got '1,5'; write a decimal point");
+}
+
+TEST_F(EsriFile, MayGiveTheCornerOfOneAxisAndTheCentreOfTheOther) {
+    // Half a cell is 5 from west to east, and 2 from south to north.
+    const auto place = [&](const std::string& keys) {
+        const EsriGrid grid = read("ncols 1\nnrows 1\n" + keys + "\ndx 10\ndy 4\n7\n");
+        return std::array<double, 2>{grid.westEdge, grid.southEdge};
+    };
+    EXPECT_EQ(place("xllcorner 100\nyllcorner 200"), (std::array<double, 2>{100, 200}));
+    EXPECT_EQ(place("xllcenter 100\nyllcenter 200"), (std::array<double, 2>{95, 198}));
+    EXPECT_EQ(place("xllcorner 100\nyllcenter 200"), (std::array<double, 2>{100, 198}));
+    EXPECT_EQ(place("xllcenter 100\nyllcorner 200"), (std::array<double, 2>{95, 200}));
+}
+
+TEST_F(EsriFile, ComparesNoDataAsProgramsPrintIt) {
+    const auto noData = [&](const std::string& declared, const std::string& cell) {
+        return read("ncols 2\nnrows 1\ncellsize 1\nNODATA_value " + declared + "\n7 " + cell + "\n").isNoData(1, 0);
+    };
+    // The 32-bit float that is nearest to -9999.9 is -9999.900390625, and the next one -9999.8994140625.
+    EXPECT_TRUE(noData("-9999.9", "-9999.900391"));
+    EXPECT_FALSE(noData("-9999.9", "-9999.8994140625"));
+    // 2^24 + 1 is rounded to the 32-bit float 2^24.
+    EXPECT_TRUE(noData("16777216", "16777217"));
+    EXPECT_FALSE(noData("16777216", "16777218"));
+    EXPECT_TRUE(noData("-3.40282e+38", "-3.402823466e+38")) << "the lowest float with few and with many digits";
+    EXPECT_EQ(
+        complaint("ncols 1\nnrows 1\ncellsize 1\nNODATA_value -3.40282e+38\n3.402823466e+38\n"),
+        "t.asc: 1 cell has the height 3.402823466e+38, which means no data; declare it: add the line 'NODATA_value "
+        "3.402823466e+38' to the header");
+    EXPECT_FALSE(noData("1e300", "1e299")) << "both would be the float infinity";
+    EXPECT_TRUE(noData("1e300", "1e300"));
+    for (const char* nan : {"nan", "-nan", "NaN", "1.#QNAN", "nan(ind)"}) {
+        EXPECT_TRUE(noData(nan, nan)) << nan;
+        EXPECT_TRUE(noData("nan", nan)) << nan;
+    }
+}
+
 TEST_F(EsriFile, KeepsItsOwnNoDataAndWritesNoneThatItHasNot) {
     EXPECT_EQ(read("ncols 2\nnrows 1\ncellsize 1\n5 -9999\n").at(1, 0), -9999);
     const EsriGrid grid = read("ncols 2\nnrows 1\ncellsize 1\nnodata_value 0\n5 0\n");
@@ -90,7 +142,8 @@ TEST_F(EsriFile, ComplaintsNameTheLine) {
     const std::string head = "ncols 2\nnrows 2\ncellsize 1\n";
     EXPECT_EQ(complaint(head + "1 2\n3\n"), "t.asc:6: the file ends where a height should be");
     EXPECT_EQ(complaint(head + "1 2\n3 nan\n"), "t.asc:5: a height must be a finite number, got 'nan'");
-    EXPECT_EQ(complaint(head + "1 2\n3 4,5\n"), "t.asc:5: a height must be a finite number, got '4,5'");
+    EXPECT_EQ(complaint(head + "1 2\n3 4,5\n"),
+              "t.asc:5: a height must be a finite number, got '4,5'; write a decimal point");
     EXPECT_EQ(complaint(head + "1 2\n3 4 5\n"), "t.asc:5: more values than ncols x nrows = 4");
     EXPECT_EQ(complaint("ncols 0\n"), "t.asc:1: ncols must be a whole number within [1, 16384], got 0");
     EXPECT_EQ(complaint("cellsize 0\n"), "t.asc:1: cellsize must be positive, got 0");

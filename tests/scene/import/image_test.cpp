@@ -122,7 +122,8 @@ TEST_F(Import, PicturesThatAreNoHeightMapsSayWhy) {
     Raster colours = good;
     colours.bands = 3;
     writeRaster("t.png", colours);
-    EXPECT_EQ(refusal(kImage), "t.png: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER");
+    EXPECT_EQ(refusal(kImage),
+              "t.png: has 3 bands, but heights are only one; choose it: gdal_translate -b NUMBER t.png dem.tif");
     writeRaster("t.png", {.columns = 1, .rows = 1, .heights = {1}, .place = {}, .epsg = 0});
     EXPECT_EQ(refusal(kImage),
               "t.png: holds Float32 numbers; an image's are of 8 or 16 bits without sign, and kind = \"dem\" takes "

@@ -58,7 +58,8 @@ TEST_F(Import, RelaxedTextHasItsSystemBesideItAgain) {
         const support::Ran ran =
             support::runProgram("sandwall-relax", path("t.asc") + " " + path("out.asc") + " --talus 30");
         ASSERT_EQ(ran.status, 0) << ran.output;
-        EXPECT_NE(scene::loadImporter("test").readUnits(path("out.asc")).crs.find("UTM zone 33N"), std::string::npos);
+        EXPECT_NE(scene::loadImporter("test").readUnits(path("out.asc")).units.crs.find("UTM zone 33N"),
+                  std::string::npos);
         EXPECT_EQ(scene::readEsriGrid(path("out.asc")).heights, scene::readEsriGrid(path("t.asc")).heights);
         std::filesystem::remove(path(prj));
         std::filesystem::remove(path("out.prj"));

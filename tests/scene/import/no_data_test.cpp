@@ -41,7 +41,8 @@ TEST_F(NoData, EitherKindRefusesAnEsriGridWithTheSameLine) {
     for (const std::string kind : {"esri_ascii", "dem"}) {
         for (const std::string word : {"abc", "nan", "inf", "1,5", "1e999"}) {
             EXPECT_EQ(refusedAs(kind, "1 2 3\n4 " + word + " 6\n"),
-                      "t.asc:7: a height must be a finite number, got '" + word + "'")
+                      "t.asc:7: a height must be a finite number, got '" + word + "'" +
+                          (word == "1,5" ? "; write a decimal point" : ""))
                 << kind;
         }
         EXPECT_EQ(refusedAs(kind, "1 2 3\n4 abc 6\n", "NODATA_value -1\n"),
@@ -135,7 +136,8 @@ TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
     const support::Ran ran =
         support::runProgram("sandwall-relax", path("t.tif") + " " + path("out.tif") + " --talus 34");
     EXPECT_EQ(ran.status, 0) << ran.output;
-    EXPECT_EQ(ran.output.find("sandwall-relax: warning: " + path("t.tif") + ": has no coordinate system"), 0U)
+    EXPECT_NE(ran.output.find("sandwall-relax: warning: " + path("t.tif") + ": has no coordinate system"),
+              std::string::npos)
         << ran.output;
     for (const Place& place : {Place{0, 2, 0, 0, 0, -2}, Place{7, 1, 0, 0, 0, -1}}) {
         raster.place = place;
@@ -155,7 +157,7 @@ TEST_F(NoData, RelaxingWarnsOfItToo) {
                                          path("t.asc") + " " + path("out.obj") + " --max-error 1"}) {
         const support::Ran ran = support::runProgram("sandwall-relax", arguments + " --talus 34");
         EXPECT_EQ(ran.status, 0) << ran.output;
-        EXPECT_EQ(ran.output.find("sandwall-relax: warning: "), 0U) << ran.output;
+        EXPECT_NE(ran.output.find("\nsandwall-relax: warning: "), std::string::npos) << ran.output;
         EXPECT_NE(ran.output.find("the height -9999, which usually means no data"), std::string::npos) << ran.output;
     }
 }

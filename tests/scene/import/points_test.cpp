@@ -3,6 +3,7 @@
 
 #include "scene/import/points_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
+#include "tests/support/text_forms.hpp"
 
 namespace {
 
@@ -38,7 +39,6 @@ TEST_F(PointsFile, ComplaintsNameLineAndValue) {
     EXPECT_EQ(refused("0 0 1\n1 0\n"), "p.csv:2: expected x, y and z, got 2 values");
     EXPECT_EQ(refused("0,0,1\n1,0,2,9\n"), "p.csv:2: expected x, y and z, got 4 values");
     EXPECT_EQ(refused("0,0,1\n1,,2\n"), "p.csv:2: y must be a finite number, got ''");
-    EXPECT_EQ(refused("0;0;1\n1;0;2,5\n"), "p.csv:2: z must be a finite number, got '2,5'");
     EXPECT_EQ(refused("0 0 nan\n"), "p.csv:1: z must be a finite number, got 'nan'");
     EXPECT_EQ(refused("x y z\nx y z\n"), "p.csv:2: x must be a finite number, got 'x'");
     EXPECT_EQ(refused("z,x,y\n1,2,3\n"), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
@@ -59,12 +59,61 @@ TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
     EXPECT_EQ(refused("1.234.5,0,100\n" + rest), "p.csv:1: x must be a finite number, got '1.234.5'");
     EXPECT_EQ(refused("o,0,100\n" + rest), "p.csv:1: x must be a finite number, got 'o'");
     EXPECT_EQ(refused("\"0\",\"0\",\"100\"\n" + rest), "p.csv:1: x must be a finite number, got '\"0\"'");
-    EXPECT_EQ(refused("0,5;0,5;100,2\n1;0;1\n"), "p.csv:1: x must be a finite number, got '0,5'");
+    EXPECT_EQ(read("0,5;0,5;100,2\n1;0;1\n0;0;2\n")[0], (std::array<double, 3>{0.5, 0.5, 100.2}));
     EXPECT_EQ(refused(",,\n" + rest), "p.csv:1: x must be a finite number, got ''");
     EXPECT_EQ(refused("\xE2\x88\x92"
                       "5 0 1\n"),
               "p.csv:1: x must be a finite number, got '\xE2\x88\x92"
               "5'");
+}
+
+TEST_F(PointsFile, TextIsReadInEveryForm) {
+    const scene::Points points{{0, 0, 1.5}, {20, 0, -2}, {0, 10, 3}};
+    for (const test::TextForm& form : test::formsOf("x,y,z\n0,0,+1.5\n20,0,-2\n0,10,3\n")) {
+        EXPECT_EQ(read(form.bytes), points) << form.name;
+    }
+}
+
+TEST_F(PointsFile, DecimalCommasAreReadWhereNoCommaSeparates) {
+    const scene::Points points{{0.5, 0, 1.5}, {1, 0, -2.25}, {0, 1, 3}};
+    EXPECT_EQ(read("x;y;z\n0,5;0;1,5\n1;0;-2,25\n0;1;3\n"), points);
+    EXPECT_EQ(read("0,5 0 1,5\n1 0 -2,25\n0 1 3\n"), points);
+    EXPECT_EQ(read("0,5\t0\t1,5\n1\t0\t-2,25\n0\t1\t3\n"), points);
+    EXPECT_EQ(refused("0,5,0,0,1,5\n"),
+              "p.csv:1: expected x, y and z, got 6 values; separate numbers with decimal commas by semicolons");
+    EXPECT_EQ(
+        refused("0.5;0;1\n1;0;1,500\n"),
+        "p.csv:2: '1,500' in line 2 has a decimal comma, and '0.5' in line 1 a decimal point, so that the comma could "
+        "separate thousands; write decimal points in all numbers");
+}
+
+TEST_F(PointsFile, NamesOfColumnsDecideTheirOrder) {
+    // The second point is 20 farther east, the third 10 farther north.
+    const scene::Points points{{0, 0, 1}, {20, 0, 2}, {0, 10, 3}};
+    const std::string eastFirst = "0,0,1\n20,0,2\n0,10,3\n", northFirst = "0,0,1\n0,20,2\n10,0,3\n";
+    for (const char* title : {"Easting,Northing,Elevation", "POINT_X,POINT_Y,POINT_Z", "x [m],y [m],z [m]", "E,N,H",
+                              "Ost,Nord,H\xF6he", "a,b,c", "east,b,c"}) {
+        EXPECT_EQ(read(std::string(title) + '\n' + eastFirst), points) << title;
+    }
+    for (const char* title : {"Northing,Easting,Elevation", "N,E,Z", "Hochwert,Rechtswert,H\u00f6he", "north,east,c"}) {
+        EXPECT_EQ(read(std::string(title) + '\n' + northFirst), points) << title;
+    }
+    EXPECT_EQ(read("Elevation,Easting,Northing\n1,0,0\n2,20,0\n3,0,10\n"), points);
+    for (const char* title : {"POINT_Y,POINT_X,POINT_Z", "y,x,z"}) {
+        EXPECT_TRUE(
+            refused(std::string(title) + '\n' + northFirst).starts_with("p.csv:1: the columns must be x, y, z, "))
+            << title;
+    }
+    for (const char* title : {"Northing,b,c", "x,east,z", "X (Northing),Y (Easting),Z", "a,Easting,c"}) {
+        EXPECT_TRUE(refused(std::string(title) + '\n' + northFirst).starts_with("p.csv:1: the columns '"))
+            << refused(std::string(title) + '\n' + northFirst);
+    }
+    for (const char* title :
+         {"Breite;Laenge;Hoehe", "L\u00e4nge;Breite;H\u00f6he", "L\xE4nge;Breite;H", "Latitud;Longitud;z"}) {
+        EXPECT_NE(refused(std::string(title) + "\n47.1;10.2;3\n").find(") are degrees, but sand needs lengths"),
+                  std::string::npos)
+            << title;
+    }
 }
 
 TEST_F(PointsFile, TitlesAreSkipped) {
@@ -91,7 +140,7 @@ TEST_F(PointsFile, DegreesAreRefusedWithTheCommandThatMakesMetres) {
 }
 
 TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
-    for (const std::string value : {"10.2\xC2\xB0", "10.2\xB0", "10\u00B012'06\"", "10.2E", "10.2 W"}) {
+    for (const std::string value : {"10.2\xC2\xB0", "10\u00B012'06\"", "10.2E", "10.2 W"}) {
         for (const std::string& line : {value + ",47.1,1200\n", "0,0,1\n47.1," + value + ",1200\n"}) {
             const std::string said = refused(line);
             EXPECT_NE(said.find("its coordinates ('" + value + "') are degrees, but sand needs lengths"),
@@ -99,6 +148,7 @@ TEST_F(PointsFile, DegreesAreNamedWhereverTheyStand) {
                 << said;
         }
     }
+    EXPECT_NE(refused("10.2\xB0,47,3\n").find("('10.2\xC2\xB0') are degrees"), std::string::npos) << "Latin-1";
     EXPECT_EQ(refused("id,lon,lat,h\n1,10.2,47.1,1200\n"),
               "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4; 'lon' is in degrees, but sand "
               "needs lengths");

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Prints and checks units and sizes of the files of sandwall-relax.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/input_error.hpp"
+#include "host/print_line.hpp"
+#include "sand/model/height_field.hpp"
+#include "scene/import/raster_memory.hpp"
+#include "scene/relax/options.hpp"
+
+namespace scene::relax {
+
+void printStatement(const RasterStatement& statement) { host::printLine("{}: {}", statement.file, statement.text()); }
+
+nlohmann::ordered_json jsonOf(const RasterStatement& statement) {
+    nlohmann::ordered_json json;
+    json["across"] = statement.across;
+    json["across_from"] = statement.acrossFrom;
+    json["up"] = statement.up;
+    json["up_from"] = statement.upFrom;
+    json["no_data"] = statement.noData ? nlohmann::ordered_json(*statement.noData) : nlohmann::ordered_json(nullptr);
+    json["no_data_share"] = statement.noDataShare;
+    return json;
+}
+
+RasterCheck fitsSolver(const std::string& file, std::int64_t freeBytes) {
+    return [=, memory = fitsMemory(file, freeBytes)](int columns, int rows, bool complete) {
+        if (columns > sand::kMaxSide || rows > sand::kMaxSide) {
+            throw base::InputError(
+                fmt::format("{}: has {} x {} cells, and {} a side is the most; cut it with gdal_translate -srcwin, or "
+                            "coarsen it: gdal_translate -r average -outsize 50% 50%",
+                            file, columns, rows, sand::kMaxSide));
+        }
+        memory(columns, rows, complete);
+    };
+}
+
+}  // namespace scene::relax

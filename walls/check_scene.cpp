@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "walls/check_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "scene/load/scene_file.hpp"
+
+namespace walls {
+
+std::string describeScene(const std::string& file) {
+    const scene::Scene scene = scene::loadScene(file);
+    std::string text = fmt::format("scene '{}': {} x {} cells of {}\n", scene.name, scene.rules.columns,
+                                   scene.rules.rows, scene.terrain.cellSize());
+    for (const scene::RasterStatement& statement : scene.statements) {
+        fmt::format_to(std::back_inserter(text), "{}: {}\n", statement.file, statement.text());
+    }
+    for (const std::string& warning : scene.warnings) {
+        fmt::format_to(std::back_inserter(text), "warning: {}\n", warning);
+    }
+    return text;
+}
+
+}  // namespace walls
