@@ -56,6 +56,15 @@ TEST(Summary, HasTheUnitsOfEachFileOfTerrain) {
     EXPECT_EQ(terrain[1]["no_data"], nullptr);
 }
 
+TEST(Summary, CountsFramesPerSecondSinceTheLastStart) {
+    master::Summary summary = draggedWall(false);
+    summary.seconds = 2;
+    EXPECT_EQ(summary.framesPerSecond(), 199.0 / 2);
+    summary.framesBefore = 79;  // 121 frames are from this start, with 120 periods between them
+    EXPECT_EQ(summary.framesPerSecond(), 60);
+    EXPECT_EQ(written(summary)["fps"], 60);
+}
+
 TEST(Summary, NamesTheRankThatDragsTheWall) {
     const master::Summary summary = draggedWall(true);
     EXPECT_NE(

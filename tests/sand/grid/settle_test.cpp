@@ -9,6 +9,7 @@
 
 #include "tests/support/oracles.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/seed.hpp"
 
 namespace {
 
@@ -51,6 +52,34 @@ sand::grid::Settled settleAndCheck(HeightField& field, const Rules& rules) {
     EXPECT_LE(high, greatest);
     expectAtRest(field, rules);
     return settled;
+}
+
+/// Returns a small field with steps of any height: noise, single towers or single pits.
+HeightField roughField(std::mt19937& random) {
+    HeightField field(static_cast<int>(1 + random() % 12), static_cast<int>(1 + random() % 12), 0.1);
+    const auto shape = random() % 3;
+    const std::uint32_t high = 1U << random() % 28;
+    for (int y = 0; y < field.rows(); ++y) {
+        for (int x = 0; x < field.columns(); ++x) {
+            const bool tower = (random() % 8 == 0) != (shape == 2);
+            field.setHeight(x, y, static_cast<std::int32_t>(shape == 0 ? random() % high : tower ? high : 0));
+        }
+    }
+    return field;
+}
+
+// In such fields the projection often ends beyond the old extremes. The surplus then goes to all neighbours.
+TEST(Settle, LosesNothingOfSmallRoughFields) {
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
+    for (int i = 0; i < 2000 && !HasFailure(); ++i) {
+        HeightField field = roughField(random);
+        Rules rules = settlingRules(field, static_cast<std::int32_t>(1 + random() % (2U << random() % 20)));
+        rules.rim = random() % 2 == 0 ? sand::Rim::closed : sand::Rim::open;
+        SCOPED_TRACE(i);
+        settleAndCheck(field, rules);
+    }
 }
 
 double errorOfCylinder(int n, double heightPerRadius) {
