@@ -200,12 +200,16 @@ bool Holes::borders(const Place& a, const Place& b) const {
 }
 
 bool Holes::reachInto(const Place& southWest, const Place& northEast) const {
-    for (int row = cells_.rowOf(southWest.y - bridge_); row <= cells_.rowOf(northEast.y + bridge_); ++row) {
-        for (int column = cells_.columnOf(southWest.x - bridge_); column <= cells_.columnOf(northEast.x + bridge_);
-             ++column) {
-            if (column >= 0 && row >= 0 && column < cells_.columns && row < cells_.rows && isHole(column, row)) {
-                return true;
-            }
+    const int west = std::max(cells_.columnOf(southWest.x - bridge_), 0);
+    const int east = std::min(cells_.columnOf(northEast.x + bridge_), cells_.columns - 1);
+    const int south = std::max(cells_.rowOf(southWest.y - bridge_), 0);
+    const int north = std::min(cells_.rowOf(northEast.y + bridge_), cells_.rows - 1);
+    for (int row = south; row <= north && west <= east; ++row) {
+        const auto begin = runs_.begin() + firstRun_[static_cast<std::size_t>(row)];
+        const auto end = runs_.begin() + firstRun_[static_cast<std::size_t>(row) + 1];
+        const auto run = std::lower_bound(begin, end, west, [](const Run& one, int at) { return one.end <= at; });
+        if (run != end && run->first <= east) {
+            return true;
         }
     }
     return false;

@@ -132,6 +132,9 @@ void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chun
         }
         neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, rim, chunk));
     }
+    if (isNearHole(layer, chunk.box)) {
+        neighbourhood_->look(layer.triangles(), chunk.box);  // after follow() it has no triangles()
+    }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -48,6 +49,9 @@ public:
     /// to the neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open
     /// rim, the ground beyond takes its share, which flows out.
     ///
+    /// Holes divide the vertices that the tool covers, and those that may take sand, into parts. Two of them are joined
+    /// by an edge of a triangle on ground. Each part shares out its own sand.
+    ///
     /// A tool that is held still changes nothing after its press. If the tool does not reach the sand at all, it
     /// leaves the sand as with leave().
     Work drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
@@ -79,6 +83,7 @@ private:
     struct Receiver {
         Vertex vertex;  // kNobody: beyond the rim
         double weight;
+        Place place;  // only beyond the rim
         Volume share = 0;
     };
 
@@ -91,12 +96,23 @@ private:
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
 
     void press(VertexSand& layer, Rim rim, const Press& press, Work& work);
+    /// Does the work of press() part by part, beside a hole.
+    void pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& work);
+    [[nodiscard]] bool isNearHole(const VertexSand& layer, const Box& box) const;
     [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& at);
     void findReceivers(const VertexSand& layer, Rim rim, const Press& press);
+    void addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere);
     void addBeyond(const VertexSand& layer, const Press& press, bool everywhere);
-    void addNeighbours(const VertexSand& layer, const ProbePoint& at);
+    void addNeighbours(const VertexSand& layer, const ProbePoint& at, const std::function<bool(Vertex)>& isOurs);
+    /// Shares the sand of `cut_` out among `receivers_`, unless there are none or the sand has no room.
+    void deal(VertexSand& layer, Work& work);
     void shareOut();
     [[nodiscard]] bool hasRoom(const VertexSand& layer) const;
+    void findParts(const VertexSand& layer, const ProbePoint& at);
+    void forgetParts();
+    /// Returns the first vertex of a vertex's part, or kNobody if it is in no part.
+    [[nodiscard]] Vertex partOf(Vertex vertex);
+    [[nodiscard]] Vertex partOf(const VertexSand& layer, const Receiver& receiver);
 
     ToolShape shape_;
     Heading heading_;
@@ -108,6 +124,8 @@ private:
     std::vector<Cut> cut_;
     Volume taken_ = 0;
     std::vector<Receiver> receivers_;
+    std::vector<Vertex> inParts_;  // vertices in parts, ascending
+    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNobody outside all parts
 };
 
 }  // namespace sand::tin
