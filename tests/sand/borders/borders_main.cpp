@@ -74,8 +74,48 @@ bool measure(int n) {
     return table.good;
 }
 
+/// A scene whose instructions are counted, and the line x = `line` [cell] along which its tool goes up and down.
+struct Work {
+    borders::Case scene;
+    double line = 32;
+};
+
+/// Returns the scenes for counting instructions. Scenes whose names begin with "near" have a wall or a rock face in the
+/// tool's surroundings; in the others the tool is in the middle of sand.
+Work workOf(const std::string& name) {
+    Work work;
+    borders::Case& scene = work.scene;
+    scene.columns = scene.rows = 96;
+    scene.sweeps = 16;
+    scene.height = [](double x, double y) { return 8 + 1.5 * std::sin(x / 5) + std::sin((x + y) / 7); };
+    scene.tin = name.find("tin") != std::string::npos;
+    if (name.find("wall") != std::string::npos || name.find("hole") != std::string::npos) {
+        scene.wall = [](int x, int) { return x == 64; };
+    }
+    if (name.find("rock") != std::string::npos) {
+        scene.rock = [](double x, double) { return x > 64 && x < 65 ? 60.0 : 0.0; };
+    }
+    work.line = name.starts_with("near") ? 62 : name.starts_with("rim") ? 95 : 32;
+    return work;
+}
+
+/// Digs for `steps` steps along a line. Run it under `valgrind --tool=callgrind` to count its instructions.
+bool dig(const std::string& name, int steps) {
+    const Work work = workOf(name);
+    sand::Replica sand(borders::sceneOf(work.scene));
+    borders::Hand hand(sand);
+    for (int i = 0; i < steps; ++i) {
+        const int at = i % 96 < 48 ? i % 96 : 96 - i % 96;
+        hand.press(work.line, 12 + 1.5 * at, 8 + 3);
+    }
+    fmt::print("{} {:016x}\n", name, sand.stateHash());
+    return true;
+}
+
 struct Options {
     int size = 64;
+    std::string dig;
+    int steps = 200;
 };
 
 }  // namespace
@@ -84,5 +124,11 @@ int main(int argc, char** argv) {
     host::CommandLine line("Measures the sand at rims, walls, rock faces and holes.", "sand_borders");
     Options options;
     line.option("--size", options.size, "cells along a side").range(64, 512).showDefault();
-    return host::runMain(line, argc, argv, [&] { return measure(options.size) ? 0 : 1; });
+    line.option("--dig", options.dig,
+                "dig in a scene to count instructions: grid, wall, near-wall, rock, near-rock, tin, rim-tin, hole-tin or "
+                "near-hole-tin");
+    line.option("--steps", options.steps, "of --dig").range(1, 1000000).showDefault();
+    return host::runMain(line, argc, argv, [&] {
+        return (options.dig.empty() ? measure(options.size) : dig(options.dig, options.steps)) ? 0 : 1;
+    });
 }
