@@ -29,6 +29,7 @@ public:
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
+    [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }
     void reset() override;
 
     void keep() override { beforeStroke_.keep(field_, erosion_.inertia(), outflow_); }
