@@ -40,13 +40,17 @@ public:
         }
     }
 
+    std::size_t level = 0, upright = 0;  // ends of the level and of the upright parts in outline()
+
     std::vector<Holes::Part> outline() {
         for (int row = 1; row < cells_.rows; ++row) {
             addBorderSouthOf(row);
         }
+        level = parts_.size();
         for (int column = 1; column < cells_.columns; ++column) {
             addBorderWestOf(column);
         }
+        upright = parts_.size();
         for (int row = 1; row < cells_.rows; ++row) {
             for (int column = 1; column < cells_.columns; ++column) {
                 if (isPinch(column, row)) {
@@ -145,7 +149,10 @@ Holes::Holes(const Cells& cells, std::vector<Run> runs)
     for (std::size_t row = 0; row + 1 < firstRun_.size(); ++row) {
         firstRun_[row + 1] += firstRun_[row];
     }
-    outline_ = Outliner(*this).outline();
+    Outliner outliner(*this);
+    outline_ = outliner.outline();
+    level_ = outliner.level;
+    upright_ = outliner.upright;
 }
 
 bool Holes::isHole(int column, int row) const {

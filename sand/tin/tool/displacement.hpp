@@ -41,8 +41,9 @@ public:
     /// presses there.
     ///
     /// Moves in sub-steps of at most one cell. Skips a sub-step that brings the tool less than a quarter of a cell
-    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path, on
-    /// an open rim too. Removes the previous imprint, and puts the outline in at the end of the path.
+    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path,
+    /// also on the rim and on the borders of holes. Removes the previous imprint, and puts the outline in at the end of
+    /// the path.
     ///
     /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
     /// ahead. If no vertex is ahead, the sand goes to all vertices around. If the mesh is too coarse for that, it goes
@@ -90,7 +91,7 @@ private:
     void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
     [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
     /// Returns the vertices that VertexSand::edit() returns.
-    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const;
+    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
