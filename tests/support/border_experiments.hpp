@@ -41,6 +41,44 @@ inline double rimPile(const Ground& ground, int n, bool whole, bool settles) {
            scale / scale;
 }
 
+/// What a pile leans against.
+enum class Face { rim, corner, wall, rock };
+
+/// Released sand that leans against a face in the west: half a cylinder (O1), a quarter of one in a corner, or half a
+/// prism (O2). Returns the misplaced volume as a share of the pile. `band` is the share by which the slope that starts
+/// a slide exceeds the talus.
+inline double leaningPile(const Ground& ground, int n, Face face, bool prism, double band = 0) {
+    Case given = caseOf(ground, n);
+    const double scale = n / 64.0, west = face == Face::wall || face == Face::rock ? 4 : 0;
+    const double south = face == Face::corner ? 0 : n / 2.0;
+    const oracles::Cylinder cylinder(12 * scale, 8 * scale, kTalus);
+    const oracles::Prism wide(12 * scale, 8 * scale, kTalus);
+    const auto distance = [=](double x, double y) { return prism ? x - west : std::hypot(x - west, y - south); };
+    given.start = kTalus * (1 + band);
+    given.height = [&](double x, double y) {
+        const double r = distance(x, y);
+        return x < west ? 0 : prism ? wide.start(r) : cylinder.start(r);
+    };
+    if (face == Face::wall) {
+        given.wall = [](int x, int) { return x == 3; };
+    } else if (face == Face::rock) {
+        given.rock = [](double x, double) { return x > 3 && x < 4 ? 60.0 : 0.0; };
+    }
+    sand::Replica sand(sceneOf(given));
+    Hand(sand).rest();
+    double whole = 0;
+    const auto right = [&](double x, double y) {
+        const double r = distance(x, y);
+        return prism ? wide.rest(r) : cylinder.rest(r);
+    };
+    for (int y = 0; y < n; ++y) {
+        for (int x = static_cast<int>(west); x < n; ++x) {
+            whole += right(x + 0.5, y + 0.5);
+        }
+    }
+    return misplaced(sand, right, [=](double x, double) { return x > west; }) / whole;
+}
+
 /// The method of images: a tool that is dragged along a closed rim, half of it outside, must leave half of what it
 /// leaves in the middle of a field twice as wide. Both drags go from south to north at the east rim of the western
 /// half.
@@ -140,6 +178,22 @@ inline double throughWalls(const Ground& ground, int n, sand::ToolKind kind) {
     return exchanged(before, sand) / scale / scale / scale;
 }
 
+/// A tool that crosses a wall one cell wide at an angle, there and back. Returns the volume that has passed the wall
+/// [cell³ at n = 64].
+inline double acrossWall(const Ground& ground, int n, sand::ToolKind kind, double degrees) {
+    const Case given = walled(ground, n, kind);
+    const double scale = n / 64.0, z = 8 * scale;
+    sand::Replica sand(sceneOf(given));
+    const sand::Replica before = sand;
+    Hand hand(sand);
+    const double east = 10 * scale * std::cos(degrees / 57.29578), north = 10 * scale * std::sin(degrees / 57.29578);
+    const double x = n / 2.0 + 0.3, y = n / 2.0 + 0.2;
+    hand.drag(x - east, y - north, x + east, y + north, z);
+    hand.drag(x + east, y + north, x - east, y - north, z);
+    hand.rest();
+    return exchanged(before, sand) / scale / scale / scale;
+}
+
 /// Bare rock 60 cells high between two fields of level sand, and a tool whose underside stays below the rock's top.
 /// Returns the volume that has passed the rock [cell³ at n = 64].
 inline double overRidge(int n, sand::ToolKind kind) {
@@ -201,6 +255,7 @@ inline Held heldSettle(const Ground& ground, int n, bool atRest) {
     const double scale = n / 64.0;
     Case given = caseOf(ground, n);
     given.height = [=](double, double) { return 20 * scale; };
+    given.maxError = 0;  // because a vertex that is removed moves the surface beside it
     given.sweeps = 4;
     sand::Replica sand(sceneOf(given));
     Hand hand(sand);

@@ -31,7 +31,8 @@ struct Case {
     std::function<bool(int, int)> wall{};          // cells without data; empty: there are none
     std::function<double(double, double)> rock{};  // height of the rock; empty: there is none
     bool tin = false;
-    int widest = 1;  // of the TIN; 0: no limit
+    int widest = 1;              // of the TIN; 0: no limit
+    double maxError = 1.0 / 16;  // of the TIN; 0: no vertex is removed
     sand::Rim rim = sand::Rim::closed;
     double talus = kTalus, start = 0;  // tangents; sand at rest starts to slide beyond `start`; 0: the talus
     int sweeps = 8;                    // per step
@@ -75,6 +76,7 @@ inline scene::Scene sceneOf(const Case& given) {
         sand::isRound(given.tool) ? 0 : static_cast<std::int32_t>(rules.toolRadius * sand::usualWidth(given.tool));
     if (given.tin) {
         sand::tin::Settings settings;
+        settings.maxError = units(given.maxError);
         settings.widest = given.widest * sand::kProbePerCell;
         settings.mostVertices = 1 << 20;
         scene.beginAs(sand::tin::follow(scene.terrain, given.wall ? ground.get() : nullptr, settings, given.rim).start);
