@@ -51,8 +51,8 @@ public:
     /// the tool is in the sand, it then presses once. The step does not restore step number, probe, tool or material.
     ///
     /// A settle brings all sand to rest in its step. If a tool is engaged, or if there is rock or a wall, it is sweeps
-    /// instead, with the tool as an obstacle. It then goes on in the steps after, until the sand is at rest, each with
-    /// at most settlingSweeps() sweeps. A reset, a load, an undo, or another settle ends it.
+    /// instead, with the tool as an obstacle. It then continues in the steps after, until the sand is at rest, each
+    /// with at most settlingSweeps() sweeps. A reset, a load, an undo, or another settle ends it.
     ///
     /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
     /// then runs its sweeps.
@@ -92,15 +92,15 @@ public:
     /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
-    /// Returns whether a settle goes on in the next step.
+    /// Returns whether a settle continues in the next step.
     [[nodiscard]] bool settling() const { return settling_; }
-    /// Returns the number of sweeps in a step in which a settle goes on, unless the rules ask for more.
+    /// Returns the number of sweeps in a step in which a settle continues, unless the rules ask for more.
     [[nodiscard]] static int settlingSweeps(const Rules& rules);
 
     /// Returns the state hash. It covers the sand, outflow, probe, heading, step number, whether the tool is engaged,
-    /// whether a settle goes on, and the rules that an operator has tuned. It covers the age of the inertia but not its
-    /// fluxes, because a wrong flux shows in the heights after the next step. It does not cover the sand that is kept
-    /// for an undo, because wrong sand shows after the undo.
+    /// whether a settle continues, and the rules that an operator has tuned. It covers the age of the inertia but not
+    /// its fluxes, because a wrong flux shows in the heights after the next step. It does not cover the sand that is
+    /// kept for an undo, because wrong sand shows after the undo.
     [[nodiscard]] std::uint64_t stateHash();
     /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed. Corrupted memory then
     /// changes stateHash().

@@ -114,7 +114,7 @@ void Surroundings::divide(const Ground& ground) {
         }
         const auto isTooHigh = [&](std::size_t cell) { return rockOf(cell) > highest; };
         if (taken > 0 && std::any_of(cells.begin(), cells.end(), isTooHigh)) {
-            for (const std::size_t cell : cells) {  // what is left is divided again
+            for (const std::size_t cell : cells) {  // the other cells are divided again
                 parts_[cell] = isTooHigh(cell) ? kNone : kWaiting;
             }
             open.insert(open.end(), cells.rbegin(), cells.rend());

@@ -36,8 +36,8 @@ struct Cut {
 /// The cells that a tool covers or that may take its sand, divided into parts. Sand never leaves its part.
 ///
 /// Cells are joined over faces. Walls divide them. A cell also leaves its part if its rock is higher than the highest
-/// cell from which the tool takes sand in this part. What such cells separate becomes parts of their own, for which the
-/// same holds.
+/// cell from which the tool takes sand in this part. If such cells cut a part in two, each
+/// piece becomes a part, for which the same holds.
 class Surroundings {
 public:
     static constexpr std::int32_t kNone = -1;  // part of a cell to which no sand may go
@@ -53,7 +53,7 @@ public:
     /// Returns the sand that the tool takes from a part [unit · cell].
     [[nodiscard]] std::int64_t taken(std::int32_t part) const { return taken_[static_cast<std::size_t>(part)]; }
     /// Returns the part of a cell, or kNone. A place beyond the field belongs to the part of the nearest cell that has
-    /// one. Of several nearest cells, the first by rows counts.
+    /// one. If several are as near, the first by rows counts.
     [[nodiscard]] std::int32_t partOf(int column, int row) const;
 
 private:

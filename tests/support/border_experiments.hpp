@@ -41,7 +41,7 @@ inline double rimPile(const Ground& ground, int n, bool whole, bool settles) {
            scale / scale;
 }
 
-/// What a pile leans against.
+/// Obstacle that a pile leans against.
 enum class Face { rim, corner, wall, rock };
 
 /// Released sand that leans against a face in the west: half a cylinder (O1), a quarter of one in a corner, or half a
@@ -79,8 +79,8 @@ inline double leaningPile(const Ground& ground, int n, Face face, bool prism, do
     return misplaced(sand, right, [=](double x, double) { return x > west; }) / whole;
 }
 
-/// The method of images: a tool that is dragged along a closed rim, half of it outside, must leave half of what it
-/// leaves in the middle of a field twice as wide. Both drags go from south to north at the east rim of the western
+/// The method of images. A tool is dragged along a closed rim, half of it outside. It must leave half of the sand that
+/// it leaves in the middle of a field twice as wide. Both drags go from south to north at the east rim of the western
 /// half.
 struct Drag {
     double misplaced = 0, largest = 0;  // [cell³ at n = 64], [cell]
@@ -109,8 +109,8 @@ inline Drag rimDrag(const Ground& ground, int n, sand::ToolKind kind = sand::Too
     return result;
 }
 
-/// Returns half of the difference between what a drag along the middle of a field leaves in the west and in the east:
-/// the error that the mesh makes by itself [cell³ at n = 64].
+/// Returns the difference between the sand that a drag along the middle of a field leaves in the west and in the
+/// east. The mesh alone causes it [cell³ at n = 64].
 inline double mirrorError(const Ground& ground, int n) {
     const double scale = n / 64.0;
     Case given = caseOf(ground, n);
@@ -224,8 +224,8 @@ inline double overRidge(int n, sand::ToolKind kind) {
 
 enum class Where { middle, rim, hole };
 
-/// A tool that is pressed into level sand a radius deep, dragged and held: in the middle, half outside a closed rim, or
-/// over the border of a hole. Returns how far sand stands above its underside [cell at n = 64].
+/// A tool is pressed into level sand a radius deep, dragged and held. Its place is in the middle, half outside a closed
+/// rim, or over the border of a hole. Returns how far the sand is above its underside [cell at n = 64].
 inline double underTool(const Ground& ground, int n, sand::ToolKind kind, Where where) {
     const double scale = n / 64.0;
     Case given = where == Where::hole ? walled(ground, n, kind) : caseOf(ground, n);

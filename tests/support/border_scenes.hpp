@@ -151,7 +151,7 @@ double misplaced(const sand::Replica& sand, const Right& right) {
     return misplaced(sand, right, [](double, double) { return true; });
 }
 
-/// Returns how far the surface stands above the underside of a tool at `at`, on a lattice of quarter cells. Counts only
+/// Returns how far the surface is above the underside of a tool at `at`, on a lattice of quarter cells. Counts only
 /// places on ground within 0.98 of the tool's outline, because the outline in a mesh is a polygon inside it.
 inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& at) {
     const sand::ToolShape shape = sand.toolShape();
@@ -254,8 +254,8 @@ inline double exchanged(const sand::Replica& before, const sand::Replica& after)
     return sum / 2 / unit;
 }
 
-/// Returns the steepness of the TIN's or the grid's surface, as shares of the talus: the largest, and the share of the
-/// ground that is more than 2 % too steep. Counts only places for which `counts(x, y)` is true.
+/// Steepness of the surface of a TIN, in taluses: the largest, and the share of the ground that is more than 2 % too
+/// steep. Counts only places for which `counts(x, y)` is true.
 struct Steepness {
     double largest = 0, tooSteep = 0;
 };

@@ -50,7 +50,7 @@ using Underside = ActiveEdges::Underside;
 /// - It ends: V²/star of such a vertex falls to 0, and no other sand moves.
 ///
 /// Sand at rest starts to slide beyond the start threshold. This sand and all sand that it touches then slide down to
-/// the threshold, however many calls of sweep() that takes, because the layer records which sand moves. The result of
+/// the threshold. That may take many calls of sweep(), because the layer records which sand moves. The result of
 /// sweep() depends only on the layer, the rules, the obstacle and the number of sweeps. It does not depend on slots,
 /// active sets, threads or earlier calls. Not thread-safe.
 class Erosion {

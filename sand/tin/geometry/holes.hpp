@@ -72,8 +72,8 @@ public:
     };
     /// Returns the border of all holes except on the field's rim, in parts that are as long as possible.
     [[nodiscard]] const std::vector<Part>& outline() const { return outline_; }
-    /// Calls visit(part) for each part of the outline that runs along a line between cells and reaches into the
-    /// rectangle [probe unit], in the order of outline().
+    /// Calls visit(part) for each part of the outline that reaches into the rectangle [probe unit], in the order of
+    /// outline(). Leaves out the borders of the squares at corners where two cells touch.
     template <class Visit>
     void forEachPart(std::int32_t west, std::int32_t south, std::int32_t east, std::int32_t north,
                      const Visit& visit) const {

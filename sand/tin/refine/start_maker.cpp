@@ -60,8 +60,8 @@ void addLattice(const HeightField& field, const Holes* holes, const Settings& se
     }
 }
 
-/// Returns the next spacing to try on a closed rim, if there is no room for vertices at `spacing`. 0: none but those
-/// that the heights require.
+/// Returns the next spacing to try on a closed rim, if there is no room for vertices at `spacing`. 0 leaves only the
+/// vertices that the heights require.
 std::int32_t widerSpacing(std::int32_t spacing, std::int32_t width, std::int32_t depth) {
     return spacing < std::max(width, depth) ? 2 * spacing : 0;
 }

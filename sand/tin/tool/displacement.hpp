@@ -50,8 +50,8 @@ public:
     /// to the neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open
     /// rim, the ground beyond takes its share, which flows out.
     ///
-    /// Holes divide the vertices that the tool covers, and those that may take sand, into parts. Two of them are joined
-    /// by an edge of a triangle on ground. Each part shares out its own sand.
+    /// Holes divide the vertices below the tool and beside it into parts. Two vertices are joined by an edge of a
+    /// triangle on ground. Each part shares out its own sand.
     ///
     /// A tool that is held still changes nothing after its press. If the tool does not reach the sand at all, it
     /// leaves the sand as with leave().

@@ -169,9 +169,9 @@ void drawSole(Drawing& drawing, double length, double width) {
     }
 }
 
-/// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. With points of
-/// the mesh a sixth of the radius apart, it lies above the bowl by less than a fifteenth of the radius, within 0.98 of
-/// the outline. A bowl is steepest at its outline, so that edges must join the points of the outer ring. Otherwise
+/// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. It is above the
+/// bowl by less than a fifteenth of the radius, within 0.98 of the outline, if points of the mesh are a sixth of the
+/// radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer ring. Otherwise
 /// triangles would reach from the outline over the ring. The narrow bowl of an ellipsoid needs more points inside.
 void drawBowl(Drawing& drawing, double length, double width) {
     constexpr double kOuter = 0.96;

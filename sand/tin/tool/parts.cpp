@@ -18,8 +18,8 @@ Vertex Displacement::partOf(Vertex vertex) {
     return vertex;
 }
 
-/// Returns the part of a receiver. A place beyond the rim belongs to the part of the nearest vertex. Of several nearest
-/// vertices, the southernmost counts, and of these the westernmost.
+/// Returns the part of a receiver. A place beyond the rim belongs to the part of the nearest vertex. If several are as
+/// near, the southernmost counts, and then the westernmost.
 Vertex Displacement::partOf(const VertexSand& layer, const Receiver& receiver) {
     if (receiver.vertex != kNobody) {
         return partOf(receiver.vertex);

@@ -30,8 +30,8 @@ TEST(Border, HalfAPileAtAClosedRimIsHalfOfTheWhole) {
     }
 }
 
-// The piles start from heights at the middles of cells, so that up to 1.2 % of the cylinder's sand is missing or too
-// much at this size. Without vertices at a border of a TIN, 9 % is misplaced.
+// The piles start from heights at the middles of cells. At this size, up to 1.2 % of the cylinder's sand is missing or
+// too much. Without vertices at a border of a TIN, 9 % is misplaced.
 TEST(Border, PilesLeanAgainstRimsCornersWallsAndRockAsInAMirror) {
     using enum borders::Face;
     for (const borders::Ground& ground : kGrounds) {
@@ -67,8 +67,8 @@ TEST(Border, ASlopeBelowTheTalusRestsBesideWalls) {
     }
 }
 
-// The mesh is no mirror image of itself: the two halves that a drag in the middle leaves differ too. Half a field may
-// differ from its mirror by no more than that.
+// A mesh differs from its mirror image, so that a drag in the middle leaves two different halves. Half a field may
+// differ from its mirror by as much.
 TEST(Border, ADragAlongAClosedRimLeavesHalfOfItsMirror) {
     for (const borders::Ground& ground : {kTin, kCoarse}) {
         const borders::Drag drag = borders::rimDrag(ground, kSide);
@@ -170,7 +170,7 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_EQ(other.stateHash(), sand.stateHash());
     hand.hold();
     Hand(other).hold();
-    EXPECT_EQ(other.stateHash(), sand.stateHash()) << "a replica that loads the state must go on alike";
+    EXPECT_EQ(other.stateHash(), sand.stateHash()) << "a replica that loads the state must continue alike";
     sand::Replica plain = sand;
     plain.decodeState([&] {  // the same state, but without the settle
         base::Bytes state = sand.encodeState();
@@ -178,7 +178,7 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
         return state;
     }());
     EXPECT_FALSE(plain.settling());
-    EXPECT_NE(plain.stateHash(), sand.stateHash()) << "that a settle goes on is part of the hash";
+    EXPECT_NE(plain.stateHash(), sand.stateHash()) << "the hash must show that a settle continues";
     for (const sand::Edit::Kind edit : {sand::Edit::undo, sand::Edit::reset}) {
         sand::Replica ended = sand;
         Hand(ended).hold(edit);
@@ -205,8 +205,8 @@ TEST(Settle, RunsAtMostAsManySweepsInAStepAsTheFieldAllows) {
     EXPECT_EQ(sand::Replica::settlingSweeps(rules), 16);
 }
 
-// Which sand of a TIN moves is part of the state: another replica that loads it goes on alike, and a load, a reset and
-// a settle forget it.
+// The state of a TIN records which sand moves. Another replica that loads the state continues alike. A load, a reset
+// and a settle forget it.
 TEST(MovingSand, OfATinIsPartOfTheState) {
     Case given = borders::caseOf(kTin, 32);
     given.talus = 0.81;
@@ -246,7 +246,7 @@ TEST(MovingSand, OfATinIsPartOfTheState) {
     EXPECT_EQ(moving(sand), 0) << "sand at rest does not move";
 }
 
-// A tool that is held presses once on sand that has come back, so that no sand stands above its underside.
+// A tool that is held presses once on sand that has come back, so that no sand is above its underside.
 TEST(HeldTool, PressesOnceAfterUndoResetAndLoad) {
     for (const borders::Ground& ground : kGrounds) {
         Case given = borders::caseOf(ground, kSide);

@@ -40,7 +40,7 @@ bool measure(int n) {
     const borders::Drag grid = borders::rimDrag(kGrid, n), fine = borders::rimDrag(kTin, n),
                         coarse = borders::rimDrag(kCoarse, n);
     table.row("drag along a closed rim against its mirror, grid", grid.misplaced, 10, "cell3");
-    // A mesh is no mirror image of itself, so that the two halves of a drag in the middle differ too.
+    // A mesh differs from its mirror image, so that a drag in the middle leaves two different halves.
     table.row("the same, TIN; at most the mesh's own mirror error", fine.misplaced, borders::mirrorError(kTin, n),
               "cell3");
     table.row("the same, largest difference", fine.largest, 0.5, "cell");
@@ -84,8 +84,8 @@ struct Work {
     double line = 32;
 };
 
-/// Returns the scenes for counting instructions. Scenes whose names begin with "near" have a wall or a rock face in the
-/// tool's surroundings; in the others the tool is in the middle of sand.
+/// Returns the scenes for counting instructions. Scenes whose names begin with "near" have a wall or a rock face
+/// beside the tool. In the others, the tool is in the middle of sand.
 Work workOf(const std::string& name) {
     Work work;
     borders::Case& scene = work.scene;
