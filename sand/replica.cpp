@@ -181,16 +181,16 @@ void Replica::applyToSand(const Step& step) {
         surface_->leave(toolBefore);
     }
     const HeldTool here = tool();
-    const int sweeps = settling_ ? std::max(settlingSweeps(rules_), rules_.sweepsPerStep) : rules_.sweepsPerStep;
+    const int sweeps = settling_ ? std::max(settlingSweeps(), rules_.sweepsPerStep) : rules_.sweepsPerStep;
     surface_->sweep(sweeps, engaged_ ? &here : nullptr, probe_);
     settling_ = settling_ && !surface_->settled();
 }
 
-int Replica::settlingSweeps(const Rules& rules) {
+int Replica::settlingSweeps() const {
     // A step takes seconds at most, also with all processes of a wall on one host.
     constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // over which the sweeps of one step go
     constexpr std::int64_t kLeast = 16;
-    const std::int64_t sweeps = std::max(kMostCells / (std::int64_t{rules.columns} * rules.rows), kLeast);
+    const std::int64_t sweeps = std::max(kMostCells / std::max<std::int64_t>(surface_->sweepCost(), 1), kLeast);
     return static_cast<int>(std::min<std::int64_t>(sweeps, kMostSweeps));
 }
 

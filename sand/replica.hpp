@@ -95,7 +95,7 @@ public:
     /// Returns whether a settle continues in the next step.
     [[nodiscard]] bool settling() const { return settling_; }
     /// Returns the number of sweeps in a step in which a settle continues, unless the rules ask for more.
-    [[nodiscard]] static int settlingSweeps(const Rules& rules);
+    [[nodiscard]] int settlingSweeps() const;
 
     /// Returns the state hash. It covers the sand, outflow, probe, heading, step number, whether the tool is engaged,
     /// whether a settle continues, and the rules that an operator has tuned. It covers the age of the inertia but not

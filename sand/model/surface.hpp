@@ -85,6 +85,8 @@ public:
     virtual void settle() = 0;
     /// Returns whether rock or walls allow settle() not at all, so that only sweeps bring the sand to rest.
     [[nodiscard]] virtual bool settlesBySweeps() const { return false; }
+    /// Returns the time of a sweep in which all sand moves, at least that of the field's cells [cell of a grid].
+    [[nodiscard]] virtual std::int64_t sweepCost() const = 0;
     /// Forgets which sand moves, if that is part of the state beside fluxes.
     virtual void stopMoving() {}
     /// Restores the sand that the scene began with, and sets the outflow to 0.

@@ -193,16 +193,18 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_TRUE(again.settled());
 }
 
+// 2^28 cells in a step, at least 16 and at most 4096 sweeps. A vertex of a TIN takes as long as 16 cells.
 TEST(Settle, RunsAtMostAsManySweepsInAStepAsTheFieldAllows) {
-    sand::Rules rules;
-    rules.columns = rules.rows = 64;
-    EXPECT_EQ(sand::Replica::settlingSweeps(rules), 4096);
-    rules.columns = rules.rows = 512;
-    EXPECT_EQ(sand::Replica::settlingSweeps(rules), 1024);
-    rules.columns = rules.rows = 2048;
-    EXPECT_EQ(sand::Replica::settlingSweeps(rules), 64);
-    rules.columns = rules.rows = 16384;
-    EXPECT_EQ(sand::Replica::settlingSweeps(rules), 16);
+    const auto sweepsOf = [](int side, bool tin) {
+        Case given;
+        given.columns = given.rows = side;
+        given.tin = tin;
+        return sand::Replica(borders::sceneOf(given)).settlingSweeps();
+    };
+    EXPECT_EQ(sweepsOf(64, false), 4096);
+    EXPECT_EQ(sweepsOf(512, false), 1024);
+    EXPECT_EQ(sweepsOf(2048, false), 64);
+    EXPECT_EQ(sweepsOf(128, true), (1 << 28) / (16 * (128 * 128 + 4 * 127 + 4)));
 }
 
 // The state of a TIN records which sand moves. Another replica that loads the state continues alike. A load, a reset
