@@ -68,6 +68,7 @@ Replica::Replica(const Replica& other)
       probe_(other.probe_),
       heading_(other.heading_),
       engaged_(other.engaged_),
+      settling_(other.settling_),
       leftOut_(other.leftOut_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
@@ -118,6 +119,7 @@ void Replica::skip(const Step& step, const Hand& before, const char* why) {
     probe_ = before.probe;
     heading_ = before.heading;
     engaged_ = false;
+    settling_ = false;
 }
 
 bool Replica::restoreKept() {
@@ -165,7 +167,7 @@ void Replica::applyToSand(const Step& step) {
     stepNumber_ = step.number;
 
     if (step.edit.kind == Edit::settle) {
-        surface_->settle();
+        settle();
     } else if (step.edit.kind == Edit::tune) {
         tune(step.edit.tuning);
     } else if (putBack(step.edit)) {
@@ -179,7 +181,24 @@ void Replica::applyToSand(const Step& step) {
         surface_->leave(toolBefore);
     }
     const HeldTool here = tool();
-    surface_->sweep(rules_.sweepsPerStep, engaged_ ? &here : nullptr, probe_);
+    const int sweeps = settling_ ? std::max(settlingSweeps(), rules_.sweepsPerStep) : rules_.sweepsPerStep;
+    surface_->sweep(sweeps, engaged_ ? &here : nullptr, probe_);
+    settling_ = settling_ && !surface_->settled();
+}
+
+int Replica::settlingSweeps() const {
+    // A step takes seconds at most, also with all processes of a wall on one host.
+    constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // over which the sweeps of one step go
+    constexpr std::int64_t kLeast = 16;
+    const std::int64_t sweeps = std::max(kMostCells / std::max<std::int64_t>(surface_->sweepCost(), 1), kLeast);
+    return static_cast<int>(std::min<std::int64_t>(sweeps, kMostSweeps));
+}
+
+void Replica::settle() {
+    settling_ = engaged_ || surface_->settlesBySweeps();
+    if (!settling_) {
+        surface_->settle();
+    }
 }
 
 void Replica::tune(const Tuning& tuning) {
@@ -206,6 +225,7 @@ bool Replica::putBack(const Edit& edit) {
     } else if (edit.kind == Edit::load && edit.sand) {
         try {
             surface_->replace(*surface_->reader()(*edit.sand));
+            surface_->stopMoving();
         } catch (const base::FormatError& error) {  // in every replica alike
             leftOut_ = std::string("its load was ignored: ") + error.what();
             return false;
@@ -213,9 +233,11 @@ bool Replica::putBack(const Edit& edit) {
     } else {
         return false;
     }
+    settling_ = false;
     // The stroke of a tool that is still engaged continues. It now begins with the restored sand.
     if (engaged_) {
         surface_->keep();
+        press();
     } else {
         surface_->forget();
     }
@@ -227,7 +249,7 @@ std::uint64_t Replica::stateHash() {
     const auto fold = [&hash](std::uint64_t value) { hash = mix(hash ^ value) + std::rotl(value, 17); };
     fold(stepNumber_);
     fold(static_cast<std::uint64_t>(surface_->outflow()));
-    fold(engaged_ ? 1 : 0);
+    fold((engaged_ ? 1 : 0) + (settling_ ? 2 : 0));
     fold(static_cast<std::uint64_t>(surface_->age()));
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         fold(static_cast<std::uint32_t>(coordinate));
@@ -257,7 +279,7 @@ StateCopy Replica::copyState() const {
     for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
         writer.put(coordinate);
     }
-    writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0)});
+    writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0) + (settling_ ? 4 : 0)});
     heading_.encode(writer);
     rules_.tuning().encode(writer);
     return {writer.take(), surface_->kept(), copySand()};
@@ -289,7 +311,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
         }
     }
     const auto flags = reader.get<std::int32_t>();
-    const bool engaged = (flags & 1) != 0;
+    const bool engaged = (flags & 1) != 0, settling = (flags & 4) != 0;
     const Heading heading = Heading::decode(reader, (flags & 2) != 0);
     const Tuning tuning = Tuning::decode(reader);
     const auto beforeStroke = reader.getBlock();
@@ -308,6 +330,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     surface_->replace(*sand);
     stepNumber_ = number;
     engaged_ = engaged;
+    settling_ = settling;
     probe_ = probe;
     heading_ = heading;
     leftOut_.clear();

@@ -15,11 +15,11 @@
 namespace sand {
 
 /// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
-inline constexpr std::uint32_t kStateVersion = 6;
+inline constexpr std::uint32_t kStateVersion = 7;
 
 /// Copy of a replica's whole state. Another thread can compress it while the replica applies further steps.
 struct StateCopy {
-    base::Bytes head;                                 // step number, probe, heading and tuned rules, encoded
+    base::Bytes head;                                 // step number, probe, heading, settle, tuned rules, encoded
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
@@ -46,9 +46,13 @@ public:
     /// Applies the next step. The tool displaces sand along the step's path, then the step's edit is done, then the
     /// sand slides for Rules::sweepsPerStep sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
-    /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. Such a step runs no
-    /// sweeps, so that it ends with exactly the restored sand. It does not restore step number, probe, tool or
-    /// material.
+    /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. On a TIN, only an
+    /// undo restores which sand moves. Such a step runs no sweeps, so that it ends with exactly the restored sand. If
+    /// the tool is in the sand, it then presses once. The step does not restore step number, probe, tool or material.
+    ///
+    /// A settle brings all sand to rest in its step. If a tool is engaged, or if there is rock or a wall, it is sweeps
+    /// instead, with the tool as an obstacle. It then continues in the steps after, until the sand is at rest, each
+    /// with at most settlingSweeps() sweeps. A reset, a load, an undo, or another settle ends it.
     ///
     /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
     /// then runs its sweeps.
@@ -88,11 +92,15 @@ public:
     /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
+    /// Returns whether a settle continues in the next step.
+    [[nodiscard]] bool settling() const { return settling_; }
+    /// Returns the number of sweeps in a step in which a settle continues, unless the rules ask for more.
+    [[nodiscard]] int settlingSweeps() const;
 
     /// Returns the state hash. It covers the sand, outflow, probe, heading, step number, whether the tool is engaged,
-    /// and the rules that an operator has tuned. It covers the age of the inertia but not its fluxes, because a wrong
-    /// flux shows in the heights after the next step. It does not cover the sand that is kept for an undo, because
-    /// wrong sand shows after the undo.
+    /// whether a settle continues, and the rules that an operator has tuned. It covers the age of the inertia but not
+    /// its fluxes, because a wrong flux shows in the heights after the next step. It does not cover the sand that is
+    /// kept for an undo, because wrong sand shows after the undo.
     [[nodiscard]] std::uint64_t stateHash();
     /// Hashes the next `tiles` hash tiles again from memory, whether or not they have changed. Corrupted memory then
     /// changes stateHash().
@@ -135,6 +143,7 @@ private:
     };
     [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
+    void settle();
     /// Displaces the sand below the tool at its current position.
     void press();
     void applyToSand(const Step& step);
@@ -152,7 +161,8 @@ private:
     ProbePoint probe_;
     Heading heading_;
     bool engaged_ = false;
-    std::string leftOut_;  // by the last apply()
+    bool settling_ = false;  // a settle has not found all sand at rest yet
+    std::string leftOut_;    // by the last apply()
 };
 
 }  // namespace sand

@@ -3,18 +3,13 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
+#include "sand/grid/surroundings.hpp"
 #include "sand/model/tool_kernel.hpp"
 
 namespace sand::grid {
 namespace {
-
-constexpr std::int32_t kHalfCell = kProbePerCell / 2;
-
-Offset offsetOf(ProbePoint at, int column, int row) {
-    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
-            std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
-}
 
 /// Cell that takes some of the sand that the tool pushes away.
 struct Receiver {
@@ -94,6 +89,39 @@ void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, c
     }
 }
 
+/// Returns whether a height would exceed kMaxHeight if the receivers got their shares.
+bool overflows(const HeightField& field, const std::vector<Receiver>& ring) {
+    return std::any_of(ring.begin(), ring.end(), [&](const Receiver& receiver) {
+        return !receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight;
+    });
+}
+
+/// Gives the receivers their shares. Returns the volume that leaves the field.
+std::int64_t raise(HeightField& field, const std::vector<Receiver>& ring) {
+    std::int64_t outflow = 0;
+    for (const Receiver& receiver : ring) {
+        if (receiver.outside) {
+            outflow += receiver.share;
+        } else {
+            const std::int64_t raised = field.height(receiver.column, receiver.row) + receiver.share;
+            field.setHeight(receiver.column, receiver.row, static_cast<std::int32_t>(raised));
+        }
+    }
+    return outflow;
+}
+
+/// Returns the receivers of each part of the surroundings, in the same order.
+std::vector<std::vector<Receiver>> divided(const std::vector<Receiver>& ring, const Surroundings& surroundings) {
+    std::vector<std::vector<Receiver>> byPart(static_cast<std::size_t>(surroundings.count()));
+    for (const Receiver& receiver : ring) {
+        const std::int32_t part = surroundings.partOf(receiver.column, receiver.row);
+        if (part != Surroundings::kNone) {
+            byPart[static_cast<std::size_t>(part)].push_back(receiver);
+        }
+    }
+    return byPart;
+}
+
 }  // namespace
 
 CellRect Displacement::cells(const HeightField& field, ProbePoint at) const {
@@ -109,25 +137,37 @@ void Displacement::findLowest(const Ground* ground, ProbePoint at, int column, i
     }
 }
 
-Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
-                                       const Offset& ahead) const {
-    const CellRect cells = this->cells(field, at);
-    const auto across = static_cast<std::size_t>(std::max(cells.x1 - cells.x0, 0));
+Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbePoint at) const {
+    Cut cut;
+    cut.cells = cells(field, at);
+    const auto across = static_cast<std::size_t>(std::max(cut.cells.x1 - cut.cells.x0, 0));
     const auto above = v3_ ? v3::sandAbove : baseline::sandAbove;
-    std::int64_t taken = 0;
-    std::vector<int> cuts;                     // rows in which the tool cuts sand; few for a drag
-    std::vector<std::int32_t> lowest(across);  // lowest heights of these rows, one row after another, and of one more
-    for (int y = cells.y0; y < cells.y1; ++y) {
+    std::vector<std::int32_t>& lowest = cut.lowest;
+    lowest.resize(across);  // room for one row more than the tool cuts
+    for (int y = cut.cells.y0; y < cut.cells.y1; ++y) {
         const std::span<std::int32_t> ofRow = std::span(lowest).last(across);
-        findLowest(ground, at, cells.x0, y, ofRow);
-        if (const std::int64_t more = above(ofRow.data(), field.row(y) + cells.x0, cells.x1 - cells.x0); more > 0) {
-            taken += more;
-            cuts.push_back(y);
+        findLowest(ground, at, cut.cells.x0, y, ofRow);
+        const std::int64_t more = above(ofRow.data(), field.row(y) + cut.cells.x0, cut.cells.x1 - cut.cells.x0);
+        if (more > 0) {
+            cut.taken += more;
+            cut.rows.push_back(y);
             lowest.resize(lowest.size() + across);
         }
     }
-    if (taken == 0) {
+    return cut;
+}
+
+Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+                                       const Offset& ahead) const {
+    const Cut cut = findCut(field, ground, at);
+    if (cut.taken == 0) {
         return {};
+    }
+    if (ground != nullptr) {
+        const Surroundings surroundings(field, *ground, shape_, at, cut);
+        if (surroundings.barred()) {
+            return pressInParts(field, rim, *ground, at, ahead, cut, surroundings);
+        }
     }
     std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, shape_, ahead);
     if (ring.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
@@ -136,25 +176,54 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
     if (ring.empty()) {  // the tool is larger than the field, so that no cell can take the sand
         return {};
     }
-    shareOut(ring, taken, at, shape_);
-    for (const Receiver& receiver : ring) {
-        if (!receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight) {
-            return {};  // a height would exceed kMaxHeight: the sand stays, and the tool passes through it
-        }
+    shareOut(ring, cut.taken, at, shape_);
+    if (overflows(field, ring)) {
+        return {};  // the sand stays, and the tool passes through it
     }
-    for (std::size_t i = 0; i < cuts.size(); ++i) {
-        const std::span<const std::int32_t> ofRow = std::span(lowest).subspan(i * across, across);
-        std::int32_t* const row = field.row(cuts[i]) + cells.x0;
-        std::transform(ofRow.begin(), ofRow.end(), row, row,
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+        std::int32_t* const row = field.row(cut.rows[i]) + cut.cells.x0;
+        std::transform(cut.lowestOf(i), cut.lowestOf(i) + cut.across(), row, row,
                        [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
+    return {shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), raise(field, ring)};
+}
+
+Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint at,
+                                              const Offset& ahead, const Cut& cut,
+                                              const Surroundings& surroundings) const {
+    const auto ringsOf = [&](const Offset& way) {
+        return divided(receivers(field.bounds(), rim, &ground, at, shape_, way), surroundings);
+    };
+    std::vector<std::vector<Receiver>> rings = ringsOf(ahead), around;
+    std::vector<std::uint8_t> moves(rings.size());
     Work result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
-    for (const Receiver& receiver : ring) {
-        if (receiver.outside) {
-            result.outflow += receiver.share;
-        } else {
-            const std::int64_t raised = field.height(receiver.column, receiver.row) + receiver.share;
-            field.setHeight(receiver.column, receiver.row, static_cast<std::int32_t>(raised));
+    for (std::int32_t part = 0; part < surroundings.count(); ++part) {
+        std::vector<Receiver>& ring = rings[static_cast<std::size_t>(part)];
+        if (surroundings.taken(part) == 0) {
+            continue;
+        }
+        if (ring.empty()) {
+            if (around.empty()) {
+                around = ringsOf({0, 0});
+            }
+            ring = around[static_cast<std::size_t>(part)];
+        }
+        if (ring.empty()) {
+            continue;  // the sand stays, and the tool passes through it
+        }
+        shareOut(ring, surroundings.taken(part), at, shape_);
+        if (!overflows(field, ring)) {
+            moves[static_cast<std::size_t>(part)] = 1;
+            result.outflow += raise(field, ring);
+        }
+    }
+    // Receivers are beside the tool, so that raising them has not changed the cells below it.
+    for (std::size_t i = 0; i < cut.rows.size(); ++i) {
+        for (int x = cut.cells.x0; x < cut.cells.x1; ++x) {
+            const std::int32_t lowest = cut.lowestOf(i)[x - cut.cells.x0], height = field.height(x, cut.rows[i]);
+            if (height > lowest && moves[static_cast<std::size_t>(surroundings.partOf(x, cut.rows[i]))] != 0) {
+                field.setHeight(x, cut.rows[i], lowest);
+            }
         }
     }
     return result;

@@ -14,6 +14,9 @@
 
 namespace sand::grid {
 
+struct Cut;
+class Surroundings;
+
 /// Underside of the tool while it is in the sand. No flux may raise a cell above it.
 struct Obstacle {
     CellRect cells;                       // cells for which the underside is defined
@@ -40,7 +43,8 @@ public:
     };
 
     /// Moves the tool from `from` to `to` in sub-steps of at most one cell, and displaces the sand. Sand that no cell
-    /// can take stays where it is. `ground` may be null; its rock and walls do not move.
+    /// can take stays where it is. `ground` may be null; its rock and walls do not move. Sand stays on its side of
+    /// walls, and of rock that is higher than the sand that the tool takes.
     Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
 
     /// Returns the obstacle of a tool whose centre is at `at`.
@@ -50,6 +54,10 @@ public:
 
 private:
     Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
+    /// Does the work of press() part by part of the surroundings, which must be barred.
+    Work pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint at, const Offset& ahead,
+                      const Cut& cut, const Surroundings& surroundings) const;
+    [[nodiscard]] Cut findCut(const HeightField& field, const Ground* ground, ProbePoint at) const;
     /// Fills `lowest` with the heights to which the tool lowers the cells of a row: its underside, or the rock where
     /// that is higher [unit]. `column` is the first cell of the row.
     void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;

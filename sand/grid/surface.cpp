@@ -10,8 +10,6 @@
 namespace sand::grid {
 namespace {
 
-constexpr int kSweepsToRest = 1 << 20;  // more than any field takes that is worth waiting for
-
 constexpr int kBlock = Erosion::kDefaultBlock;  // [cell], side of the blocks that takeChange() returns
 
 int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
@@ -98,11 +96,6 @@ void GridSurface::changeRules(const Rules& rules) {
 }
 
 void GridSurface::settle() {
-    if (ground_ != nullptr) {
-        // The projection ignores rock and walls. Sweeps respect them, but take longer.
-        outflow_ += erosion_.sweep(field_, kSweepsToRest);
-        return;
-    }
     outflow_ += sand::grid::settle(field_, rules_).outflow;
     erosion_.touch(field_.bounds());
     touchAll();

@@ -29,6 +29,8 @@ public:
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
+    [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }
+    [[nodiscard]] std::int64_t sweepCost() const override { return std::int64_t{field_.columns()} * field_.rows(); }
     void reset() override;
 
     void keep() override { beforeStroke_.keep(field_, erosion_.inertia(), outflow_); }

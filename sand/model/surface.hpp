@@ -81,8 +81,14 @@ public:
     virtual void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
-    /// Lets all sand come to rest at once.
+    /// Lets all sand come to rest at once. Ignores rock, walls and tools.
     virtual void settle() = 0;
+    /// Returns whether rock or walls allow settle() not at all, so that only sweeps bring the sand to rest.
+    [[nodiscard]] virtual bool settlesBySweeps() const { return false; }
+    /// Returns the time of a sweep in which all sand moves, at least that of the field's cells [cell of a grid].
+    [[nodiscard]] virtual std::int64_t sweepCost() const = 0;
+    /// Forgets which sand moves, if that is part of the state beside fluxes.
+    virtual void stopMoving() {}
     /// Restores the sand that the scene began with, and sets the outflow to 0.
     virtual void reset() = 0;
 

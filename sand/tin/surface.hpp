@@ -37,6 +37,8 @@ public:
     void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
+    [[nodiscard]] std::int64_t sweepCost() const override;
+    void stopMoving() override { sandMoved(layer_.stopMoving()); }
     void reset() override;
 
     void keep() override { beforeStroke_.keep(layer_, state_); }

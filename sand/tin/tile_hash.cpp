@@ -37,8 +37,9 @@ std::uint64_t TileHash::hashOf(const VertexSand& layer, Vertex vertex) {
     }
     const auto i = static_cast<std::size_t>(vertex);
     const Place place = layer.triangles().places[i];
-    return mixed(mixed(mixed(1, static_cast<std::uint64_t>(vertex)), together(place.x, place.y)),
-                 static_cast<std::uint64_t>(layer.volumes()[i]));
+    const std::uint64_t hash = mixed(mixed(mixed(1, static_cast<std::uint64_t>(vertex)), together(place.x, place.y)),
+                                     static_cast<std::uint64_t>(layer.volumes()[i]));
+    return layer.moving()[i] != 0 ? mixed(hash, 1) : hash;
 }
 
 void TileHash::touch(const VertexSand& layer, const std::vector<Vertex>& vertices) {
@@ -129,7 +130,7 @@ std::vector<std::int32_t> TileHash::valuesOf(const VertexSand& layer, int tile) 
         const Place place = alive ? layer.triangles().places[i] : Place{-1, -1};
         const auto volume = static_cast<std::uint64_t>(alive ? layer.volumes()[i] : 0);
         values.insert(values.end(), {place.x, place.y, static_cast<std::int32_t>(volume >> 32),
-                                     static_cast<std::int32_t>(volume & 0xffffffffU)});
+                                     static_cast<std::int32_t>(volume & 0xffffffffU), alive ? layer.moving()[i] : 0});
     });
     return values;
 }

@@ -10,9 +10,8 @@
 namespace sand::tin {
 
 /// Hash of a TIN's sand. An update costs only as much as has changed. The hash is a sum modulo 2^64 of one number per
-/// vertex, one per constraint, and one for the TinState. A vertex's number depends on the vertex, its place and its
-/// volume.
-/// volume.
+/// vertex, one per constraint, and one for the TinState. A vertex's number depends on the vertex, its place, its volume
+/// and whether its sand moves.
 ///
 /// The number of a vertex selects its hash tile. The last tile contains the constraints and the TinState.
 class TileHash final : public HashTiles {

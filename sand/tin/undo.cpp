@@ -24,9 +24,11 @@ void Undo::followVertex(const VertexSand& layer, Vertex vertex) {
         const std::size_t count = layer.triangles().places.size();
         parts_.places.resize(count, VertexSandParts::kNowhere);
         parts_.volumes.resize(count, 0);
+        parts_.moving.resize(count, 0);
     }
     parts_.places[at] = layer.triangles().alive(vertex) ? layer.triangles().places[at] : VertexSandParts::kNowhere;
     parts_.volumes[at] = layer.volumes()[at];
+    parts_.moving[at] = layer.moving()[at];
 }
 
 /// A constraint belongs to the triangle in which it runs from its smaller vertex to the larger.

@@ -24,6 +24,7 @@ public:
     void reserve(std::size_t vertices) {
         parts_.places.reserve(vertices);
         parts_.volumes.reserve(vertices);
+        parts_.moving.reserve(vertices);
         vertices_.reserve(vertices);
         slots_.reserve(2 * vertices);
     }

@@ -140,7 +140,10 @@ TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
     Hand hand(terrain);
     hand.dig(20, 32);
     hand.dig(24, 32, Edit::undo);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    Replica pressed(scene);
+    Hand(pressed).dig(24, 32, Edit::reset);
+    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(pressed))) << "the tool presses once";
+    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));
     hand.dig(28, 32);
     hand.lift();
     ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));

@@ -32,7 +32,8 @@ TEST_F(SurveyScene, IsMadeOfTheSurveyPointsThemselves) {
     ASSERT_NE(read.tin, nullptr);
     EXPECT_EQ(read.rules.columns, 20);
     EXPECT_EQ(read.rules.rows, 10);
-    ASSERT_EQ(read.tin->places.size(), 5U) << "three points at corners, one within the field, and the fourth corner";
+    ASSERT_EQ(read.tin->places.size(), 7U)
+        << "three points at corners, one within the field, the fourth corner, and two places on sides of 20 cells";
     const sand::Replica terrain(read);
     const auto height = [&](double x, double y) {
         return terrain.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
@@ -50,7 +51,8 @@ TEST_F(SurveyScene, SaysHowManySurveyPointsItDoesNotTellApart) {
             << "[terrain]\nkind = \"points\"\nfile = \"survey.csv\"\n[tin]\ncell = " << cell
             << "\n[material]\ntalus_deg = 34\n[tool]\nradius = 10\n";
         const scene::Scene read = scene::loadScene(folder_ / "points.toml");
-        EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U : 5U) << "with the missing corner";
+        // With the missing corner. A side of 100 cells has six places more, at most 16 cells apart.
+        EXPECT_EQ(read.tin->places.size(), read.warnings.empty() ? 8U + 4 * 6 : 5U);
         return read.warnings;
     };
     EXPECT_EQ(warnings("5"),

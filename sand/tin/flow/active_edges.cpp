@@ -65,6 +65,7 @@ void ActiveEdges::makeRoom(std::size_t vertices, std::size_t slots) {
 void ActiveEdges::begin(const VertexSand& layer, bool band, const Underside* held) {
     band_ = band;
     held_ = held;
+    swept_ = false;
     restAround_ = 0;
     makeRoom(layer.triangles().places.size(), layer.triangles().triangles.size());
     if (++turn_ == 0) {  // after 2^32 turns
@@ -80,7 +81,7 @@ void ActiveEdges::begin(const VertexSand& layer, bool band, const Underside* hel
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
         const auto vertex = index(vertices_[i]);
         sand_.place(i, layer.volumes()[vertex], layer.stars()[vertex],
-                    undersideAt(vertices_[i], layer.triangles().places[vertex]));
+                    undersideAt(vertices_[i], layer.triangles().places[vertex]), layer.moving()[vertex] != 0);
     }
 }
 
@@ -88,8 +89,9 @@ std::int32_t ActiveEdges::localOf(const VertexSand& layer, Vertex vertex) {
     std::int32_t& local = noteOf(vertex).local;
     if (local == kNobody) {
         const auto at = index(vertex);
-        local = sand_.addVertex(layer.volumes()[at], layer.stars()[at],
-                                undersideAt(vertex, layer.triangles().places[at]), spills(layer.triangles(), vertex));
+        local =
+            sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]),
+                            spills(layer.triangles(), vertex), !swept_ && layer.moving()[at] != 0);
         vertices_.push_back(vertex);
     }
     return local;
@@ -205,6 +207,9 @@ void ActiveEdges::wake(const VertexSand& layer, const Slopes& slopes, std::span<
             continue;
         }
         noteOf(vertex).woken = turn_;
+        if (layer.moving()[index(vertex)] != 0) {
+            moving_.push_back(vertex);
+        }
         if (layer.volumes()[index(vertex)] > 0 && spills(mesh, vertex)) {
             watch(layer, slopes, vertex);  // because level sand falls over the rim too
         }
@@ -249,8 +254,9 @@ bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& 
         // before.
     } while (known < sand_.facetCount());
     const SweepResult result = sand_.move(held_ != nullptr, momentum);
+    swept_ = true;
     outflow_ += result.outflow;
-    if (result.spread || (band_ && result.moved && result.met)) {
+    if (result.spread || (band_ && result.met)) {
         met_.clear();
         sand_.findUnwatched(met_);
         for (std::size_t i = 0; i < met_.size(); ++i) {
@@ -271,6 +277,29 @@ void ActiveEdges::store(VertexSand& layer, std::vector<Vertex>& moved) const {
         if (const std::int64_t risen = sand_.volume(i) - layer.volumes()[index(vertex)]; risen != 0) {
             layer.add(vertex, risen);
             moved.push_back(vertex);
+        }
+    }
+}
+
+void ActiveEdges::storeMotion(VertexSand& layer, std::vector<Vertex>& changed) {
+    const auto flows = [&](Vertex vertex) {
+        const std::int32_t local = noteOf(vertex).local;
+        return swept_ && local != kNobody && sand_.flowed(index(local));
+    };
+    for (const Vertex vertex : moving_) {
+        if (layer.moving()[index(vertex)] != 0 && !flows(vertex)) {
+            layer.setMoving(vertex, false);
+            changed.push_back(vertex);
+        }
+    }
+    moving_.clear();
+    for (std::size_t i = 0; swept_ && i < vertices_.size(); ++i) {
+        if (sand_.flowed(i)) {
+            moving_.push_back(vertices_[i]);
+            if (layer.moving()[index(vertices_[i])] == 0) {
+                layer.setMoving(vertices_[i], true);
+                changed.push_back(vertices_[i]);
+            }
         }
     }
 }

@@ -37,9 +37,9 @@ public:
     /// Returns the vertices at which the underside of the obstacle has changed or is gone, because sand may flow there
     /// again. Sand below an unchanged underside has come to rest.
     [[nodiscard]] std::vector<Vertex> takeReleased(const Underside* held);
-    /// Begins a run of sweeps with the layer's current sand and without momentum. `held` is the underside of an
-    /// obstacle, or null. `band` is true if sand at rest needs a steeper slope to start than sliding sand needs to
-    /// continue.
+    /// Begins a run of sweeps with the layer's current sand and without momentum. The layer's moving sand counts as
+    /// sand that flowed in the sweep before. `held` is the underside of an obstacle, or null. `band` is true if sand at
+    /// rest needs a steeper slope to start than sliding sand needs to continue.
     void begin(const VertexSand& layer, bool band, const Underside* held);
     /// Watches every triangle that may slide in the next sweep because of these vertices. Those are the triangles
     /// around them that are steep enough, and all triangles around a vertex from which sand falls over an open rim.
@@ -52,6 +52,9 @@ public:
     [[nodiscard]] std::int64_t takeOutflow() { return std::exchange(outflow_, 0); }
     /// Writes the sand to the layer. Adds the vertices whose volume has changed to `moved`.
     void store(VertexSand& layer, std::vector<Vertex>& moved) const;
+    /// Writes to the layer which sand moves: that of the vertices at which sand flowed in the last
+    /// sweep since begin(). Adds the vertices at which this has changed to `changed`.
+    void storeMotion(VertexSand& layer, std::vector<Vertex>& changed);
     /// Returns whether sweeps have visited so many vertices at rest that forgetting them would have cost less.
     [[nodiscard]] bool manyRest() const;
     /// Forgets all triangles that the last sweep cannot have set in motion. Call store() first.
@@ -117,12 +120,14 @@ private:
     std::vector<VertexNote> ofVertices_;
     std::vector<SlotNote> ofSlots_;
     std::vector<Held> heldBack_;
+    std::vector<Vertex> moving_;                         // all vertices whose sand moves in the layer, and more
     std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
     std::uint32_t turn_ = 0;                             // number of begin() calls; marks what wake() has examined
     std::int64_t inVain_ = 0;      // vertices at rest, summed over the sweeps, less the usual number at rest
     std::int64_t restAround_ = 0;  // vertices at rest that the last forgetResting() since begin() left
     std::int64_t outflow_ = 0;     // since takeOutflow()
     bool band_ = false;
+    bool swept_ = false;  // whether a sweep ran since begin()
     const Underside* held_ = nullptr;
 };
 

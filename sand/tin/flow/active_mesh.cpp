@@ -58,7 +58,7 @@ void ActiveMesh::widen() {
                    [](double volume) { return static_cast<std::int64_t>(volume); });
 }
 
-std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, double underside, bool spills) {
+std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, double underside, bool spills, bool moving) {
     const auto number = static_cast<std::int32_t>(vertexCount());
     notice(volume, star);
     if (spills) {
@@ -67,7 +67,7 @@ std::int32_t ActiveMesh::addVertex(std::int64_t volume, std::int64_t star, doubl
     volumes_.push_back(static_cast<double>(volume));
     wide_.push_back(volume);
     stars_.push_back(static_cast<double>(star));
-    levels_.push_back({static_cast<double>(volume) / static_cast<double>(star), 0});
+    levels_.push_back({static_cast<double>(volume) / static_cast<double>(star), moving ? 1.0 : 0.0});
     undersides_.push_back(underside);
     unwatched_.push_back(~std::uint64_t{0});
     return number;
@@ -135,10 +135,10 @@ void ActiveMesh::restart() {
     std::fill(fluxes_.begin(), fluxes_.end(), 0.0);
 }
 
-void ActiveMesh::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside) {
+void ActiveMesh::place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside, bool moving) {
     volumes_[vertex] = static_cast<double>(volume);
     stars_[vertex] = static_cast<double>(star);
-    levels_[vertex] = {volumes_[vertex] / stars_[vertex], 0};
+    levels_[vertex] = {volumes_[vertex] / stars_[vertex], moving ? 1.0 : 0.0};
     undersides_[vertex] = underside;
     notice(volume, star);
     wide_[vertex] = volume;

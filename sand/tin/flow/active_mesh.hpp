@@ -26,8 +26,9 @@ public:
     explicit ActiveMesh(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
 
     /// Adds a vertex and returns its number. `spills`: whether it is on an open rim, where each sweep lets all sand
-    /// above height 0 fall.
-    std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree, bool spills = false);
+    /// above height 0 fall. `moving`: whether sand flowed there in the last sweep.
+    std::int32_t addVertex(std::int64_t volume, std::int64_t star, double underside = kFree, bool spills = false,
+                           bool moving = false);
     /// Adds a facet and returns its number. Its corners are numbers of vertices here.
     std::int32_t addFacet(const Facet& facet);
     /// Adds an edge. Its ends and facets are numbers of vertices and facets here.
@@ -44,7 +45,7 @@ public:
 
     /// Sets all fluxes to 0, so that no momentum continues. Call place() for each vertex before the next sweep.
     void restart();
-    void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside);
+    void place(std::size_t vertex, std::int64_t volume, std::int64_t star, double underside, bool moving = false);
     /// Sets whether all facets around a vertex are here. A new vertex is not watched.
     void setWatched(std::size_t vertex, bool watched) { unwatched_[vertex] = watched ? 0 : ~std::uint64_t{0}; }
     [[nodiscard]] bool isWatched(std::size_t vertex) const { return unwatched_[vertex] == 0; }

@@ -72,6 +72,7 @@ int Erosion::run(VertexSand& layer, int sweeps, const Underside* held, std::vect
         }
     }
     active_.store(layer, moved);
+    active_.storeMotion(layer, moved);
     sortOnce(moved);
     return done;
 }

@@ -49,9 +49,10 @@ using Underside = ActiveEdges::Underside;
 /// - No new extremes: the new height 0 lies between u and the ground beyond the rim.
 /// - It ends: V²/star of such a vertex falls to 0, and no other sand moves.
 ///
-/// Sand at rest starts to slide beyond the start threshold. In the same call of sweep(), this sand and all sand that it
-/// touches then slide down to the threshold. The result of sweep() depends only on the layer, the rules, the obstacle
-/// and the number of sweeps. It does not depend on slots, active sets, threads or earlier calls. Not thread-safe.
+/// Sand at rest starts to slide beyond the start threshold. This sand and all sand that it touches then slide down to
+/// the threshold. That may take many calls of sweep(), because the layer records which sand moves. The result of
+/// sweep() depends only on the layer, the rules, the obstacle and the number of sweeps. It does not depend on slots,
+/// active sets, threads or earlier calls. Not thread-safe.
 class Erosion {
 public:
     /// `threshold` and `startThreshold` are those of Rules: the slopes at which sliding sand stops and sand at rest
@@ -73,7 +74,8 @@ public:
     /// leaves, no such call is needed: a call in which the underside at a vertex has changed examines the sand there
     /// again.
     ///
-    /// Adds the vertices that moved to `moved`, in ascending order, each once. The cost grows with the amount of moving
+    /// Adds the vertices that moved, began to move or stopped to `moved`, in ascending order, each once. The cost grows
+    /// with the amount of moving
     /// sand. It is negligible when all sand is at rest.
     int sweep(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Runs at most `most` sweeps without momentum and without an obstacle, fewer if all sand is at rest before.

@@ -148,6 +148,7 @@ void project(VertexSand& layer, double slope, Rim rim, Settled& result) {
 
 Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most, Rim rim) {
     const std::vector<std::int64_t> before = layer.volumes();
+    const std::vector<std::uint8_t> moving = layer.moving();
     Settled result;
     std::vector<Vertex> moved;
     Erosion erosion(layer, threshold, startThreshold, rim);
@@ -159,8 +160,9 @@ Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThre
     }
     result.atRest = erosion.settled();
     result.outflow += erosion.takeOutflow();
+    (void)layer.stopMoving();
     for (std::size_t i = 0; i < before.size(); ++i) {
-        if (layer.volumes()[i] != before[i]) {
+        if (layer.volumes()[i] != before[i] || moving[i] != 0) {
             result.moved.push_back(static_cast<Vertex>(i));
         }
     }

@@ -40,13 +40,17 @@ public:
         }
     }
 
+    std::size_t level = 0, upright = 0;  // ends of the level and of the upright parts in outline()
+
     std::vector<Holes::Part> outline() {
         for (int row = 1; row < cells_.rows; ++row) {
             addBorderSouthOf(row);
         }
+        level = parts_.size();
         for (int column = 1; column < cells_.columns; ++column) {
             addBorderWestOf(column);
         }
+        upright = parts_.size();
         for (int row = 1; row < cells_.rows; ++row) {
             for (int column = 1; column < cells_.columns; ++column) {
                 if (isPinch(column, row)) {
@@ -145,7 +149,10 @@ Holes::Holes(const Cells& cells, std::vector<Run> runs)
     for (std::size_t row = 0; row + 1 < firstRun_.size(); ++row) {
         firstRun_[row + 1] += firstRun_[row];
     }
-    outline_ = Outliner(*this).outline();
+    Outliner outliner(*this);
+    outline_ = outliner.outline();
+    level_ = outliner.level;
+    upright_ = outliner.upright;
 }
 
 bool Holes::isHole(int column, int row) const {
@@ -200,12 +207,16 @@ bool Holes::borders(const Place& a, const Place& b) const {
 }
 
 bool Holes::reachInto(const Place& southWest, const Place& northEast) const {
-    for (int row = cells_.rowOf(southWest.y - bridge_); row <= cells_.rowOf(northEast.y + bridge_); ++row) {
-        for (int column = cells_.columnOf(southWest.x - bridge_); column <= cells_.columnOf(northEast.x + bridge_);
-             ++column) {
-            if (column >= 0 && row >= 0 && column < cells_.columns && row < cells_.rows && isHole(column, row)) {
-                return true;
-            }
+    const int west = std::max(cells_.columnOf(southWest.x - bridge_), 0);
+    const int east = std::min(cells_.columnOf(northEast.x + bridge_), cells_.columns - 1);
+    const int south = std::max(cells_.rowOf(southWest.y - bridge_), 0);
+    const int north = std::min(cells_.rowOf(northEast.y + bridge_), cells_.rows - 1);
+    for (int row = south; row <= north && west <= east; ++row) {
+        const auto begin = runs_.begin() + firstRun_[static_cast<std::size_t>(row)];
+        const auto end = runs_.begin() + firstRun_[static_cast<std::size_t>(row) + 1];
+        const auto run = std::lower_bound(begin, end, west, [](const Run& one, int at) { return one.end <= at; });
+        if (run != end && run->first <= east) {
+            return true;
         }
     }
     return false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -70,6 +72,26 @@ public:
     };
     /// Returns the border of all holes except on the field's rim, in parts that are as long as possible.
     [[nodiscard]] const std::vector<Part>& outline() const { return outline_; }
+    /// Calls visit(part) for each part of the outline that reaches into the rectangle [probe unit], in the order of
+    /// outline(). Leaves out the borders of the squares at corners where two cells touch.
+    template <class Visit>
+    void forEachPart(std::int32_t west, std::int32_t south, std::int32_t east, std::int32_t north,
+                     const Visit& visit) const {
+        const auto among = [&](std::size_t begin, std::size_t end, std::int32_t Place::*level, std::int32_t first,
+                               std::int32_t last) {
+            const auto from = outline_.begin() + static_cast<std::ptrdiff_t>(begin);
+            const auto to = outline_.begin() + static_cast<std::ptrdiff_t>(end);
+            auto part = std::lower_bound(from, to, first,
+                                         [level](const Part& one, std::int32_t at) { return one.from.*level < at; });
+            for (; part != to && part->from.*level <= last; ++part) {
+                if (part->from.x <= east && part->to.x >= west && part->from.y <= north && part->to.y >= south) {
+                    visit(*part);
+                }
+            }
+        };
+        among(0, level_, &Place::y, south, north);
+        among(level_, upright_, &Place::x, west, east);
+    }
 
     /// Returns whether two cells without ground touch only at the south-west corner of this cell.
     [[nodiscard]] bool isPinch(int column, int row) const;
@@ -83,7 +105,8 @@ private:
     std::vector<Run> runs_;
     std::vector<std::uint32_t> firstRun_;  // index of each row's first run, and the number of runs
     std::int32_t bridge_;
-    std::vector<Part> outline_;
+    std::vector<Part> outline_;            // level parts from south to north, upright ones from west to east, pinches
+    std::size_t level_ = 0, upright_ = 0;  // ends of the level and of the upright parts in outline_
 };
 
 }  // namespace sand::tin

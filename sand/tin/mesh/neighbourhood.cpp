@@ -131,20 +131,41 @@ void Neighbourhood::follow(const Triangles& mesh, const std::vector<Vertex>& cha
 
 void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
     link.vertices.clear();
-    link.constrained = false;
-    const std::int32_t first = mesh.triangleAt[static_cast<std::size_t>(vertex)];
+    link.constrained = link.bordered = false;
+    const auto cornerOf = [&](std::int32_t slot) {
+        const auto& corner = mesh.triangles[index(slot)].corner;
+        return static_cast<std::size_t>(std::find(corner.begin(), corner.end(), vertex) - corner.begin());
+    };
+    const auto beside = [&](std::int32_t slot, std::size_t turn) {
+        return mesh.triangles[index(slot)].neighbour[(cornerOf(slot) + turn) % 3];
+    };
+    const std::int32_t any = mesh.triangleAt[index(vertex)];
+    std::int32_t first = any;  // on the rim, the first triangle counter-clockwise
+    for (std::int32_t slot = beside(any, 2); slot != kNobody && slot != any; slot = beside(slot, 2)) {
+        first = slot;
+    }
+    link.closed = beside(first, 2) != kNobody;
+    first = link.closed ? any : first;
     std::int32_t slot = first;
     do {
-        const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
-        const auto k = static_cast<std::size_t>(std::find(triangle.corner.begin(), triangle.corner.end(), vertex) -
-                                                triangle.corner.begin());
-        link.vertices.push_back(triangle.corner[(k + 1) % 3]);
-        link.constrained = link.constrained || triangle.constrained[(k + 1) % 3] || triangle.constrained[(k + 2) % 3];
-        slot = triangle.neighbour[(k + 1) % 3];
+        const Triangle& triangle = mesh.triangles[index(slot)];
+        const std::size_t k = cornerOf(slot), after = (k + 1) % 3;
+        link.vertices.push_back(triangle.corner[after]);
+        const std::int32_t next = triangle.neighbour[after];
+        if (triangle.constrained[after] && next != kNobody) {
+            const bool border = triangle.hole != mesh.triangles[index(next)].hole;
+            link.bordered = link.bordered || border;
+            link.constrained = link.constrained || !border;
+        }
+        if (next == kNobody) {
+            link.vertices.push_back(triangle.corner[(k + 2) % 3]);
+        }
+        slot = next;
     } while (slot != first && slot != kNobody);
-    link.closed = slot != kNobody;
-    std::rotate(link.vertices.begin(), std::min_element(link.vertices.begin(), link.vertices.end()),
-                link.vertices.end());
+    if (link.closed) {
+        std::rotate(link.vertices.begin(), std::min_element(link.vertices.begin(), link.vertices.end()),
+                    link.vertices.end());
+    }
 }
 
 bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance) {

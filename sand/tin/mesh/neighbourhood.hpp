@@ -66,11 +66,13 @@ private:
     base::IndexSet seen_;                          // slots that look() has found
 };
 
-/// The neighbours of a vertex inside the field, counter-clockwise from the smallest number.
+/// The neighbours of a vertex, counter-clockwise: from the smallest number, or for a vertex on the rim, from rim to
+/// rim.
 struct Link {
     std::vector<Vertex> vertices;
-    bool constrained = false;  // whether an edge of the vertex is constrained
-    bool closed = true;        // false for a vertex on the rim; `vertices` then has no meaning
+    bool constrained = false;  // whether an edge of the vertex is constrained, except for rim and border of holes
+    bool bordered = false;     // whether an edge of the vertex is on the border of a hole
+    bool closed = true;        // false for a vertex on the rim
 };
 /// Sets `link` to the neighbours of `vertex`.
 void findLink(const Triangles& mesh, Vertex vertex, Link& link);

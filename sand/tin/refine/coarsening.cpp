@@ -54,9 +54,10 @@ bool takeOut(VertexSand& layer, const DetailRules& rules, Vertex vertex, Link& l
     findLink(layer.triangles(), vertex, link);
     // The triangles before and after the removal have the same vertices except the removed one. All vertices lie
     // within `far` of a plane, so that both surfaces do. They are therefore at most 2 `far` apart. The remap moves
-    // them by at most the mean of this distance.
-    return !link.constrained && link.closed && link.vertices.size() <= kMostAround &&
-           4 * farthestFromPlane(layer, vertex, link) <= rules.maxError && layer.remove(vertex);
+    // them by at most the mean of this distance. This holds on the rim too, because the rim is straight at the vertex.
+    return !link.constrained && !link.bordered && (link.closed || !rules.keepsRim) &&
+           link.vertices.size() <= kMostAround && 4 * farthestFromPlane(layer, vertex, link) <= rules.maxError &&
+           layer.remove(vertex);
 }
 
 /// Examines the vertices for which `maySkip` is false. Calls `looked` with each vertex, whether it was removed, and

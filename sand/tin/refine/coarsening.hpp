@@ -12,9 +12,9 @@
 namespace sand::tin {
 
 /// Removes vertices where the surface is flat again. Examines vertex numbers in ascending order, cyclically from
-/// `next` on. Vertices with a constraint, on the rim or in `keepOut` stay; `keepOut` is the area in which the tool
-/// works. Removes at most rules.removals vertices, and examines at most sixteen times as many. Returns the number of
-/// removed vertices.
+/// `next` on. Vertices with a constraint, on the border of a hole or in `keepOut` stay, and with rules.keepsRim, those
+/// on the rim; `keepOut` is the area in which the tool works. Removes at most rules.removals vertices, and examines at
+/// most sixteen times as many. Returns the number of removed vertices.
 ///
 /// A vertex is removed if it and its neighbours are close to one plane. They must be so close that the other triangles
 /// and the remap move the surface nowhere by more than rules.maxError. The volume stays exact. The errors of
@@ -42,9 +42,9 @@ private:
     /// Makes step() examine the corners of a triangle again.
     void lookAgain(const Triangle& triangle);
 
-    // Bits by vertex; a vertex beyond the end has none. If a vertex within the field has kNoneInVain, neither it nor a
-    // vertex around it has kInVain. On the rim this may be false, but no vertex is removed there. The bits outlast
-    // their vertex. This does no harm, because a vertex that comes back has only new triangles.
+    // Bits by vertex; a vertex beyond the end has none. If a vertex has kNoneInVain, neither it nor a vertex around it
+    // has kInVain. The bits outlast their vertex. This does no harm, because a vertex that comes back has only new
+    // triangles.
     static constexpr std::uint8_t kInVain = 1;  // removal failed, and nothing around the vertex has changed since
     static constexpr std::uint8_t kNoneInVain = 2;
     std::vector<std::uint8_t> known_;

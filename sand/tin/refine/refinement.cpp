@@ -2,6 +2,8 @@
 #include "sand/tin/refine/refinement.hpp"
 
 #include <algorithm>
+#include <set>
+#include <tuple>
 
 #include "sand/model/height_field.hpp"
 
@@ -131,13 +133,48 @@ int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::f
     return static_cast<int>(places.size());
 }
 
+int refineHoles(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
+                std::span<const Place> there) {
+    const Box inside = box.clippedTo(mesh.triangles());
+    if (rules.spacing <= 0 || inside.empty() || mesh.holes() == nullptr) {
+        return 0;
+    }
+    // A square's part of a line, by the line's direction and level and by the number of the square.
+    using Stretch = std::tuple<bool, std::int32_t, std::int32_t>;
+    std::set<Stretch> taken;
+    for (const Place& place : there) {
+        taken.emplace(false, place.y, place.x / rules.spacing);
+        taken.emplace(true, place.x, place.y / rules.spacing);
+    }
+    std::vector<Place> places;
+    const int room = rules.maxVertices - mesh.vertexCount();
+    mesh.holes()->forEachPart(inside.x0, inside.y0, inside.x1, inside.y1, [&](const Holes::Part& part) {
+        const bool upright = part.from.x == part.to.x;
+        const auto turned = [upright](const Place& place) { return upright ? Place{place.y, place.x} : place; };
+        const Place from = turned(part.from), to = turned(part.to);
+        const Place first = turned({inside.x0, inside.y0}), last = turned({inside.x1, inside.y1});
+        const std::int32_t west = std::max(from.x + rules.spacing / 4, first.x);
+        const std::int32_t east = std::min(to.x - rules.spacing / 4, last.x);
+        for (std::int32_t number = west / rules.spacing; number * rules.spacing <= east; ++number) {
+            const std::int32_t along = number * rules.spacing + rules.spacing / 2;
+            const Place place = turned({along, from.y});
+            if (along >= west && along <= east && static_cast<int>(places.size()) < room && wanted(place) &&
+                taken.emplace(upright, from.y, number).second) {
+                places.push_back(place);
+            }
+        }
+    });
+    mesh.insert(places);
+    return static_cast<int>(places.size());
+}
+
 void DetailRules::encode(base::ByteWriter& writer) const {
     writer.put(spacing);
     writer.put(maxError);
     writer.put(firstToGo);
     writer.put(removals);
     writer.put(maxVertices);
-    writer.put(static_cast<std::uint8_t>(keepsConstraints ? 1 : 0));
+    writer.put(static_cast<std::uint8_t>((keepsConstraints ? 1 : 0) + (keepsRim ? 2 : 0)));
 }
 
 DetailRules DetailRules::decode(base::ByteReader& reader) {
@@ -148,10 +185,11 @@ DetailRules DetailRules::decode(base::ByteReader& reader) {
     rules.removals = reader.get<std::int32_t>();
     rules.maxVertices = reader.get<std::int32_t>();
     const auto keeps = reader.get<std::uint8_t>();
-    rules.keepsConstraints = keeps == 1;
+    rules.keepsConstraints = (keeps & 1) != 0;
+    rules.keepsRim = (keeps & 2) != 0;
     const bool sound = rules.spacing >= 0 && rules.spacing <= (1 << 22) && rules.maxError >= 0 &&
                        rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
-                       rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 1;
+                       rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 3;
     if (!sound) {
         throw base::FormatError("detail rules of a TIN out of range");
     }

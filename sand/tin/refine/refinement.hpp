@@ -22,6 +22,7 @@ struct DetailRules {
     std::int32_t removals = 0;           // most removals per step
     std::int32_t maxVertices = 1 << 22;  // limit for refinement and outlines
     bool keepsConstraints = false;       // whether the constraints of a tool stay after it has left
+    bool keepsRim = true;                // whether vertices on the rim stay, as those of an open rim do
 
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError if a rule is out of range.
@@ -43,9 +44,13 @@ int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::func
 
 /// Adds a vertex on the field's rim beside the middle of each square that reaches the rim within `box`. `wanted` must
 /// be true for the place on the rim. The square's part of the rim must contain no place of `there`. Stops when the
-/// mesh has rules.maxVertices. Returns the number of added vertices. An open rim needs this, because sand falls over
-/// it only at vertices.
+/// mesh has rules.maxVertices. Returns the number of added vertices. Without vertices on the rim, sand would neither
+/// fall over an open rim nor lie against a closed one as in a mirror.
 int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
               std::span<const Place> there);
+
+/// Does the same on the borders of the mesh's holes, at least a quarter of the spacing away from their corners.
+int refineHoles(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
+                std::span<const Place> there);
 
 }  // namespace sand::tin

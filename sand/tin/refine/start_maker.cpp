@@ -18,7 +18,7 @@ namespace sand::tin {
 namespace {
 
 constexpr int kCorners = 4;
-constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // distance of points on an open rim if settings give none
+constexpr std::int32_t kUsualWidest = 16 * kLatticePerCell;  // distance of points on the rim if settings give none
 constexpr double kAnyError = 4.0 * kMaxHeight;               // more than any difference of two heights [unit]
 
 std::int32_t nearestHeight(double height) {
@@ -60,16 +60,28 @@ void addLattice(const HeightField& field, const Holes* holes, const Settings& se
     }
 }
 
-/// Returns a border with error `maxError`, or with a larger one if it would otherwise exceed `most` vertices. Throws
-/// std::length_error if every border exceeds them.
+/// Returns the next spacing to try on a closed rim, if there is no room for vertices at `spacing`. 0 leaves only the
+/// vertices that the heights require.
+std::int32_t widerSpacing(std::int32_t spacing, std::int32_t width, std::int32_t depth) {
+    return spacing < std::max(width, depth) ? 2 * spacing : 0;
+}
+
+/// Returns a border with error `maxError`, or with a larger one if it would otherwise exceed `most` vertices. A closed
+/// rim gets fewer vertices first. Throws std::length_error if every border exceeds them.
 Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
-                    std::int32_t longestOnRim, double maxError) {
+                    std::int32_t longestOnRim, Rim rim, double maxError) {
     const auto within = [&](double error) { return borderOf(heights, cells, holes, error, longestOnRim); };
     Border border = within(maxError);
     if (border.places.size() <= most) {
         return border;
     }
-    if (const Border least = within(kAnyError); least.places.size() > most) {
+    Border least = within(kAnyError);
+    while (rim == Rim::closed && longestOnRim > 0 && least.places.size() > most) {
+        longestOnRim = widerSpacing(longestOnRim, cells.width, cells.depth);
+        least = within(kAnyError);
+    }
+    border = within(maxError);
+    if (least.places.size() > most) {
         const std::string what = holes == nullptr ? "the open rim" : "the outline of cells without data";
         throw std::length_error(what + (holes != nullptr && longestOnRim > 0 ? " and the open rim take " : " takes ") +
                                 std::to_string(least.places.size()) + " vertices, and there is room for " +
@@ -94,12 +106,9 @@ bool isLevel(const HeightField& field) {
     return true;
 }
 
-/// Returns the longest edge allowed on the rim [probe unit]; 0: limited by the heights only.
-std::int32_t rimSpacing(const Settings& settings, Rim rim) {
-    if (rim == Rim::closed) {
-        return 0;
-    }
-    // Sand falls over the rim only at vertices.
+/// Returns the longest edge allowed on the rim [probe unit]. Sand falls over an open rim only at vertices. On a closed
+/// rim, sand piles up as in a mirror only if there are vertices.
+std::int32_t rimSpacing(const Settings& settings) {
     return settings.widest > 0 ? std::max(settings.widest, kLatticePerCell) : kUsualWidest;
 }
 
@@ -124,7 +133,7 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     const Settings& settings = start.settings;
     const std::int64_t room = settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows());
     Border given = borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
-                                start.holes.get(), rimSpacing(settings, rim), settings.maxError);
+                                start.holes.get(), rimSpacing(settings), rim, settings.maxError);
     // Round as the start does, because the errors must be those of its surface.
     for (double& height : given.heights) {
         height = nearestHeight(height);
@@ -141,9 +150,16 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     return chosen.maxError;
 }
 
-/// Adds vertices on the sides of the field until no edge along them is longer than `longest` [probe unit]. Each gets
-/// the height of the edge there.
-void divideRim(std::int32_t longest, TinStart& start) {
+/// Places of a start with their heights [unit].
+struct MorePlaces {
+    std::vector<Place> places;
+    std::vector<std::int32_t> heights;
+};
+
+/// Returns vertices on the sides of the field that leave no edge along them longer than `longest` [probe unit]. Each
+/// has the height of the edge there.
+MorePlaces rimDivision(std::int32_t longest, const TinStart& start) {
+    MorePlaces more;
     const std::array<std::function<bool(const Place&)>, 4> sides{
         [](const Place& place) { return place.y == 0; }, [&](const Place& place) { return place.x == start.width; },
         [&](const Place& place) { return place.y == start.depth; }, [](const Place& place) { return place.x == 0; }};
@@ -160,12 +176,28 @@ void divideRim(std::int32_t longest, TinStart& start) {
             for (std::int32_t part = 1; part < parts; ++part) {
                 const double share = static_cast<double>(part) / parts;
                 const auto way = [share](std::int32_t whole) { return static_cast<std::int32_t>(share * whole); };
-                start.places.push_back({from->first.x + way(x), from->first.y + way(y)});
-                start.heights.push_back(nearestHeight(from->second + static_cast<double>(way(x + y)) / (x + y) *
-                                                                         (to->second - from->second)));
+                more.places.push_back({from->first.x + way(x), from->first.y + way(y)});
+                more.heights.push_back(nearestHeight(from->second + static_cast<double>(way(x + y)) / (x + y) *
+                                                                        (to->second - from->second)));
             }
         }
     }
+    return more;
+}
+
+/// Adds vertices on the rim. A closed rim gets at most as many as settings.mostVertices leaves room for. A start that
+/// exceeds this number already has no such limit.
+void divideRim(Rim rim, TinStart& start) {
+    const auto most = static_cast<std::size_t>(start.settings.mostVertices);
+    const std::size_t there = start.places.size();
+    std::int32_t longest = rimSpacing(start.settings);
+    MorePlaces more = rimDivision(longest, start);
+    while (rim == Rim::closed && there <= most && there + more.places.size() > most) {
+        longest = widerSpacing(longest, start.width, start.depth);
+        more = longest > 0 ? rimDivision(longest, start) : MorePlaces{};
+    }
+    start.places.insert(start.places.end(), more.places.begin(), more.places.end());
+    start.heights.insert(start.heights.end(), more.heights.begin(), more.heights.end());
 }
 
 }  // namespace
@@ -197,6 +229,7 @@ Followed follow(const HeightField& field, const Ground* walls, const Settings& s
         addLattice(field, nullptr, settings, given);
         start.places = std::move(given.places);
         start.heights.assign(start.places.size(), field.height(0, 0));
+        divideRim(rim, start);
     } else {
         followed.maxError = addChosen(field, walls, rim, start);
     }
@@ -233,9 +266,7 @@ TinStart join(const TinStart& given, Rim rim) {
             start.constraints.emplace_back(ends);
         }
     }
-    if (const std::int32_t longest = rimSpacing(start.settings, rim); longest > 0) {
-        divideRim(longest, start);
-    }
+    divideRim(rim, start);
     start.meanHeight = meanHeight(start);
     return start;
 }

@@ -22,14 +22,14 @@ struct Followed {
 /// settings.widest, and the points that greedy insertion adds to these.
 ///
 /// Stops when the surface is within settings.maxError of every cell's centre, and of the rim beside every centre. Also
-/// stops at settings.mostVertices. On an open rim, vertices are at most settings.widest apart, or 16 cells if that is
-/// 0. `walls` may be null; wall cells become holes. Throws std::length_error if the border needs more vertices than
-/// allowed.
+/// stops at settings.mostVertices. On the rim, vertices are at most settings.widest apart, or 16 cells if that is 0. A
+/// closed rim has fewer if there is no room for them. `walls` may be null; wall cells become holes. Throws
+/// std::length_error if the border needs more vertices than allowed.
 [[nodiscard]] Followed follow(const HeightField& field, const Ground* walls, const Settings& settings,
                               Rim rim = Rim::closed);
 /// Returns the TIN of the places and heights of `start`. Adds the missing corners of the field, each as high as the
-/// nearest place. start.places need not begin with the corners, and start.constraints refer to start.places. An open
-/// rim gets vertices as with follow(), on the straight lines between existing vertices.
+/// nearest place. start.places need not begin with the corners, and start.constraints refer to start.places. The rim
+/// gets vertices as with follow(), on the straight lines between existing vertices.
 [[nodiscard]] TinStart join(const TinStart& start, Rim rim = Rim::closed);
 /// Returns the TIN of the current surface. A scene that starts at rest uses it. Rounds heights to whole units.
 /// `settings` are those of the start from which the surface began.

@@ -7,6 +7,7 @@
 namespace sand::tin {
 namespace {
 
+constexpr std::int32_t kBands = 32;         // of an outline, for thin()
 constexpr std::size_t kMostPresses = 4096;  // of one chunk
 // A chunk ends when its box exceeds two reaches by this much [probe unit].
 constexpr std::int32_t kWay = 16 * kProbePerCell;
@@ -115,7 +116,7 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
         if (rules_.spacing > 0) {  // otherwise the neighbourhood is not used
             neighbourhood_->look(layer.triangles(), box);
         }
-        changeMesh(layer, imprint, Rim::closed, {{{at, {0, 0}}}, box, false});  // an open rim keeps its vertices
+        changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
     }
     imprint = {};
 }
@@ -130,7 +131,10 @@ void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chun
             leave(layer, imprint);
             return;
         }
-        neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, rim, chunk));
+        neighbourhood_->follow(layer.triangles(), changeMesh(layer, imprint, chunk));
+    }
+    if (isNearHole(layer, chunk.box)) {
+        neighbourhood_->look(layer.triangles(), chunk.box);  // after follow() it has no triangles()
     }
     for (const Press& press : chunk.presses) {
         this->press(layer, rim, press, done);
@@ -151,9 +155,9 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
     });
 }
 
-std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const {
+std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const {
     const ProbePoint at = chunk.presses.back().at;
-    const Holes* holes = layer.mesh().holes().get();
+    const Holes* const holes = isNearHole(layer, chunk.box) ? layer.mesh().holes().get() : nullptr;
     const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
     Edges edges;
     if (rules_.spacing > 0) {  // otherwise the edges are not used
@@ -178,7 +182,11 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
         };
         refine(mesh, rules_, chunk.box, wanted, there, edges);
-        if (rim == Rim::open) {
+        if (holes != nullptr) {
+            const auto wantedOnBorder = [&](const Place& place) { return isNearTool(place, chunk.presses); };
+            refineHoles(mesh, rules_, chunk.box, wantedOnBorder, there);
+        }
+        if (chunk.last || !rules_.keepsRim) {  // a rim that keeps its vertices needs none when the tool leaves
             const auto wantedOnRim = [&](const Place& place) {
                 // Holes::holds() returns true for every place that is not inside the field.
                 const Triangles& field = mesh.triangles();
@@ -237,23 +245,36 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
         around = around.joinedWith({place.x, place.y, place.x, place.y});
     }
     around = around.grownBy(distance);
+    // The outline's edges, and its points as edges without length, by the bands from south to north that they come
+    // near.
+    const std::int32_t band = std::max((around.y1 - around.y0) / kBands, distance) + 1;
+    std::vector<Edges> near(static_cast<std::size_t>((around.y1 - around.y0) / band) + 1);
+    const auto put = [&](const Place& a, const Place& b) {
+        const std::int32_t first = std::min(a.y, b.y) - distance - around.y0;
+        const std::int32_t last = std::max(a.y, b.y) + distance - around.y0;
+        for (std::int32_t i = first / band; i <= last / band; ++i) {
+            near[static_cast<std::size_t>(i)].emplace_back(a, b);
+        }
+    };
+    for (const auto& [a, b] : outline.edges) {
+        put(a, b);
+    }
+    for (const Place& place : outline.points) {
+        put(place, place);
+    }
     Link link;
     for (const Vertex vertex : neighbourhood_->vertices()) {
         const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
         if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
             continue;
         }
-        const bool close = std::any_of(outline.edges.begin(), outline.edges.end(),
-                                       [&](const auto& e) {
-                                           return boxOf(e.first, e.second).grownBy(distance).holds(place) &&
-                                                  isNear(place, e.first, e.second, distance);
-                                       }) ||
-                           std::any_of(outline.points.begin(), outline.points.end(), [&](const Place& p) {
-                               return boxOf(p, p).grownBy(distance).holds(place) && isNear(place, p, p, distance);
-                           });
-        if (close) {
+        const Edges& here = near[static_cast<std::size_t>((place.y - around.y0) / band)];
+        if (std::any_of(here.begin(), here.end(), [&](const auto& edge) {
+                return boxOf(edge.first, edge.second).grownBy(distance).holds(place) &&
+                       isNear(place, edge.first, edge.second, distance);
+            })) {
             findLink(mesh.triangles(), vertex, link);
-            if (!link.constrained && link.closed) {
+            if (!link.constrained && (link.closed || !rules_.keepsRim)) {
                 mesh.remove(vertex);
             }
         }

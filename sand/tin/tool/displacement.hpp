@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -40,13 +41,17 @@ public:
     /// presses there.
     ///
     /// Moves in sub-steps of at most one cell. Skips a sub-step that brings the tool less than a quarter of a cell
-    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path, on
-    /// an open rim too. Removes the previous imprint, and puts the outline in at the end of the path.
+    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path,
+    /// also on the rim and on the borders of holes. Removes the previous imprint, and puts the outline in at the end of
+    /// the path.
     ///
     /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
     /// ahead. If no vertex is ahead, the sand goes to all vertices around. If the mesh is too coarse for that, it goes
     /// to the neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open
     /// rim, the ground beyond takes its share, which flows out.
+    ///
+    /// Holes divide the vertices below the tool and beside it into parts. Two vertices are joined by an edge of a
+    /// triangle on ground. Each part shares out its own sand.
     ///
     /// A tool that is held still changes nothing after its press. If the tool does not reach the sand at all, it
     /// leaves the sand as with leave().
@@ -79,24 +84,36 @@ private:
     struct Receiver {
         Vertex vertex;  // kNobody: beyond the rim
         double weight;
+        Place place;  // only beyond the rim
         Volume share = 0;
     };
 
     void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
     [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
     /// Returns the vertices that VertexSand::edit() returns.
-    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk) const;
+    std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
     [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
 
     void press(VertexSand& layer, Rim rim, const Press& press, Work& work);
+    /// Does the work of press() part by part, beside a hole.
+    void pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& work);
+    [[nodiscard]] bool isNearHole(const VertexSand& layer, const Box& box) const;
     [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& at);
     void findReceivers(const VertexSand& layer, Rim rim, const Press& press);
+    void addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere);
     void addBeyond(const VertexSand& layer, const Press& press, bool everywhere);
-    void addNeighbours(const VertexSand& layer, const ProbePoint& at);
+    void addNeighbours(const VertexSand& layer, const ProbePoint& at, const std::function<bool(Vertex)>& isOurs);
+    /// Shares the sand of `cut_` out among `receivers_`, unless there are none or the sand has no room.
+    void deal(VertexSand& layer, Work& work);
     void shareOut();
     [[nodiscard]] bool hasRoom(const VertexSand& layer) const;
+    void findParts(const VertexSand& layer, const ProbePoint& at);
+    void forgetParts();
+    /// Returns the first vertex of a vertex's part, or kNobody if it is in no part.
+    [[nodiscard]] Vertex partOf(Vertex vertex);
+    [[nodiscard]] Vertex partOf(const VertexSand& layer, const Receiver& receiver);
 
     ToolShape shape_;
     Heading heading_;
@@ -108,6 +125,8 @@ private:
     std::vector<Cut> cut_;
     Volume taken_ = 0;
     std::vector<Receiver> receivers_;
+    std::vector<Vertex> inParts_;  // vertices in parts, ascending
+    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNobody outside all parts
 };
 
 }  // namespace sand::tin

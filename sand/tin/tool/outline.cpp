@@ -169,13 +169,26 @@ void drawSole(Drawing& drawing, double length, double width) {
     }
 }
 
-/// Adds rings of points at such shares of the radius that the surface between them is close to a sphere. It lies above
-/// the sphere by less than a fifteenth of the radius.
+/// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. It is above the
+/// bowl by less than a fifteenth of the radius, within 0.98 of the outline, if points of the mesh are a sixth of the
+/// radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer ring. Otherwise
+/// triangles would reach from the outline over the ring. The narrow bowl of an ellipsoid needs more points inside.
 void drawBowl(Drawing& drawing, double length, double width) {
-    for (const auto& [share, count] : {std::pair{0.8, 16}, std::pair{0.45, 8}}) {
+    constexpr double kOuter = 0.96;
+    const Polygon outer = ellipse({0, 0}, kOuter * length, kOuter * width, 32);
+    // A ring so close to the outline that its triangles would be slivers is left out.
+    for (std::size_t i = 0; i < outer.size() && (1 - kOuter) * std::min(length, width) >= kShortest; ++i) {
+        drawing.edge(outer[i], outer[(i + 1) % outer.size()]);
+    }
+    const bool narrow = width < length;
+    const auto inner = [&](double share, int count) {
         for (const Own& own : ellipse({0, 0}, share * length, share * width, count)) {
             drawing.point(own);
         }
+    };
+    inner(0.75, narrow ? 32 : 16);
+    if (narrow) {
+        inner(0.5, 16);
     }
     drawing.point({0, 0});
 }
@@ -244,6 +257,77 @@ Outline Outline::of(const ToolShape& shape, const Heading& heading) {
     return outline;
 }
 
+namespace {
+
+/// Calls visit(share) for each line x = lineOf(number) or y = lineOf(number) that an edge crosses between its ends,
+/// with the share of the edge up to the crossing.
+template <class LineOf, class Visit>
+void forEachLine(std::int32_t from, std::int32_t to, int first, int last, const LineOf& lineOf, const Visit& visit) {
+    for (int number = std::min(first, last); number <= std::max(first, last) + 1; ++number) {
+        const std::int32_t line = lineOf(number);
+        if ((from < line && line < to) || (to < line && line < from)) {
+            visit(static_cast<double>(line - from) / (to - from), line, number);
+        }
+    }
+}
+
+/// Returns the parts of an edge that lie on ground. Each end between the ends of the edge is on the border of a hole.
+/// Returns no parts if the edge comes near a place where two cells without ground touch at a corner.
+std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, const Holes& holes) {
+    const Cells& cells = holes.cells();
+    const int west = cells.columnOf(std::min(a.x, b.x) - holes.bridge());
+    const int east = cells.columnOf(std::max(a.x, b.x) + holes.bridge());
+    const int south = cells.rowOf(std::min(a.y, b.y) - holes.bridge());
+    const int north = cells.rowOf(std::max(a.y, b.y) + holes.bridge());
+    for (int row = south; row <= north + 1; ++row) {
+        for (int column = west; column <= east + 1; ++column) {
+            if (holes.isPinch(column, row)) {
+                return {};
+            }
+        }
+    }
+    std::vector<std::pair<double, Place>> crossings;  // of borders, with their shares of the edge
+    const auto along = [](std::int32_t from, std::int32_t to, double share) {
+        return rounded(from + share * (static_cast<double>(to) - from));
+    };
+    const auto column = [&](std::int32_t x) { return cells.columnOf(x); };
+    const auto row = [&](std::int32_t y) { return cells.rowOf(y); };
+    forEachLine(
+        a.x, b.x, column(a.x), column(b.x), [&](int number) { return cells.west(number); },
+        [&](double share, std::int32_t x, int number) {
+            const Place place{x, along(a.y, b.y, share)};
+            if (holes.isHole(number - 1, row(place.y)) != holes.isHole(number, row(place.y))) {
+                crossings.emplace_back(share, place);
+            }
+        });
+    forEachLine(
+        a.y, b.y, row(a.y), row(b.y), [&](int number) { return cells.south(number); },
+        [&](double share, std::int32_t y, int number) {
+            const Place place{along(a.x, b.x, share), y};
+            if (holes.isHole(column(place.x), number - 1) != holes.isHole(column(place.x), number)) {
+                crossings.emplace_back(share, place);
+            }
+        });
+    std::sort(crossings.begin(), crossings.end());
+    std::vector<std::pair<Place, Place>> parts;
+    Place from = a;
+    bool ground = !holes.holds(a);
+    const auto end = [&](const Place& place) {
+        if (ground && from != place) {
+            parts.emplace_back(from, place);
+        }
+        ground = !ground;
+        from = place;
+    };
+    for (const auto& [share, place] : crossings) {
+        end(place);
+    }
+    end(b);
+    return parts;
+}
+
+}  // namespace
+
 PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, const Triangles& field,
                      const Holes* holes) {
     PlacedOutline result;
@@ -257,7 +341,7 @@ PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, con
         places.push_back({x + offset.x, y + offset.y});
         const Place& place = places.back();
         const bool inside = place.x >= 0 && place.y >= 0 && place.x <= field.width && place.y <= field.depth;
-        if (inside && (holes == nullptr || !holes->reachInto(place, place))) {
+        if (inside && (holes == nullptr || !holes->holds(place))) {
             add(place);
         }
     }
@@ -268,10 +352,15 @@ PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, con
             return holes != nullptr &&
                    holes->reachInto({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)});
         };
-        if (part && !isNearHole(part->first, part->second)) {
-            add(part->first);
-            add(part->second);
-            result.edges.push_back(*part);
+        if (!part) {
+            continue;
+        }
+        const auto parts =
+            isNearHole(part->first, part->second) ? onGround(part->first, part->second, *holes) : std::vector{*part};
+        for (const auto& edge : parts) {
+            add(edge.first);
+            add(edge.second);
+            result.edges.push_back(edge);
         }
     }
     return result;

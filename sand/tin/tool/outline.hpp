@@ -27,8 +27,9 @@ struct Outline {
     static Outline of(const ToolShape& shape, const Heading& heading);
 };
 
-/// The part of an outline that lies in the field, at a position of the tool. An edge across the rim ends at the rim.
-/// Points in a hole and edges close to a hole are left out, so that no constraint crosses a hole's outline.
+/// The part of an outline that lies on ground, at a position of the tool. An edge across the rim or the border of a
+/// hole ends there. Edges near a place where two cells without ground touch at a corner are left out. So no constraint
+/// crosses a hole's outline.
 struct PlacedOutline {
     std::vector<Place> points;                   // in the mesh's coordinates, all different
     std::vector<std::pair<Place, Place>> edges;  // no edge runs along the rim

@@ -51,30 +51,33 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
     return !cut_.empty();
 }
 
+/// Adds the vertices, and the ground beyond an open rim, that take sand ahead of the tool or, with `everywhere`, around
+/// it.
+void Displacement::addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere) {
+    for (const Vertex vertex : neighbourhood_->vertices()) {
+        const auto index = static_cast<std::size_t>(vertex);
+        const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
+        if (!turned_.takes(offset) || turned_.covers(offset)) {
+            continue;
+        }
+        const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
+        if (part > 0 && layer.stars()[index] > 0) {
+            receivers_.push_back({vertex, static_cast<double>(part) * static_cast<double>(layer.stars()[index]), {}});
+        }
+    }
+    if (rim == Rim::open) {
+        addBeyond(layer, press, everywhere);
+    }
+}
+
 void Displacement::findReceivers(const VertexSand& layer, Rim rim, const Press& press) {
-    const auto find = [&](bool everywhere) {
-        receivers_.clear();
-        for (const Vertex vertex : neighbourhood_->vertices()) {
-            const auto index = static_cast<std::size_t>(vertex);
-            const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
-            if (!turned_.takes(offset) || turned_.covers(offset)) {
-                continue;
-            }
-            const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
-            if (part > 0 && layer.stars()[index] > 0) {
-                receivers_.push_back({vertex, static_cast<double>(part) * static_cast<double>(layer.stars()[index])});
-            }
-        }
-        if (rim == Rim::open) {
-            addBeyond(layer, press, everywhere);
-        }
-    };
-    find(press.ahead.x == 0 && press.ahead.y == 0);
+    receivers_.clear();
+    addReceivers(layer, rim, press, press.ahead.x == 0 && press.ahead.y == 0);
     if (receivers_.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
-        find(true);
+        addReceivers(layer, rim, press, true);
     }
     if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
-        addNeighbours(layer, press.at);
+        addNeighbours(layer, press.at, [](Vertex) { return true; });
     }
 }
 
@@ -99,13 +102,15 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
             }
             const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
             if (part > 0) {
-                receivers_.push_back({kNobody, static_cast<double>(part) * share});
+                receivers_.push_back({kNobody, static_cast<double>(part) * share, place});
             }
         }
     }
 }
 
-void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) {
+/// Adds the neighbours of the vertices below the tool for which `isOurs` is true.
+void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at,
+                                 const std::function<bool(Vertex)>& isOurs) {
     const auto isCovered = [&](Vertex vertex) {
         return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
     };
@@ -114,14 +119,15 @@ void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at) 
     for (const std::int32_t slot : neighbourhood_->triangles()) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
         const auto& corner = triangle.corner;
-        if (!triangle.hole && std::any_of(corner.begin(), corner.end(), isCovered)) {
+        if (!triangle.hole && std::any_of(corner.begin(), corner.end(),
+                                          [&](Vertex vertex) { return isCovered(vertex) && isOurs(vertex); })) {
             std::copy_if(corner.begin(), corner.end(), std::back_inserter(beside), std::not_fn(isCovered));
         }
     }
     std::sort(beside.begin(), beside.end());
     beside.erase(std::unique(beside.begin(), beside.end()), beside.end());
     for (const Vertex vertex : beside) {
-        receivers_.push_back({vertex, static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)])});
+        receivers_.push_back({vertex, static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]), {}});
     }
 }
 
@@ -171,11 +177,7 @@ bool Displacement::hasRoom(const VertexSand& layer) const {
            });
 }
 
-void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& done) {
-    if (!findCut(layer, press.at)) {
-        return;
-    }
-    findReceivers(layer, rim, press);
+void Displacement::deal(VertexSand& layer, Work& done) {
     if (receivers_.empty()) {  // the tool is larger than the field, so that there is no place for the sand
         return;
     }
@@ -195,6 +197,23 @@ void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& d
             done.touched.push_back(receiver.vertex);
         }
     }
+}
+
+bool Displacement::isNearHole(const VertexSand& layer, const Box& box) const {
+    const Holes* const holes = layer.mesh().holes().get();
+    return holes != nullptr && holes->reachInto({box.x0, box.y0}, {box.x1, box.y1});
+}
+
+void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& done) {
+    if (!findCut(layer, press.at)) {
+        return;
+    }
+    if (isNearHole(layer, reach(press.at))) {
+        pressInParts(layer, rim, press, done);
+        return;
+    }
+    findReceivers(layer, rim, press);
+    deal(layer, done);
 }
 
 }  // namespace sand::tin

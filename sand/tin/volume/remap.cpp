@@ -74,6 +74,7 @@ struct Part {
     std::int64_t smallestStar = 0;
     double lowest = 0, highest = 0;
     bool empty = true;
+    bool moves = false;  // whether the sand of one of its vertices moved
 };
 
 /// Finds the triangle that contains a place. The field is cut into strips from west to east. Each strip lists the
@@ -130,9 +131,12 @@ private:
 
 class Remapping {
 public:
-    Remapping(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
-              const std::vector<std::int64_t>& stars, const std::vector<double>& heights)
-        : difference_(difference), volumes_(volumes), stars_(stars), heights_(heights) {}
+    Remapping(const Mesh::Difference& difference, const SandBefore& before)
+        : difference_(difference),
+          volumes_(before.volumes),
+          stars_(before.stars),
+          heights_(before.heights),
+          moving_(before.moving) {}
 
     Remapped run() {
         gatherNodes();
@@ -225,6 +229,7 @@ private:
             part.lowest = part.empty ? height : std::min(part.lowest, height);
             part.highest = part.empty ? height : std::max(part.highest, height);
             part.empty = false;
+            part.moves = part.moves || moving_[indexOf(nodes_[i].vertex)] != 0;
         }
         for (std::size_t i = 0; i < came_.size(); ++i) {
             parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.came[i]);
@@ -297,7 +302,8 @@ private:
             const double reach = 3 * static_cast<double>(part.area) / static_cast<double>(part.stars);
             const double bound =
                 (part.highest - part.lowest) * reach + 2 / static_cast<double>(part.smallestStar) + 0x1p-20;
-            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound, node.part});
+            const bool moves = node.before ? moving_[indexOf(node.vertex)] != 0 : part.moves;
+            result.shares.push_back({node.vertex, node.star, node.volume + unit, node.height, bound, node.part, moves});
         }
         return result;
     }
@@ -306,6 +312,7 @@ private:
     const std::vector<std::int64_t>& volumes_;
     const std::vector<std::int64_t>& stars_;
     const std::vector<double>& heights_;
+    const std::vector<std::uint8_t>& moving_;
     std::optional<Strips> strips_;  // of the triangles that went; created when first needed
     std::vector<Node> nodes_;       // in the order of Key
     std::vector<Corners> went_, came_;
@@ -351,9 +358,8 @@ void levelPieces(Remapped& result, const std::function<bool(const Remapped::Shar
     });
 }
 
-Remapped remapVolumes(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
-                      const std::vector<std::int64_t>& stars, const std::vector<double>& heights) {
-    return Remapping(difference, volumes, stars, heights).run();
+Remapped remapVolumes(const Mesh::Difference& difference, const SandBefore& before) {
+    return Remapping(difference, before).run();
 }
 
 }  // namespace sand::tin

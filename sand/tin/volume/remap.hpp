@@ -19,6 +19,7 @@ struct Remapped {
         double before = 0;        // height of the previous surface there [unit]
         double bound = 0;         // largest distance of the vertex from `before` [unit]
         std::uint32_t piece = 0;  // equal for all vertices of a piece, and for no others
+        bool moves = false;       // whether its sand moves
     };
     std::vector<Share> shares;  // in ascending order of vertices
     std::vector<Vertex> died;   // vertices that no longer exist
@@ -31,10 +32,15 @@ struct Remapped {
 /// a change. Level sand therefore keeps every limit of heights that the sand before kept.
 void levelPieces(Remapped& result, const std::function<bool(const Remapped::Share&)>& fits);
 
-/// Returns the volumes of all vertices of the triangles that changed. Their sum is exactly what it was. `volumes`,
-/// `stars` and `heights` are indexed by vertex and are those from before the change. Result and order depend only on
-/// the two meshes and the sand.
-[[nodiscard]] Remapped remapVolumes(const Mesh::Difference& difference, const std::vector<std::int64_t>& volumes,
-                                    const std::vector<std::int64_t>& stars, const std::vector<double>& heights);
+/// Sand by vertex, from before a change of the mesh.
+struct SandBefore {
+    const std::vector<std::int64_t>&volumes, &stars;
+    const std::vector<double>& heights;
+    const std::vector<std::uint8_t>& moving;
+};
+
+/// Returns the volumes of all vertices of the triangles that changed. Their sum is exactly what it was. A new vertex
+/// moves if a vertex of its piece moved before. Result and order depend only on the two meshes and the sand.
+[[nodiscard]] Remapped remapVolumes(const Mesh::Difference& difference, const SandBefore& before);
 
 }  // namespace sand::tin

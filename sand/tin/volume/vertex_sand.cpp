@@ -42,6 +42,7 @@ VertexSand::VertexSand(Mesh mesh) : mesh_(std::move(mesh)) {
     volumes_.resize(triangles.places.size(), 0);
     stars_.resize(triangles.places.size(), 0);
     heights_.resize(triangles.places.size(), 0);
+    moving_.resize(triangles.places.size(), 0);
     for (const Triangle& triangle : triangles.triangles) {
         if (triangle.isGround()) {
             const auto& [a, b, c] = triangle.corner;
@@ -59,7 +60,9 @@ void VertexSand::reserve(std::size_t vertices) {
     volumes_.reserve(vertices);
     stars_.reserve(vertices);
     heights_.reserve(vertices);
+    moving_.reserve(vertices);
 }
+
 Wide VertexSand::ground() const { return std::accumulate(stars_.begin(), stars_.end(), Wide{0}); }
 
 Wide VertexSand::volume() const {
@@ -94,6 +97,17 @@ void VertexSand::setHeight(Vertex vertex, std::int32_t height) {
         throw std::overflow_error("too much sand on vertex " + std::to_string(vertex));
     }
     setVolume(vertex, static_cast<std::int64_t>(volume));
+}
+
+std::vector<Vertex> VertexSand::stopMoving() {
+    std::vector<Vertex> stopped;
+    for (std::size_t i = 0; i < moving_.size(); ++i) {
+        if (moving_[i] != 0) {
+            stopped.push_back(static_cast<Vertex>(i));
+            moving_[i] = 0;
+        }
+    }
+    return stopped;
 }
 
 Vertex VertexSand::insert(Place place) {
@@ -145,16 +159,18 @@ void VertexSand::remap() {
     if (difference.came.empty()) {
         return;
     }
-    Remapped result = remapVolumes(difference, volumes_, stars_, heights_);
+    Remapped result = remapVolumes(difference, {volumes_, stars_, heights_, moving_});
     const Wide most = std::max<Wide>(magnitude_, kMostSand);
     const std::size_t count = mesh_.triangles().places.size();
     volumes_.resize(count, 0);
     stars_.resize(count, 0);
     heights_.resize(count, 0);
+    moving_.resize(count, 0);
     for (const Vertex vertex : result.died) {
         setVolume(vertex, 0);
         stars_[at(vertex)] = 0;
         heights_[at(vertex)] = 0;
+        moving_[at(vertex)] = 0;
         remapped_.push_back(vertex);
     }
     levelPieces(result, [](const Remapped::Share& share) {
@@ -182,6 +198,7 @@ void VertexSand::take(const Remapped& result) {
             throw std::overflow_error("too much sand on vertex " + std::to_string(share.vertex));
         }
         stars_[at(share.vertex)] = share.star;
+        moving_[at(share.vertex)] = share.moves ? 1 : 0;
         setVolume(share.vertex, static_cast<std::int64_t>(share.volume));
     }
 }

@@ -22,6 +22,7 @@ struct VertexSandParts {
     std::int32_t width = 0, depth = 0;                   // size of the field [probe unit]
     std::vector<Place> places;                           // by vertex
     std::vector<std::int64_t> volumes;                   // by vertex [volume unit]
+    std::vector<std::uint8_t> moving;                    // by vertex: 1 if its sand moves, else 0
     std::vector<std::pair<Vertex, Vertex>> constraints;  // in the order of Mesh::constraints()
     std::shared_ptr<const Holes> holes = nullptr;        // from the TinStart; not encoded
 
@@ -42,7 +43,11 @@ struct VertexSandParts {
 /// mesh never exceeds a limit that the sand before was within: the sand of a piece that would exceed it becomes level.
 ///
 /// Triangles in a hole (holes.hpp) are not ground, and count for no star. A vertex that has only such triangles has
-/// star 0, no sand and height 0. Not thread-safe.
+/// star 0, no sand and height 0.
+///
+/// The sand of a vertex moves if some of it flowed in the last sweep. A triangle with such a corner slides at a lower
+/// slope than sand at rest. A vertex that a change of the mesh makes moves if one of the vertices of its piece moved.
+/// Not thread-safe.
 class VertexSand {
 public:
     /// Creates sand of height 0. Throws std::invalid_argument unless the mesh has the whole outline of its holes.
@@ -54,6 +59,7 @@ public:
     [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
     /// By vertex [unit]: IEEE quotients volume / star, the same on every machine. Exact if they are integers.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
+    [[nodiscard]] const std::vector<std::uint8_t>& moving() const { return moving_; }  // by vertex: 1 or 0
     [[nodiscard]] Wide volume() const;
     [[nodiscard]] Wide ground() const;  // sum of all stars [probe unit²]: six times the area
     /// Returns the sum of the magnitudes of all volumes [volume unit]. A change of the mesh never raises it above
@@ -69,6 +75,9 @@ public:
     /// Adds `volume` to a living vertex; its height follows. Erosion and tools move sand between vertices with this.
     void add(Vertex vertex, std::int64_t volume);
     void setHeight(Vertex vertex, std::int32_t height /* [unit] */);  // of a living vertex; changes the total volume
+    void setMoving(Vertex vertex, bool moving) { moving_[static_cast<std::size_t>(vertex)] = moving ? 1 : 0; }
+    /// Lets no sand move. Returns the vertices whose sand moved, in ascending order.
+    std::vector<Vertex> stopMoving();
 
     /// These functions change the mesh as those of Mesh do, and keep the total volume exactly. A new vertex gets the
     /// height of the previous surface there.
@@ -120,6 +129,7 @@ private:
     Mesh mesh_;
     std::vector<std::int64_t> volumes_, stars_;
     std::vector<double> heights_;
+    std::vector<std::uint8_t> moving_;
     Wide magnitude_ = 0;
     Remap largest_;
     std::vector<Vertex> remapped_;  // since the last takeChange()

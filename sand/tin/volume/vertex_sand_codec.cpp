@@ -66,7 +66,7 @@ std::vector<std::pair<Vertex, Vertex>> getConstraints(base::ByteReader& reader, 
 
 VertexSandParts VertexSand::parts() const {
     const Triangles& mesh = triangles();
-    VertexSandParts parts{mesh.width, mesh.depth, mesh.places, volumes_, mesh_.constraints(), mesh_.holes()};
+    VertexSandParts parts{mesh.width, mesh.depth, mesh.places, volumes_, moving_, mesh_.constraints(), mesh_.holes()};
     for (std::size_t i = 0; i < parts.places.size(); ++i) {
         if (mesh.triangleAt[i] == kNobody) {
             parts.places[i] = VertexSandParts::kNowhere;
@@ -86,7 +86,7 @@ void VertexSandParts::encode(base::ByteWriter& writer) const {
             writer.putVarint(0);
             continue;
         }
-        writer.putVarint(static_cast<std::uint64_t>(places[i].x) + 1);
+        writer.putVarint(2 * static_cast<std::uint64_t>(places[i].x) + moving[i] + 1);
         writer.putVarint(static_cast<std::uint64_t>(places[i].y));
         writer.putSigned(volumes[i]);
     }
@@ -98,8 +98,8 @@ void VertexSandParts::encode(base::ByteWriter& writer) const {
 }
 
 std::uint64_t VertexSand::mostBytes(std::size_t most) {
-    // A coordinate is at most 2^22 + 1, which takes 4 bytes, a volume 10 and a vertex of a constraint 5. The rest is
-    // for width, depth and the two counts.
+    // Twice a coordinate is at most 2^23 + 2, which takes 4 bytes, a volume 10 and a vertex of a constraint 5. The rest
+    // is for width, depth and the two counts.
     constexpr std::uint64_t kVertex = 4 + 4 + 10, kConstraint = 5 + 5, kAround = 4 + 4 + 10 + 10;
     return most * (kVertex + kEdgesPerVertex * kConstraint) + kAround;
 }
@@ -114,10 +114,13 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
     }
     std::vector<std::optional<Place>> places(count);
     std::vector<std::int64_t> volumes(places.size(), 0);
+    std::vector<std::uint8_t> moving(places.size(), 0);
     for (std::size_t i = 0; i < places.size(); ++i) {
-        const std::uint64_t x = reader.getVarint();
-        if (x > 0) {
-            places[i] = Place{getCoordinate(x - 1), getCoordinate(reader.getVarint())};
+        const std::uint64_t first = reader.getVarint();  // 0 for a number without a vertex
+        if (first > 0) {
+            moving[i] = static_cast<std::uint8_t>((first - 1) % 2);
+            const std::int32_t x = getCoordinate((first - 1) / 2);
+            places[i] = Place{x, getCoordinate(reader.getVarint())};
             volumes[i] = reader.getSigned();
         }
     }
@@ -135,6 +138,7 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
             }
             if (places[i]) {
                 layer.add(static_cast<Vertex>(i), volumes[i]);
+                layer.setMoving(static_cast<Vertex>(i), moving[i] != 0);
             }
         }
         if (layer.magnitude_ > kMostSand + kRounding) {

@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -87,23 +88,6 @@ void lump(VertexSand& layer, int column, int row, int cells) {
             layer.add(vertex, layer.stars()[static_cast<std::size_t>(vertex)] * 65536 * cells);
         }
     });
-}
-
-/// Returns the places of the vertices on the border of the holes, sorted.
-std::vector<std::pair<std::int32_t, std::int32_t>> placesOnOutline(const VertexSand& layer) {
-    std::vector<std::pair<std::int32_t, std::int32_t>> result;
-    forEachVertex(layer, [&](Vertex, const Place& place, double) {
-        const auto holds = [&place](const Holes::Part& part) {
-            const auto [west, east] = std::minmax(part.from.x, part.to.x);
-            const auto [south, north] = std::minmax(part.from.y, part.to.y);
-            return place.x >= west && place.x <= east && place.y >= south && place.y <= north;
-        };
-        if (std::ranges::any_of(layer.mesh().holes()->outline(), holds)) {
-            result.emplace_back(place.x, place.y);
-        }
-    });
-    std::ranges::sort(result);
-    return result;
 }
 
 TEST(TinHoles, AnOutlineRunsRoundTheCellsWithoutData) {
@@ -250,8 +234,11 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
     };
     VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     const Wide before = layer.volume(), ground = layer.ground();
-    const auto outline = placesOnOutline(layer);
-    ASSERT_GT(outline.size(), 100U);
+    std::set<Place> corners;  // of the holes; no tool may remove them
+    for (const Holes::Part& part : layer.mesh().holes()->outline()) {
+        corners.insert({part.from, part.to});
+    }
+    ASSERT_GT(corners.size(), 50U);
     Imprint imprint;
     // Lowest underside of a tool so far, and lowest height of the sand [unit].
     double deepest = levelAt(0, 0), lowest = deepest;
@@ -269,8 +256,9 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         sand::tin::settle(layer, kTalus, kTalus, 20);
         ASSERT_TRUE(layer.volume() == before && layer.ground() == ground) << "stroke " << stroke;
         ASSERT_TRUE(layer.mesh().hasOutline()) << "stroke " << stroke;
-        ASSERT_EQ(placesOnOutline(layer), outline)
-            << "stroke " << stroke << ": the tool has left vertices on the outline";
+        std::set<Place> places;
+        forEachVertex(layer, [&](Vertex, const Place& place, double) { places.insert(place); });
+        ASSERT_TRUE(std::ranges::includes(places, corners)) << "stroke " << stroke << ": a corner of a hole is gone";
         // A tool digs down to its underside. Sand that slides makes no hole deeper than the deepest one.
         const std::int32_t underside = std::min(path[0].z, path[1].z) - shape.radius;  // [probe unit]
         deepest = std::min(deepest, static_cast<double>(underside) * sand::kUnitsPerCell / sand::kProbePerCell);

@@ -34,7 +34,7 @@ base::Bytes plainWith(const sand::tin::TinStart& start, std::size_t dead) {
     plain.put(start.depth);
     plain.putVarint(4 + dead + 1);
     const auto vertex = [&plain](std::int32_t x, std::int32_t y) {
-        plain.putVarint(static_cast<std::uint64_t>(x) + 1);
+        plain.putVarint(2 * static_cast<std::uint64_t>(x) + 1);
         plain.putVarint(static_cast<std::uint64_t>(y));
         plain.putSigned(0);
     };

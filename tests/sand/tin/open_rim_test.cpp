@@ -163,7 +163,7 @@ TEST(TinOpenRim, ARingOfHolesKeepsItsSandFromTheRim) {
     EXPECT_LT(tin_samples::heightAt(layer, {1 * 256, 12 * 256}), 1.1 * kTalus);
 }
 
-TEST(TinOpenRim, AToolBesideItRefinesItWhereItIsOpen) {
+TEST(TinOpenRim, AToolBesideARimRefinesItOpenOrClosed) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
         VertexSand layer = tin_samples::levelLayer(40, 30, 4096);
         sand::tin::Displacement tool(tin_samples::shapeOf(sand::ToolKind::sphere, 4), {}, tin_samples::fineRules());
@@ -174,7 +174,7 @@ TEST(TinOpenRim, AToolBesideItRefinesItWhereItIsOpen) {
         tin_samples::forEachVertex(layer, [&](Vertex, const sand::tin::Place& place, double) {
             beside += place.y == 0 && std::abs(place.x - 20 * 256) < 4 * 256 ? 1 : 0;
         });
-        EXPECT_EQ(beside >= 7, rim == Rim::open) << beside << " vertices; an open rim gets one per cell";
+        EXPECT_GE(beside, 7) << "the rim gets one vertex per cell";
         tool.leave(layer, imprint);
         EXPECT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");
     }
