@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <regex>
 #include <string>
 
 #include "tests/support/run_program.hpp"
@@ -278,6 +279,23 @@ TEST(Drawing, GivesBezelsAndSizesInFigures) {
     EXPECT_EQ(countOf(">2.324 m<", svg), 1U);
     EXPECT_EQ(countOf(">3.000 m<", svg), 1U) << "from the viewer to the wall";
     EXPECT_EQ(countOf(">0.300 m<", svg), 1U) << "above the floor";
+}
+
+// A tile that is seen edge on is a thick line. Its name is 36 pixels beside the line, or 14 above or below it. The
+// letters are 4 pixels above their base line in the middle.
+TEST(Drawing, NamesATileThatIsSeenEdgeOnBesideItsLine) {
+    const std::string svg = drawingOf(config("flex_cave.toml"));
+    const std::string place = "(-?[\\d.]+),(-?[\\d.]+) ";
+    const std::regex edge("<polygon points=\"" + place + place + place +
+                          "[^\"]*\"[^>]*stroke-width=\"3\"/>\n<text x=\"([\\d.]+)\" y=\"([\\d.]+)\"");
+    int named = 0;
+    for (std::sregex_iterator found(svg.begin(), svg.end(), edge); found != std::sregex_iterator(); ++found, ++named) {
+        const auto number = [&](std::size_t group) { return std::stod((*found)[group]); };
+        const glm::dvec2 middle((number(1) + number(5)) / 2, (number(2) + number(6)) / 2);  // of a diagonal
+        const glm::dvec2 beside((number(7) - middle.x) / 36, (number(8) - 4 - middle.y) / 14);
+        EXPECT_NEAR(glm::length(beside), 1, 1e-3) << (*found)[0];
+    }
+    EXPECT_EQ(named, 6) << "left, right and floor in the front view; left, right and front in the plan";
 }
 
 TEST(Drawing, WritesNamesThatMeanSomethingInXml) {
