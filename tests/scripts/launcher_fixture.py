@@ -59,6 +59,10 @@ class LauncherTest(unittest.TestCase):
         return str(self.folder / name)
 
     def script(self, name, text):
+        """Writes a made-up program and returns its path. Each mpirun also answers --version, as Open MPI 4.1 unless the test sets MADE_UP_MPI."""
+        if name == "mpirun":
+            first, rest = text.split("\n", 1)
+            text = f'{first}\nif [ "$*" = --version ]; then echo "mpirun (Open MPI) ${{MADE_UP_MPI:-4.1.4}}"; exit 0; fi\n{rest}'
         path = self.folder / "bin" / name
         path.write_text(text)
         path.chmod(0o755)

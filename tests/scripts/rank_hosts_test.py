@@ -116,16 +116,5 @@ class Network(unittest.TestCase):
                 rank_hosts.checked_network(text)
 
 
-class Programs(unittest.TestCase):
-    def test_every_change_of_host_is_a_program_of_its_own(self):
-        # mpirun numbers ranks program by program. So rank r must be on the r-th host of the list.
-        words = rank_hosts.programs(["a", "a", HERE, "b", "a"], ["master"], ["node"])
-        self.assertEqual(" ".join(words), "-n 1 --host localhost master : -n 2 --host a:2 node : "
-                         "-n 1 --host localhost:1 node : -n 1 --host b:1 node : -n 1 --host a:1 node")
-
-    def test_one_machine_needs_no_hosts(self):
-        self.assertEqual(" ".join(rank_hosts.programs([HERE] * 3, ["master"], ["node"])), "-n 1 master : -n 3 node")
-
-
 if __name__ == "__main__":
     unittest.main()
