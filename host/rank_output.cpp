@@ -14,6 +14,9 @@
 namespace host {
 namespace {
 
+constexpr const char* kAlways = "SANDWALL_RELAY";
+constexpr const char* kIfLost = "SANDWALL_RELAY_LOST";
+
 [[nodiscard]] std::string variable(const char* name) {
     const char* const value = std::getenv(name);
     return value == nullptr ? "" : value;
@@ -25,24 +28,26 @@ namespace {
     return value.empty() ? -1 : std::atoi(value.c_str());
 }
 
-/// Writes all of `text`. An interrupted write is continued.
-void writeAll(int descriptor, std::string_view text) {
+/// Writes all of `text`. An interrupted write is continued. Returns false if the file is closed or full.
+bool writeAll(int descriptor, std::string_view text) {
     while (!text.empty()) {
         const ssize_t size = write(descriptor, text.data(), text.size());
         if (size > 0) {
             text.remove_prefix(static_cast<std::size_t>(size));
         } else if (size == 0 || errno != EINTR) {
-            return;  // it is closed or full: the session continues without the line
+            return false;
         }
     }
+    return true;
 }
 
-void relay(std::string_view line) {
-    const int descriptor = numberOfVariable("SANDWALL_RELAY");
+/// Sends a line to the launcher by the descriptor that `variable` names, if it is set.
+void relay(const char* variable, std::string_view line) {
+    const int descriptor = numberOfVariable(variable);
     const int rank = numberOfVariable("PMIX_RANK");
     if (descriptor >= 0 && rank >= 0) {
         line.remove_suffix(line.ends_with('\n') ? 1 : 0);
-        writeAll(descriptor, relayedLine(rank, line) + "\n");
+        (void)writeAll(descriptor, relayedLine(rank, line) + "\n");
     }
 }
 
@@ -56,15 +61,18 @@ std::string relayedLine(int rank, std::string_view text) {
 
 void writeLine(std::string_view line) {
     std::fflush(stderr);
-    writeAll(STDERR_FILENO, line);
-    relay(line);
+    const bool written = writeAll(STDERR_FILENO, line);
+    relay(kAlways, line);
+    if (!written) {
+        relay(kIfLost, line);
+    }
 }
 
 void tellRankLog() {
     if (const std::string path = variable("SANDWALL_RANK_LOG"); !path.empty()) {
         std::array<char, 256> name{};
         gethostname(name.data(), name.size() - 1);
-        relay(fmt::format("@log {}:{}", name.data(), path));
+        relay(kAlways, fmt::format("@log {}:{}", name.data(), path));
     }
 }
 

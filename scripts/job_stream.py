@@ -73,6 +73,7 @@ class Stream:
         self.held = collections.defaultdict(bytes)  # the unfinished line of each rank
         self.carried = b""  # the end of the last piece, if it may be the beginning of a tag
         self.in_banner = False
+        self.in_ranks_banner = False  # whether the last line under a tag belongs to a banner that goes on
         self.reserve()
 
     def reserve(self):
@@ -89,10 +90,15 @@ class Stream:
     def whole(self, lines):
         """Yields the lines of ranks among `lines` that have arrived whole, and mpirun's own lines. Counts the others."""
         for rank, line in lines:
-            if rank is None and b"@rank " not in line:
+            # Open MPI sends its explanations of an error under the tag of a rank, too. Those of MPI_Abort are a banner.
+            if b"@rank " not in line and (rank is None or not line or self.mpi.own.match(line)):
                 yield rank, line
                 continue
-            found, damaged = relayed(line)
+            if BANNER.fullmatch(line) or (self.in_ranks_banner and b"@rank " not in line):
+                self.in_ranks_banner ^= BANNER.fullmatch(line) is not None
+                yield None, line
+                continue
+            found, damaged = relayed(line.replace(b"\0", b""))  # mpirun sometimes writes one before a line
             self.damaged += damaged
             yield from found
 
@@ -145,17 +151,19 @@ class RankStream(Stream):
 
     def __init__(self, path, shown, mpi, rank):
         # A rank whose file cannot be made sends its lines through mpirun, whose stream has complained already.
-        super().__init__(path, shown, mpi, complain=lambda line: None)
         self.own_rank = rank
+        super().__init__(path, shown, mpi, complain=lambda line: None)
 
     def reserve(self):
-        """Reserves nothing, because that of mpirun's streams is enough for the messages of one rank."""
+        """Reserves room for the master alone, which writes the messages about a full disk."""
+        if self.own_rank == 0:
+            super().reserve()
 
     def lines(self, ended):
         while piece := os.pread(self.file, 1 << 16, self.offset):
             self.offset += len(piece)
-            self.rank = self.own_rank
             yield from ((self.own_rank, line) for _, line in self.add(piece))
+        self.reserve()
         if ended:
             yield from ((self.own_rank, line) for line in self.held.values() if line)
 

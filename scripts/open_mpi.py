@@ -25,7 +25,7 @@ AGENTS = ("OMPI_MCA_plm_rsh_agent", "PRTE_MCA_plm_ssh_agent")  # each names a pr
 SCHEDULERS = {"SLURM_JOB_ID": "slurm", "SLURM_JOBID": "slurm", "PBS_JOBID": "pbs", "LSB_JOBID": "lsf", "PE_HOSTFILE": "gridengine",
               "FLUX_JOB_ID": "flux"}
 RANK = "PMIX_RANK"  # Open MPI 5 sets it for every process before the process begins
-RELAY = "SANDWALL_RELAY"  # descriptor to which a rank writes what must reach the launcher (host/rank_output.hpp)
+RELAY = "SANDWALL_RELAY"  # descriptor to which a rank writes what must reach the launcher; with _LOST, what its file does not take (host/rank_output.hpp)
 RANK_LOG = "SANDWALL_RANK_LOG"  # the file of a rank's output, for a rank that the launcher cannot read
 
 
@@ -147,7 +147,7 @@ class OpenMpi5:
         begin = f'if [ "${RANK}" = 0 ]; then exec {shlex.join(job.master)}; else exec {shlex.join(job.node)}; fi'
         if job.output is None:
             return begin
-        return (f'exec 9>&2; log={shlex.quote(job.output)}.rank_${RANK}; if [ -w "$log.err" ]; then exec >>"$log.out" 2>>"$log.err"; else '
+        return (f'exec 9>&2; log={shlex.quote(job.output)}.rank_${RANK}; if [ -w "$log.err" ]; then exec >>"$log.out" 2>>"$log.err"; export {RELAY}_LOST=9; else '
                 f'export {RELAY}=9; umask 077; if log=$(mktemp "${{TMPDIR:-/tmp}}/sandwall-rank-${RANK}.XXXXXX"); '
                 f'then export {RANK_LOG}="$log"; else log=/dev/null; fi; umask {current_umask():03o}; exec >>"$log" 2>&1; fi; {begin}')
 

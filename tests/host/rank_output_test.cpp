@@ -81,6 +81,18 @@ TEST_F(RankOutput, TheRanksFileIsToldAndRemovedAtAGoodEnd) {
     EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST_F(RankOutput, ALineThatTheFileDoesNotTakeGoesToTheLauncher) {
+    const auto [error, relayed] = ran([] {
+        unsetenv("SANDWALL_RELAY");
+        setenv("SANDWALL_RELAY_LOST", "9", 1);
+        host::writeLine("kept\n");
+        close(STDERR_FILENO);
+        host::writeLine("lost\n");
+    });
+    EXPECT_EQ(error, "kept\n");
+    EXPECT_EQ(relayed, host::relayedLine(3, "lost") + "\n");
+}
+
 TEST_F(RankOutput, WithoutAWayToTheLauncherALineGoesToStandardErrorAlone) {
     const auto [error, relayed] = ran([] {
         unsetenv("SANDWALL_RELAY");

@@ -174,6 +174,20 @@ class Output(unittest.TestCase):
         self.follow(b"", ended=True)
         self.assertIn("5 damaged pieces", self.said.call_args[0][0])
 
+    def test_an_explanation_of_open_mpi_is_no_damaged_line(self):
+        self.follow(b"[1,4]<stderr>: [node04:00000] *** An error occurred in Socket closed\n", ended=True)
+        self.assertEqual((self.shown, self.log.err.damaged), ([], 0))
+
+    def test_the_banner_of_an_abort_is_no_damaged_line(self):
+        for line in (b"-" * 74, b"MPI_ABORT was invoked on rank 0 in communicator MPI_COMM_WORLD", b"  Errorcode: 1", b"-" * 74, relayed(3, b"kept")):
+            self.follow(b"[1,0]<stderr>: " + line + b"\n")
+        self.follow(b"[1,0]<stderr>: damaged\n", ended=True)
+        self.assertEqual((self.shown, self.log.err.damaged), ([b"kept"], 1))
+
+    def test_a_zero_byte_of_mpirun_damages_no_line(self):
+        self.follow(b"[1,2]<stderr>: \0" + relayed(2, b"text") + b"\n", ended=True)
+        self.assertEqual((self.shown, self.log.err.damaged), ([b"text"], 0))
+
     def test_a_whole_line_behind_the_rest_of_another_is_found(self):
         # mpirun holds an unfinished piece back for all ranks, and prints it before the next line of any rank.
         self.follow(b"[1,3]<stderr>: " + relayed(3, b"lost line")[:-4] + relayed(5, b"kept") + b"\n")
