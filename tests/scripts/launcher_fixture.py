@@ -31,6 +31,9 @@ case $host in
 esac
 export TMPDIR="${0%/*}/tmp-$host"
 mkdir -p "$TMPDIR"
+case $(mpirun --version) in # Open MPI 5 needs hosts with names of their own
+    *"(Open MPI) 5"*) exec env MADE_UP_HOST="$host" unshare --uts sh -c "hostname $host; $*" ;;
+esac
 exec env MADE_UP_HOST="$host" sh -c "$*"
 """
 
