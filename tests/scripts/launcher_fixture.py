@@ -80,7 +80,9 @@ class LauncherTest(unittest.TestCase):
                               timeout=120, **{"stdin": subprocess.DEVNULL, **popen})
 
     def printed(self, hosts, *options):
-        """Returns the commands that --print-command prints for a session."""
+        """Returns the commands that --print-command prints for a session, for Open MPI 4.1 unless a test says otherwise."""
+        if not (self.folder / "bin" / "mpirun").exists():
+            self.script("mpirun", "#!/bin/sh\n")
         ended = self.start(hosts, "--print-command", *options)
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         return ended.stdout.replace(str(self.folder / "bin") + "/", "").replace(str(self.folder) + "/", "")

@@ -62,6 +62,9 @@ class Commands(unittest.TestCase):
             "-n 1 --host b:1 node a b : -n 1 --host a:1 node a b"))
         self.assertTrue(self.command(FOUR, [HERE] * 3).endswith(" -n 1 master : -n 3 node a b"))
 
+    def test_version_4_keeps_what_is_behind_the_first_dot_of_a_name(self):
+        self.assertIn("--mca orte_keep_fqdn_hostnames 1", self.command(FOUR, ["wall-node.1.example.org", "wall-node.2.example.org"]))
+
     def test_version_5_starts_one_program_with_a_line_of_the_file_per_rank(self):
         command = self.command(FIVE, ["a", "b", "a", HERE], hosts_path="/out/hosts")
         self.assertTrue(command.startswith("mpirun --bind-to none --mca btl self,sm,tcp --mca mpi_yield_when_idle 1 "), command)

@@ -100,12 +100,6 @@ class HostsOfFile(unittest.TestCase):
             rank_hosts.hosts_of_file("/nowhere", 1)
 
 
-class Transport(unittest.TestCase):
-    def test_open_mpi_keeps_what_is_behind_the_first_dot_of_a_name(self):
-        words = rank_hosts.transport(["wall-node.1.example.org", "wall-node.2.example.org"], None)
-        self.assertIn("--mca orte_keep_fqdn_hostnames 1", " ".join(words))
-
-
 class Network(unittest.TestCase):
     def test_a_network_is_written_as_mpirun_takes_it(self):
         self.assertEqual(rank_hosts.checked_network("10.1.2.3/24"), "10.1.2.0/24")
