@@ -208,7 +208,7 @@ TEST_F(Healing, ResumesASessionThatWasKilledWithAWrongMajority) {
     EXPECT_EQ(told["steps"], 400);
     EXPECT_EQ(told["volume_final"], told["volume_initial"]);
 <<<<<<< HEAD
-    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    EXPECT_EQ(told["state_hash"], replayedHash());
     EXPECT_EQ(told["outvoted"], before + 1);
 =======
     EXPECT_EQ(told["state_hash"], replayedHash());
