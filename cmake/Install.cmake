@@ -4,7 +4,10 @@
 # scripts/layout.py has the same folders.
 set(programs sandwall-master sandwall-render-node sandwall-haptic-server sandwall-replay sandwall-relax sandwall-check
     sandwall-compare sandwall-track sandwall-watch)
-set(modules sandwall-import sandwall-security sandwall-gl-osmesa sandwall-gl-egl sandwall-gl-glfw)
+set(modules sandwall-import sandwall-security sandwall-gl-egl sandwall-gl-glfw)
+if(OSMESA_FOUND)
+    list(APPEND modules sandwall-gl-osmesa)
+endif()
 set(private lib/sandwall)
 set(shared share/sandwall)
 set(docs share/doc/sandwall)
@@ -19,8 +22,9 @@ install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
     scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/environment.py
     scripts/events.py
-    scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py
-    scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/screens.py
+    scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/job_stream.py scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py
+    scripts/open_mpi.py
+    scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py scripts/screens.py
     scripts/session_control.py scripts/session_folder.py scripts/session_lines.py scripts/session_report.py
     scripts/session_results.py scripts/session_rules.py scripts/spare_hosts.py scripts/supervisor.py scripts/text_file.py scripts/this_machine.py
     docs/schemas/summary.schema.json

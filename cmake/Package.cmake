@@ -20,6 +20,10 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # dpkg-shlibdeps finds the libraries. The launcher is a script, and it starts mpirun.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "python3 (>= 3.11), openmpi-bin")
+if(NOT OSMESA_FOUND)
+    # EGL loads its software renderer, which is the only one that needs no card and no display.
+    string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", libegl-mesa0, libgl1-mesa-dri")
+endif()
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libgl1-mesa-dri, libegl-mesa0, libxcursor1, openssh-client")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS ffmpeg)
 # Copyright, changelog and compressed pages, as Debian wants them.

@@ -13,6 +13,7 @@
 
 #include "base/input_error.hpp"
 #include "host/event.hpp"
+#include "host/rank_output.hpp"
 #include "host/regular_file.hpp"
 #include "host/worker_pool.hpp"
 
@@ -168,7 +169,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
     try {
         app_->parse(argc, argv);
         if (const std::string why = whyBadEventsVariable(); !why.empty()) {
-            std::fprintf(stderr, "%s: %s\n", app_->get_name().c_str(), base::InputError(why).what());
+            writeLine(app_->get_name() + ": " + base::InputError(why).what() + "\n");
             return base::kExitBadInput;
         }
         return std::nullopt;
@@ -176,7 +177,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
         if (error.get_exit_code() == 0) {
             return app_->exit(error);  // --help
         }
-        std::fprintf(stderr, "%s: %s; try --help\n", app_->get_name().c_str(), error.what());
+        writeLine(app_->get_name() + ": " + error.what() + "; try --help\n");
         return base::kExitBadInput;
     }
 }
@@ -193,10 +194,10 @@ int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>
     try {
         return run();
     } catch (const base::InputError& error) {
-        std::fprintf(stderr, "%s: %s\n", line.name().c_str(), error.what());
+        writeLine(line.name() + ": " + error.what() + "\n");
         return base::kExitBadInput;
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s: failed: %s\n", line.name().c_str(), error.what());
+        writeLine(line.name() + ": failed: " + error.what() + "\n");
         return failed;
     }
 }

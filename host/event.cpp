@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/event.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+
+#include "host/rank_output.hpp"
 
 namespace host {
 namespace {
@@ -62,17 +60,7 @@ void emitEvent(std::string_view name, const EventFields& fields) {
     if (!wanted()) {
         return;
     }
-    const std::string line = eventLine(name, fields) + "\n";
-    std::fflush(stderr);
-    std::size_t written = 0;
-    while (written < line.size()) {
-        const ssize_t size = write(STDERR_FILENO, line.data() + written, line.size() - written);
-        if (size > 0) {
-            written += static_cast<std::size_t>(size);
-        } else if (size == 0 || errno != EINTR) {
-            return;  // standard error is closed or full: the session continues without this event
-        }
-    }
+    writeLine(eventLine(name, fields) + "\n");
 }
 
 }  // namespace host

@@ -4,9 +4,10 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <string>
 #include <utility>
+
+#include "host/rank_output.hpp"
 
 namespace host {
 
@@ -19,7 +20,7 @@ void printLine(fmt::format_string<T...> format, T&&... arguments) {
     const std::string line =
         fmt::format("{}: {}\n", program_invocation_short_name, fmt::format(format, std::forward<T>(arguments)...));
     // fmt::print would throw if standard error is a log on a full disk. A lost line must not end a session.
-    [[maybe_unused]] const std::size_t written = std::fwrite(line.data(), 1, line.size(), stderr);
+    writeLine(line);
 }
 
 }  // namespace host

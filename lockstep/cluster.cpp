@@ -67,11 +67,13 @@ Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
     base::ByteWriter here;
     here.putText(hostName());
     here.put(host::freeMemory());
+    here.putText(machineId());
     for (const base::Bytes& one : gather(here.take())) {
         base::ByteReader reader(one);
         RankHost& host = hosts_.emplace_back();
         host.name = reader.getText();
         host.freeBytes = reader.get<std::int64_t>();
+        host.machine = reader.getText();
     }
 }
 
@@ -235,6 +237,13 @@ std::string hostName() {
     std::array<char, 256> name{};
     gethostname(name.data(), name.size() - 1);
     return name.data();
+}
+
+std::string machineId() {
+    std::ifstream stream("/proc/sys/kernel/random/boot_id");
+    std::string boot;
+    stream >> boot;
+    return hostName() + "/" + boot;
 }
 
 std::int64_t residentBytes() {

@@ -12,6 +12,7 @@ namespace lockstep {
 struct RankHost {
     std::string name;
     std::int64_t freeBytes = 0;  // free memory for all ranks of this host together
+    std::string machine{};       // as machineId() returns it
 };
 
 /// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. A render

@@ -50,7 +50,7 @@ std::optional<SessionMessage> broadcastSession(const Cluster& cluster,
 
 std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& mine) {
     base::ByteWriter writer;
-    for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer, mine.otherFloats}) {
+    for (const std::string& text : {mine.host, mine.buildId, mine.error, mine.renderer, mine.otherFloats, mine.tile}) {
         writer.putText(text);
     }
     writer.putVarint(mine.shortcomings.size());
@@ -62,7 +62,8 @@ std::vector<Readiness> gatherReadiness(const Cluster& cluster, const Readiness& 
     for (const base::Bytes& bytes : cluster.gather(writer.take())) {
         base::ByteReader reader(bytes);
         Readiness& rank = result.emplace_back();
-        for (std::string* text : {&rank.host, &rank.buildId, &rank.error, &rank.renderer, &rank.otherFloats}) {
+        for (std::string* text :
+             {&rank.host, &rank.buildId, &rank.error, &rank.renderer, &rank.otherFloats, &rank.tile}) {
             *text = reader.getText();
         }
         rank.shortcomings.resize(reader.getVarint());

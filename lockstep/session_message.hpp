@@ -45,6 +45,7 @@ struct Readiness {
     // The float arithmetic of the rank's thread after its OpenGL driver was loaded, in words, if the sand needs another
     // one. The rank has set it back. Empty if nothing was changed.
     std::string otherFloats{};
+    std::string tile{};  // name of the tile that the rank draws; empty at the master
 };
 
 /// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. Collective.

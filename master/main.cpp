@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "host/command_line.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "host/rank_output.hpp"
 #include "host/regular_file.hpp"
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
@@ -34,6 +36,7 @@ struct Options {
     std::string pattern = "none";
     std::vector<std::string> layers;
     std::vector<std::string> injections;
+    std::vector<std::string> places;
     bool noPictures = false;
     bool noReport = false;
     master::SessionOptions session;
@@ -139,6 +142,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             "sandwall-master ... : -n {} sandwall-render-node",
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
+    std::vector<master::Place> places;
+    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places), master::Place::parse);
+    master::requirePlaces(cluster.hosts(), world.wall, places);
     try {
         host::makeFolders(options.out);
     } catch (const std::filesystem::filesystem_error& error) {
@@ -221,6 +227,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
         sessionOpen = true;
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
         master::requireReady(ranks, master::RankLabels::of(cluster, world->wall).names);
+        master::requireTiles(ranks, world->wall);
         for (const lockstep::Readiness& rank : ranks) {
             options.session.settlingFrames =
                 std::max<std::uint64_t>(options.session.settlingFrames, rank.framesToIgnore);
@@ -275,6 +282,8 @@ void describeOptions(host::CommandLine& line, Options& options) {
     line.flag("--no-report", options.noReport, "print no figures at the end, because another program prints them");
     line.flag("--control-stdin", session.desk.readInput,
               "read commands from standard input (docs/operator.md); its end stops the session");
+    line.option("--place", options.places,
+                "RANK,RANK=HOST=MACHINE: machine on which these ranks must run, from the launcher (docs/hosts.md)");
     line.option("--inject", options.injections, "inject a fault, such as slow:rank=5,ms=30 (docs/operator.md)");
 }
 
@@ -338,6 +347,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     lockstep::dieWithParent();
+    host::tellRankLog();
     // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);
     bool parsed = false;
@@ -347,6 +357,9 @@ int main(int argc, char** argv) {
     });
     if (!parsed) {
         (void)lockstep::broadcastSession(cluster, std::nullopt);
+    }
+    if (status == 0) {
+        host::removeRankLog();
     }
     return status;
 }

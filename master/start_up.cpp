@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "base/input_error.hpp"
+#include "base/text.hpp"
 #include "host/build_id.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
@@ -72,6 +75,53 @@ void requireFolder(const std::filesystem::path& out) {
     }
     if (const std::string why = host::whyUnsafeContent(out); !why.empty()) {
         throw base::InputError(why);
+    }
+}
+
+Place Place::parse(const std::string& text) {
+    const auto first = text.find('=');
+    const auto second = first == std::string::npos ? first : text.find('=', first + 1);
+    Place place;
+    if (second != std::string::npos) {
+        place.host = text.substr(first + 1, second - first - 1);
+        place.machine = text.substr(second + 1);
+        for (const std::string_view word : base::split(std::string_view(text).substr(0, first), ',')) {
+            const double rank = base::numberOf(word).value_or(0);
+            place.ranks.push_back(rank >= 1 && rank <= walls::kMaxTiles ? static_cast<int>(rank) : 0);
+        }
+    }
+    if (place.host.empty() || place.machine.empty() ||
+        std::find(place.ranks.begin(), place.ranks.end(), 0) != place.ranks.end()) {
+        throw base::InputError(
+            fmt::format("--place: write RANK,RANK=HOST=MACHINE, as scripts/sandwall does, got '{}'", text));
+    }
+    return place;
+}
+
+void requirePlaces(const std::vector<lockstep::RankHost>& ranks, const walls::Wall& wall,
+                   const std::vector<Place>& places) {
+    for (const Place& place : places) {
+        for (const int rank : place.ranks) {
+            const auto index = static_cast<std::size_t>(rank);
+            if (index >= ranks.size() || ranks[index].machine == place.machine) {
+                continue;
+            }
+            throw base::InputError(
+                fmt::format("rank {} (tile {}): mpirun has started it on {}, but its host is {}, which is {}; look at "
+                            "the command with --print-command (docs/hosts.md)",
+                            rank, wall.tiles[index - 1].name, ranks[index].name, place.host,
+                            place.machine.substr(0, place.machine.find('/'))));
+        }
+    }
+}
+
+void requireTiles(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall) {
+    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
+        if (const std::string& name = wall.tiles[rank - 1].name; ranks[rank].tile != name) {
+            throw base::InputError(
+                fmt::format("rank {} on {}: draws the tile {} in place of {}; run the programs of one build", rank,
+                            ranks[rank].host, ranks[rank].tile, name));
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
 #include "scene/scene.hpp"
+#include "walls/wall.hpp"
 
 /// The master's checks before the first frame: the hosts can hold the sand, and every rank can take part.
 namespace master {
@@ -28,6 +29,24 @@ void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const 
 
 /// Throws base::InputError if `out` exists and is not a folder.
 void requireFolder(const std::filesystem::path& out);
+
+/// Machine on which ranks must run, as the launcher's option --place names it.
+struct Place {
+    std::vector<int> ranks;
+    std::string host;     // name by which the launcher reaches it
+    std::string machine;  // lockstep::machineId() there
+
+    /// Reads "1,2,5=node01=node01.lan/3f2a…". Throws base::InputError for other texts.
+    static Place parse(const std::string& text);
+};
+
+/// Throws base::InputError if a rank runs on another machine than the launcher asked for, because it would draw another
+/// screen. mpirun decides where a rank runs, and its rules differ between versions. Ranks without a Place are not
+/// checked.
+void requirePlaces(const std::vector<lockstep::RankHost>& ranks, const walls::Wall& wall,
+                   const std::vector<Place>& places);
+/// Throws base::InputError if a rank draws another tile than that of its number in the wall.
+void requireTiles(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall);
 
 /// Throws base::InputError with the reason if a rank cannot take part. Otherwise prints the requests of the wall file
 /// that ranks cannot meet. `names` are the names of the ranks in messages.

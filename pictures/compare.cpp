@@ -20,7 +20,8 @@ std::vector<std::uint8_t> over3x3(const std::vector<std::uint8_t>& values, int w
     const auto row = static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
     const auto step = static_cast<std::size_t>(channels);
     const auto rows = static_cast<std::size_t>(height);
-    std::vector<std::uint8_t> across = values;
+    // Not a copy, because g++ 14 warns by mistake that its size may be too large.
+    std::vector<std::uint8_t> across(values.begin(), values.end());
     for (std::size_t y = 0; y < rows; ++y) {
         const std::size_t start = y * row;
         for (std::size_t i = step; i < row; ++i) {

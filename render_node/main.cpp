@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "host/command_line.hpp"
+#include "host/rank_output.hpp"
 #include "host/version.hpp"
 #include "host/worker_pool.hpp"
 #include "lockstep/cluster.hpp"
@@ -40,6 +41,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     lockstep::dieWithParent();
+    host::tellRankLog();
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);
@@ -48,5 +50,6 @@ int main(int argc, char** argv) {
     if (status != 0) {
         cluster.abort(status);
     }
+    host::removeRankLog();
     return status;
 }

@@ -67,6 +67,7 @@ public:
     [[nodiscard]] const std::string& otherFloats() const { return otherFloats_; }
     /// Returns the rank's name as the master prints it.
     [[nodiscard]] std::string name() const { return fmt::format("rank {} (tile {})", tile_.rank, tile_.name); }
+    [[nodiscard]] const std::string& tile() const { return tile_.name; }
 
     /// Runs frames until the session ends or the ranks disagree.
     void run() {
@@ -261,6 +262,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
     try {
         lockstep::requireStartUpLimit();
         session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
+        readiness.tile = session->tile();
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();
         readiness.shortcomings = session->context().shortcomings();

@@ -17,7 +17,7 @@ import threading
 import time
 
 import checked_json
-import rank_hosts
+import open_mpi
 import session_folder
 from rank_hosts import HERE, BadInput
 
@@ -51,7 +51,7 @@ class Ask:
 
     def __init__(self, host):
         self.host = host
-        agent = rank_hosts.remote_shell()
+        agent = open_mpi.remote_shell()
         if agent[0] == "ssh":
             agent += ["-o", f"ConnectTimeout={ANSWER_SECONDS // 2}"]
         self.words = ["sh", "-c"] if host == HERE else [*agent, host]
@@ -136,6 +136,15 @@ def probed(said):
     return {key: found[key] for key in ("backend", "renderer", "shortcomings")}
 
 
+def unsupported(mpi):
+    """Returns why the launcher refuses an mpirun that prints this version, or None."""
+    try:
+        open_mpi.kind_of(mpi)
+    except BadInput as complaint:
+        return str(complaint)
+    return None
+
+
 def spans(ranks):
     """Returns `ranks` as text, such as "rank 3" or "ranks 1-4, 7"."""
     pieces = []
@@ -192,6 +201,8 @@ class Doctor:
             self.mpi = mpi
         if "Open MPI" not in mpi:
             host.add(False, "mpi", f"no mpirun on the path of a command ({mpi}); apt-get install openmpi-bin")
+        elif complaint := unsupported(mpi):
+            host.add(False, "mpi", complaint)
         elif self.mpi and mpi != self.mpi:
             host.add(False, "mpi", f"{mpi}, here it is {self.mpi}; install the same version on every host")
         else:

@@ -1,16 +1,18 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Runs a session on an emulated cluster on this machine. Every host is a network namespace with its own name, its own
-# address and its own link of 1 Gbit/s. Each host has one render rank, and the ranks communicate over TCP. Needs root, or a
-# kernel that allows unprivileged user namespaces. Removes the namespaces at its end. docs/cluster.md
+# address and its own link of 1 Gbit/s. Each host has one render rank, and the ranks communicate over TCP. Hosts share no
+# folder with the machine of the master that a session writes. Needs root, or a kernel that allows unprivileged user namespaces. Removes the namespaces at its end. docs/cluster.md
 set -euo pipefail
 
 usage() {
     cat >&2 <<'END'
-usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
+usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--hosts N] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
        scripts/emulate_cluster.sh --check          # exit status 0 if this machine can emulate hosts, else 1
        scripts/emulate_cluster.sh --tear-down      # removes the namespaces of a killed run
   --wall, --scene   default: walls/configs/tiled_3x4.toml, scenes/writing.toml
+  --hosts N         number of hosts, over which the ranks are dealt in turn, so that each comes several times (default:
+                    one host per rank)
   --spares N        number of spare hosts, which draw only when another host cannot (default: 0)
   --cut node03@10   takes the link of node03 down 10 seconds after the first frame; can be repeated
   --rate RATE       rate of every link in both directions (default: 1gbit)
@@ -22,7 +24,7 @@ END
 root=$(cd "$(dirname "$0")/.." && pwd)
 bin=${SANDWALL_BIN:-$root/build/release/bin}
 wall=$root/walls/configs/tiled_3x4.toml scene=$root/scenes/writing.toml
-out='' spares=0 rate=1gbit cuts=() more=()
+out='' hosts='' spares=0 rate=1gbit cuts=() more=()
 network=10.77.0
 prefix=sandwall-emulated-
 
@@ -60,6 +62,7 @@ while [[ $# -gt 0 ]]; do
         --out) out=${2:?}; shift 2 ;;
         --wall) wall=${2:?}; shift 2 ;;
         --scene) scene=${2:?}; shift 2 ;;
+        --hosts) [[ ${2:?} =~ ^[1-9][0-9]*$ ]] || usage; hosts=$2; shift 2 ;;
         --spares) spares=${2:?}; shift 2 ;;
         --cut) [[ ${2:?} =~ ^node[0-9]+@[0-9.]+$ ]] || usage; cuts+=("$2"); shift 2 ;;
         --rate) rate=${2:?}; shift 2 ;;
@@ -85,6 +88,12 @@ if ! can_make_hosts; then
 fi
 
 ranks=$("$bin/sandwall-check" "$wall" --ranks)
+hosts=${hosts:-$ranks}
+slots=$(((ranks + hosts - 1) / hosts)) # of a spare, which takes the place of any host
+gl=osmesa
+[[ -f $bin/sandwall-gl-osmesa.so ]] || gl=egl
+mkdir -p "$out"
+out=$(realpath "$out")
 mine=$prefix$$-
 folder=$(mktemp -d /tmp/sandwall-emulated-XXXXXX)
 helpers=()
@@ -117,14 +126,20 @@ add_host() {
     tc -n "$mine$name" qdisc add dev eth0 root tbf rate "$rate" burst 256kb latency 50ms
     echo "$name $network.$((10 + $1))" >>"$folder/addresses"
 }
-for ((host = 1; host <= ranks + spares; ++host)); do
+for ((host = 1; host <= hosts + spares; ++host)); do
     add_host "$host"
-    printf 'node%02d%s\n' "$host" "$([[ $host -gt $ranks ]] && echo ' spare')" >>"$folder/hosts"
+done
+for ((rank = 0; rank < ranks; ++rank)); do
+    printf 'node%02d\n' $((1 + rank % hosts)) >>"$folder/hosts"
+done
+for ((host = hosts + 1; host <= hosts + spares; ++host)); do
+    printf 'node%02d slots=%d spare\n' "$host" "$slots" >>"$folder/hosts"
 done
 
 # This program replaces ssh. To test whether a host can be reached, it connects to a closed port: a host that can be reached
 # refuses the connection at once. Open MPI shares folders and memory within a machine; each host gets its own folder, so
-# that these hosts share neither. SANDWALL_JOB is removed, so that the launcher cannot find their processes.
+# that these hosts share neither. An empty folder hides that of the session, as on a machine without a shared file system.
+# SANDWALL_JOB is removed, so that the launcher cannot find their processes.
 cat >"$folder/agent" <<END
 #!/bin/bash
 host=\$1; shift
@@ -134,7 +149,7 @@ case \$said in *refused*) ;; *) echo "connect to host \$host (\$address): No rou
 export TMPDIR="$folder/tmp-\$host" OMPI_MCA_btl_vader_backing_directory="$folder/tmp-\$host"
 unset SANDWALL_JOB
 mkdir -p "\$TMPDIR"
-exec ip netns exec "$mine\$host" unshare --uts sh -c "hostname \$host; \$*"
+exec ip netns exec "$mine\$host" unshare --uts --mount sh -c "hostname \$host; mount -t tmpfs none '$out'; \$*"
 END
 chmod +x "$folder/agent"
 
@@ -151,12 +166,12 @@ for one in "${cuts[@]}"; do
     helpers+=($!)
 done
 
-echo "emulate_cluster.sh: $ranks hosts with one render rank each, $spares spares, one host for the master; links of $rate" >&2
+echo "emulate_cluster.sh: $hosts hosts for $ranks render ranks, $spares spares, one host for the master; links of $rate" >&2
 export OMPI_MCA_plm_rsh_agent=$folder/agent TMPDIR=$folder/tmp-head
 mkdir -p "$TMPDIR"
 status=0
 ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$root/scripts/sandwall" run \
-    --wall "$wall" --scene "$scene" --gl osmesa --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
+    --wall "$wall" --scene "$scene" --gl "$gl" --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
 session=$!
 trap 'kill -INT $session 2>/dev/null' INT TERM HUP
 # A signal ends `wait` before the session ends.

@@ -12,7 +12,7 @@ START_TIMEOUT = "SANDWALL_START_TIMEOUT"  # [s], read by the ranks (lockstep/wat
 LONGEST_START = 3600  # [s]
 NUMBER = re.compile(r"[0-9]+(\.[0-9]*)?([eE][+-]?[0-9]+)?")
 NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
-OPEN_MPI = ("OMPI_", "PMIX_")  # mpirun writes the values of such variables into the command lines of its daemons
+OPEN_MPI = ("OMPI_", "PMIX_", "PRTE_")  # mpirun writes the values of such variables into the command lines of its daemons
 
 
 def why_bad(environment):

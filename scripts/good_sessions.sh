@@ -18,14 +18,15 @@ done
 [[ $steps =~ ^[1-9][0-9]{0,6}$ ]] || { echo "good_sessions.sh: --steps $steps: must be a whole number, 1 or more" >&2; exit 2; }
 cd "$root"
 mkdir -p "$out"
-failed=()
+failed=() gl=osmesa
+[[ -f build/release/bin/sandwall-gl-osmesa.so ]] || gl=egl
 
 # session NAME OPTIONS...: runs a session and prints its report.
 session() {
     local name=$1 status=0
     shift
     echo "== $name"
-    scripts/sandwall run --here --gl osmesa --no-pictures --out "$out/$name" "$@" >"$out/$name.txt" 2>"$out/$name.err" </dev/null || status=$?
+    scripts/sandwall run --here --gl "$gl" --no-pictures --out "$out/$name" "$@" >"$out/$name.txt" 2>"$out/$name.err" </dev/null || status=$?
     grep -E '^([^ ].*: (good|NOT GOOD)|  (ok  |note|BAD |--  )  )' "$out/$name.txt"
     if [[ $status -ne 0 ]] || grep -q '^  BAD ' "$out/$name.txt"; then
         tail -n 5 "$out/$name.err"

@@ -1,13 +1,17 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian 12 packages that Sandwall needs. Prints nothing and needs no password if all of them are installed.
+# Installs the packages of Debian 12 or 13 that Sandwall needs. Prints nothing and needs no password if all of them are installed.
 set -euo pipefail
 
-packages=(
-    g++ cmake ninja-build pkg-config python3                # build and launcher
-    openmpi-bin libopenmpi-dev                              # the cluster
+tools=(
+    g++ cmake ninja-build pkg-config python3 python3-glad   # build and launcher
+    openmpi-bin                                             # the cluster
+    xvfb iproute2                                           # tests; an emulated cluster
+)
+libraries=(
+    libopenmpi-dev                                          # the cluster
     libboost-dev                                            # Asio, Endian, Lockfree: headers alone
-    libosmesa6-dev libglm-dev python3-glad                  # drawing
+    libosmesa6-dev libglm-dev                               # drawing
     libegl-dev libgl1-mesa-dri                              # off screen on graphics cards
     libglfw3-dev libx11-dev libxrandr-dev libxcursor1       # windows, monitors by name, hiding the cursor
     libtomlplusplus-dev libcli11-dev libfmt-dev             # files, options, messages
@@ -15,23 +19,37 @@ packages=(
     libfast-float-dev                                       # numbers in texts
     libgdal-dev libmuparser-dev                             # terrain from rasters, pictures and formulas
     libssl-dev                                              # secrets and TLS on the haptic link
-    libgtest-dev libbenchmark-dev libcgal-dev xvfb iproute2 # tests and benchmarks; an emulated cluster
+    libgtest-dev libbenchmark-dev libcgal-dev               # tests and benchmarks
 )
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
 # events of sessions against the schemas, make and check a Debian package, and move the pointer with xdotool. The report
-# draws its curves with matplotlib.
+# draws its curves with matplotlib. Of packages with a bar between them, one is enough: the first that this Debian has.
+cross=''
 for option in "$@"; do
     case "$option" in
-        --with-tests) packages+=(clang-14 python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
-        --with-report) packages+=(python3-matplotlib) ;;
-        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report]" >&2; exit 2 ;;
+        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
+        --with-report) tools+=(python3-matplotlib) ;;
+        --for-arm64) cross=arm64; tools+=(g++-aarch64-linux-gnu qemu-user) ;; # for cmake/Arm64.cmake; docs/testing.md
+        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report] [--for-arm64]" >&2; exit 2 ;;
     esac
 done
+packages=("${tools[@]}" "${libraries[@]/%/${cross:+:$cross}}")
+
+# is_installed PACKAGE[:ARCHITECTURE]: succeeds if it is installed for this architecture or for all (default: this machine's).
+native=$(dpkg --print-architecture)
+is_installed() {
+    local architecture=$native
+    [[ $1 != *:* ]] || architecture=${1#*:}
+    dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "${1%:*}" 2>/dev/null | grep -Eqx "($architecture|all) installed"
+}
 
 missing=()
 for package in "${packages[@]}"; do
-    status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
-    [[ "$status" == "installed" ]] || missing+=("$package")
+    found=''
+    for alternative in ${package//|/ }; do
+        is_installed "$alternative" && found=$alternative
+    done
+    [[ -n $found ]] || missing+=("$package")
 done
 [[ ${#missing[@]} -eq 0 ]] && exit 0
 
@@ -40,6 +58,19 @@ if [[ $EUID -ne 0 ]]; then
     command -v sudo >/dev/null || { echo "install_dependencies.sh: run it as root, or install sudo; missing packages: ${missing[*]}" >&2; exit 2; }
     as_root=(sudo)
 fi
-echo "installing: ${missing[*]}"
+[[ -z $cross ]] || "${as_root[@]}" dpkg --add-architecture "$cross"
 "${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+for i in "${!missing[@]}"; do
+    alternatives=(${missing[i]//|/ })
+    missing[i]=${alternatives[-1]%:*} # apt knows a package for all architectures by its plain name alone
+    for alternative in "${alternatives[@]}"; do
+        [[ $(apt-cache policy "$alternative") == *"Candidate: "[0-9]* ]] && missing[i]=$alternative && break
+    done
+done
+echo "installing: ${missing[*]}"
+# Tools first: otherwise apt takes the compiler of the other architecture, which its libraries ask for.
+mapfile -t first < <(printf '%s\n' "${missing[@]}" | grep -v ":" || true)
+mapfile -t then < <(printf '%s\n' "${missing[@]}" | grep ":" || true)
+install() { "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null; }
+[[ ${#first[@]} -eq 0 ]] || install "${first[@]}"
+[[ ${#then[@]} -eq 0 ]] || install "${then[@]}"

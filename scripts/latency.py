@@ -23,6 +23,8 @@ sys.dont_write_bytecode = True
 import command_line
 import events
 import layout
+import open_mpi
+import rank_hosts
 import session_results
 from command_line import within
 
@@ -152,7 +154,7 @@ def session(folder, wall_file, load, haptic, args, scene=SCENE):
     """Runs a wall for `args.warm_up` + `args.seconds` seconds and returns its summary."""
     log, out = folder / "log.txt", folder / "out"
     command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", wall_file, "--scene", scene, "--haptic", haptic, "--out", out,
-               "--no-pictures", "--gl", "osmesa", "--refresh", REFRESH, "--frame-timeout", START_SECONDS]
+               "--no-pictures", "--gl", layout.in_memory(), "--refresh", REFRESH, "--frame-timeout", START_SECONDS]
     command += [] if load.stereo else ["--mono"]
     with log.open("w") as said:
         run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
@@ -205,8 +207,8 @@ def message_floor(link, size, args):
 
 
 def frame_floor(ranks, size, args):
-    return floor("mpirun", "-q", "--oversubscribe", "--bind-to", "none", "--mca", "btl", "self,vader", "-n", ranks + 1,
-                 BIN / "sandwall-latency-floor", "frame", "--bytes", size, "--seconds", min(FLOOR_SECONDS, args.seconds))
+    program = [str(word) for word in (BIN / "sandwall-latency-floor", "frame", "--bytes", size, "--seconds", min(FLOOR_SECONDS, args.seconds))]
+    return floor(*open_mpi.Question().answer().command(open_mpi.Job(program, program, [rank_hosts.HERE] * ranks)))
 
 
 def measure(wall, link, load, args):

@@ -39,6 +39,12 @@ def bin_folder():
     return pathlib.Path(os.environ.get(environment.BIN) or (HERE.parent if INSTALLED else ROOT / "build" / "release" / "bin"))
 
 
+def in_memory():
+    """Returns the backend that draws in memory: osmesa, or egl in a build without OSMesa."""
+    folder = bin_folder()
+    return "egl" if (folder / "sandwall-gl-egl.so").is_file() and not (folder / "sandwall-gl-osmesa.so").is_file() else "osmesa"
+
+
 def program(name):
     """Returns the path of one of our programs. Throws BadInput if it does not exist."""
     path = bin_folder() / name

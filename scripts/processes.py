@@ -11,7 +11,7 @@ import time
 
 import events
 from console import say
-from job_log import LIBC
+from job_stream import LIBC
 from mpirun_end import EndWatch
 from rank_hosts import BadInput
 

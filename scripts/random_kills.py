@@ -46,7 +46,7 @@ class Session:
         self.out.mkdir(parents=True, exist_ok=True)
         self.log = open(self.out / "random_kills.log", "wb")
         self.command = [str(ROOT / "scripts" / "sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--out", args.out,
-                        "--device", "script:gis", "--gl", "osmesa", "--no-pictures", "--frame-timeout", str(args.frame_timeout),
+                        "--device", "script:gis", "--gl", layout.in_memory(), "--no-pictures", "--frame-timeout", str(args.frame_timeout),
                         "--restarts", "100000", "--restart-window", "0.001", *args.options]
         self.launcher = None
 

@@ -1,15 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Chooses the machine of each rank of a session, and mpirun's options for it."""
+"""Chooses the machine of each rank of a session."""
 
 import ipaddress
-import itertools
-import os
 import pathlib
 import re
-import shlex
 import socket
-import subprocess
-import time
 
 import checked_json
 import text_file
@@ -17,7 +12,6 @@ import text_file
 HERE = "localhost"  # mpirun's name for its own machine, on which the master always runs
 NO_HOST = "-"  # sandwall-check prints it for a tile without a host
 MOST_SLOTS = 1024
-REACH_SECONDS = 20
 # Refuses names that ssh could take for an option, or mpirun for a list.
 HOST_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,252}")
 
@@ -131,88 +125,5 @@ def checked_network(text):
         raise BadInput(f"--network: '{text}' is not a network; write one such as 10.0.0.0/24") from error
 
 
-def transport(hosts, network):
-    """Returns mpirun's options for communication: shared memory within a host, TCP between hosts."""
-    if all(host == HERE for host in hosts):
-        if network is not None:
-            raise BadInput("--network: every rank runs on this machine; leave --network out")
-        # The ranks do not listen for connections. mpirun itself still listens on all addresses (docs/how_it_works.md).
-        return ["--mca", "btl", "self,vader", "--mca", "oob_tcp_if_include", "lo"]
-    # Otherwise Open MPI cuts names at the first dot, and starts the ranks of node.1.org and node.2.org on one machine.
-    options = ["--mca", "btl", "self,vader,tcp", "--mca", "orte_keep_fqdn_hostnames", "1"]
-    if network is not None:
-        network = checked_network(network)
-        options += ["--mca", "btl_tcp_if_include", network, "--mca", "oob_tcp_if_include", network]
-    # Open MPI sends a variable of this machine's environment to the other hosts only with -x.
-    return options + ["--mca", "mpi_yield_when_idle", "1", "-x", "LP_NUM_THREADS", "-x", "HWLOC_COMPONENTS"]
-
-
-def programs(hosts, master, node):
-    """Returns mpirun's programs: the master here, then one group of render ranks for each change of host."""
-    runs = [(host, len(list(run))) for host, run in itertools.groupby(hosts)]
-    if all(host == HERE for host in hosts):
-        return ["-n", "1", *master, ":", "-n", str(len(hosts)), *node]
-    words = ["-n", "1", "--host", HERE, *master]
-    for host, count in runs:
-        words += [":", "-n", str(count), "--host", f"{host}:{count}", *node]
-    return words
-
-
 def most_on_one_host(hosts):
     return max(hosts.count(host) for host in hosts)
-
-
-def remote_shell():
-    """Returns the command that mpirun starts its daemons with, as a list of words.
-
-    OMPI_MCA_plm_rsh_agent may name several commands, separated by colons; this is the first.
-    """
-    return shlex.split(os.environ.get("OMPI_MCA_plm_rsh_agent", "").split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
-
-
-def require_reachable(hosts, node):
-    """Throws BadInput for the first host that cannot run a rank, because mpirun's own message fills a screen."""
-    for complaint in complaints(hosts, node).values():
-        raise BadInput(complaint)
-
-
-def complaints(hosts, node):
-    """Checks on all other hosts at once whether they have the program `node`.
-
-    Returns {host: reason} for every host that cannot run a rank.
-    """
-    agent = remote_shell()
-    others = sorted(set(hosts) - {HERE}, key=hosts.index)
-    asked = []
-    found = {}
-    deadline = time.monotonic() + REACH_SECONDS
-    try:
-        for host in others:
-            asked.append(subprocess.Popen([*agent, host, f"test -x {shlex.quote(node)}"], stdin=subprocess.DEVNULL,
-                                          stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace"))
-        for host, process in zip(others, asked):
-            complaint = complaint_of(process, node, deadline, agent)
-            if complaint:
-                found[host] = f"{host} (rank {hosts.index(host) + 1}): {complaint}"
-    except OSError as error:
-        raise BadInput(f"{agent[0]}: cannot be run; install openssh-client, or name another program in OMPI_MCA_plm_rsh_agent") from error
-    finally:
-        for process in asked:
-            if process.poll() is None:
-                process.kill()
-                process.wait()
-            process.stderr.close()
-    return found
-
-
-def complaint_of(process, node, deadline, agent):
-    """Returns the reason why the host that `process` asks cannot run a rank, or None if it can."""
-    try:
-        said = process.communicate(timeout=max(0, deadline - time.monotonic()))[1].strip().split("\n")[-1]
-    except subprocess.TimeoutExpired:
-        return f"no answer within {REACH_SECONDS} s; docs/hosts.md"
-    if process.returncode == 1 and not said:
-        return f"has no {node}; install the same build at the same path on every host"
-    if process.returncode != 0:
-        return f"cannot be reached: {said or f'{agent[0]} failed'}; docs/hosts.md"
-    return None

@@ -18,6 +18,7 @@ import tempfile
 import time
 
 sys.dont_write_bytecode = True
+import layout
 import session_results
 from command_line import Parser
 
@@ -65,7 +66,7 @@ def session(folder, programs, scene, steps):
     """Runs one session. Returns {name with unit: cost}."""
     launcher = programs.parent.parent.parent / "scripts" / "sandwall"
     command = [launcher, "run", "--wall", folder / "wall.toml", "--scene", scene, "--device", "script:gis", "--pace", "fast",
-               "--steps", str(steps), "--gl", "osmesa", "--out", folder / "out", "--no-pictures"]
+               "--steps", str(steps), "--gl", layout.in_memory(), "--out", folder / "out", "--no-pictures"]
     before, begin, result = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic(), {}
     with open(folder / "said.txt", "w") as said:
         running = subprocess.Popen(command, env=dict(os.environ, SANDWALL_BIN=str(programs)), stdout=said, stderr=said)

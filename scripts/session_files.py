@@ -23,6 +23,7 @@ import time
 sys.dont_write_bytecode = True
 import command_line
 import events
+import layout
 import processes
 import session_control
 from rank_hosts import BadInput
@@ -94,7 +95,7 @@ def run(folder, umask):
     """Runs the sessions in `folder`. Returns {file: set of (user id, mode)}."""
     out = folder / "out"
     (folder / "wall.toml").write_text(re.sub(r"tile_pixels.*", "tile_pixels = [64, 48]", WALL))
-    command = [ROOT / "scripts" / "sandwall", "run", "--wall", folder / "wall.toml", "--scene", ROOT / "scenes" / "sandbox.toml", "--gl", "osmesa",
+    command = [ROOT / "scripts" / "sandwall", "run", "--wall", folder / "wall.toml", "--scene", ROOT / "scenes" / "sandbox.toml", "--gl", layout.in_memory(),
                "--device", "script:gis", "--checkpoint", "0.2", "--restarts", "1", "--out", out]
     drills = [word for drill in DRILLS for word in ("--inject", drill)]
     with Watch(out) as watch, (folder / "said.txt").open("wb") as said:

@@ -23,7 +23,7 @@ import session_results
 from command_line import Parser, above, at_least
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-NAMES = ("mpirun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
+NAMES = ("mpirun", "prterun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")
 MOST_GROWTH = 1.0  # largest growth of a process [MiB per hour]
 START_SECONDS = 120
 
@@ -134,7 +134,7 @@ def main():
     out = pathlib.Path(args.out)
     out.mkdir(parents=True, exist_ok=True)
     command = [str(ROOT / "scripts/sandwall"), "run", "--wall", args.wall, "--scene", args.scene, "--device", args.device,
-               "--gl", "osmesa", "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
+               "--gl", layout.in_memory(), "--out", args.out, "--restarts", "0", "--no-pictures", *args.options]
     with open(out / "session_soak.log", "wb") as log:
         launcher = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=processes.die_with(os.getpid()))
         try:

@@ -6,6 +6,7 @@ import socket
 
 import events
 import rank_hosts
+import reachable
 from rank_hosts import BadInput
 
 STRIKES = 2  # number of failures of a host's ranks after which a spare takes its place
@@ -14,11 +15,13 @@ STRIKES = 2  # number of failures of a host's ranks after which a spare takes it
 class SessionHosts:
     """The hosts of all render ranks, and the spares.
 
-    `names` has the host of every render rank in their order. `spares` has (host, slots) in the order of use.
+    `names` has the host of every render rank in their order. `spares` has (host, slots) in the order of use. `version` is that
+    of this machine's mpirun, which every host must have.
     """
 
-    def __init__(self, names, spares, node):
-        self.names, self.spares, self.node = list(names), list(spares), node
+    def __init__(self, names, spares, node, version):
+        self.names, self.spares, self.node, self.version = list(names), list(spares), node, version
+        self.identities = {}  # of every host that has answered, as reachable.py reads them
         self.strikes = collections.Counter()
 
     def host_of(self, rank):
@@ -37,13 +40,32 @@ class SessionHosts:
 
         Throws BadInput if a host cannot be reached and no spare can replace it.
         """
-        complaints = rank_hosts.complaints(self.names, self.node)
+        complaints = self.ask(self.names)
         for host in [host for host, strikes in self.strikes.items() if strikes >= STRIKES and host in self.names]:
             if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), say):
                 self.strikes[host] = 0  # no spare can replace the host, so its count begins again
         for host, complaint in complaints.items():
             if host in self.names and not self.replace(host, complaint, say):
                 raise BadInput(complaint)
+
+    def ask(self, hosts):
+        """Returns {host: reason} for every host that cannot run a rank. Notes which machines the others are."""
+        answers = reachable.ask(hosts, self.node, self.version)
+        self.identities.update(answers.identities)
+        return answers.complaints
+
+    def places(self):
+        """Returns the options that tell the master on which machine each rank must run."""
+        words = []
+        for host in dict.fromkeys(self.names):
+            if self.identities.get(host):
+                ranks = ",".join(str(rank) for rank, name in enumerate(self.names, start=1) if name == host)
+                words += ["--place", f"{ranks}={host}={self.identities[host]}"]
+        return words
+
+    def ranks_here(self):
+        """Returns the ranks on this machine, with the master."""
+        return [0, *(rank for rank, host in enumerate(self.names, start=1) if host == rank_hosts.HERE)]
 
     def replace(self, host, why, say):
         """Replaces a host by the first spare that can be reached and has slots for all ranks of the host.
@@ -55,7 +77,7 @@ class SessionHosts:
             if slots < len(ranks):
                 continue
             self.spares.remove((spare, slots))
-            if rank_hosts.complaints([spare], self.node):
+            if self.ask([spare]):
                 say(f"spare {spare} cannot be reached either")
                 continue
             self.names = [spare if name == host else name for name in self.names]

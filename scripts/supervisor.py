@@ -129,6 +129,8 @@ def failure_of_job(status, log, hosts, written):
     else:
         how = ending_of(status)
         text = f"mpirun {how_ended(status)}"
+    if rank in log.rank_logs:
+        text += f" (its output: {log.rank_logs[rank]})"
     failure = Failure(text, rank, how, lost, frame=log.frame, step=log.step)
     failure.last_lines = list(log.said.get(rank) or log.said.get(0) or log.said.get(None) or [])
     return failure
@@ -175,13 +177,13 @@ class Allowance:
 class Supervisor:
     """Runs a session to its end, through failures.
 
-    `job_of(hosts, haptic, words, tagged)` returns command and environment of the job; `words` are more options for the
-    master. `server_at(address, start)` returns the haptic server's command; it is None for a session without a device.
+    `mpi` is one of open_mpi.py. `start_of(hosts, haptic, words, log)` returns command and environment of the job; `words` are
+    more options for the master, and `log` keeps the output, unless it is None. `server_at(address, start)` returns the haptic server's command; it is None for a session without a device.
     """
 
-    def __init__(self, out, hosts, job_of, server_at, haptic, options, stop):
+    def __init__(self, out, hosts, mpi, start_of, server_at, haptic, options, stop):
         self.out, self.hosts = pathlib.Path(out), hosts
-        self.job_of, self.server_at, self.haptic = job_of, server_at, haptic
+        self.mpi, self.start_of, self.server_at, self.haptic = mpi, start_of, server_at, haptic
         self.stop = stop
         self.supervised = options.restarts > 0
         self.allowance = Allowance(options.restarts, options.restart_window)
@@ -199,7 +201,7 @@ class Supervisor:
         self.server_failure = None  # the failure after which the server is not linked yet
         self.restarting = False  # whether the job has failed and has not shown a frame since then
         self.gave_up = False
-        self.logs = None  # folder of the logs, from prepare_logs(); unused without --restarts
+        self.logs = None  # folder of the logs; without --restarts a temporary one, or None if the output is not kept
 
     def run(self):
         with tempfile.TemporaryDirectory(prefix="sandwall-") as folder:
@@ -208,7 +210,10 @@ class Supervisor:
                     self.server = HapticServer(self.server_at, folder)
                     self.server.start()
                     self.haptic = self.server.address()
-                self.logs = self.prepare_logs(folder) if self.supervised else None
+                if self.supervised:
+                    self.logs = self.prepare_logs(folder)
+                elif self.mpi.keeps_output:
+                    self.logs = pathlib.Path(folder)
                 return self.tries()
             finally:
                 self.mark_restart(None)
@@ -238,7 +243,7 @@ class Supervisor:
             if self.logs:
                 number += 1
                 job_log.forget_tries(self.logs, job_log.KEPT_TRIES - 1)
-                log = job_log.JobLog(self.logs, number)
+                log = job_log.JobLog(self.logs, number, self.mpi, self.hosts.ranks_here())
             status = self.one_try(words, log)
             if log and log.force is not None:
                 self.force = log.force
@@ -280,7 +285,7 @@ class Supervisor:
 
     def one_try(self, words, log):
         """Runs the job until it ends, and supervises the haptic server meanwhile. Returns the exit status of the job."""
-        command, environment = self.job_of(self.hosts.names, self.haptic, words, log is not None)
+        command, environment = self.start_of(self.hosts.names, self.haptic, words, log)
         self.job = Job(command, environment, log)
         self.input.job = self.job
         self.input.listen()
@@ -292,6 +297,7 @@ class Supervisor:
         if self.supervised:
             self.input.job = None
             self.job.clear()
+        self.mpi.tidy(self.job.process.pid)
         return status
 
     def look_after_server(self):

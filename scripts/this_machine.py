@@ -4,6 +4,8 @@
 import math
 import os
 import subprocess
+import sys
+import tempfile
 
 import doctor
 import layout
@@ -17,21 +19,24 @@ START_SECONDS = 60
 FIXED_MEGABYTES = 256
 BYTES_PER_CELL = 200
 FIELD_SIDES = (512, 1024, 2048, 4096)
-# The environment with which Open MPI starts as root too.
-MPI = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "HWLOC_COMPONENTS": "-gl"}
 
 
-def check_start(host):
-    """Adds whether mpirun starts two processes here. A version alone does not show that."""
-    try:
-        ended = subprocess.run(["mpirun", "--oversubscribe", "-n", "2", "true"], stdin=subprocess.DEVNULL, capture_output=True,
-                               text=True, errors="replace", timeout=START_SECONDS, check=False, env={**os.environ, **MPI})
-        complaint = "" if ended.returncode == 0 else doctor.last_line(ended.stderr) or f"exit status {ended.returncode}"
-    except OSError:
-        complaint = "mpirun: not found; apt-get install openmpi-bin"
-    except subprocess.TimeoutExpired:
-        complaint = f"mpirun starts nothing within {START_SECONDS} s"
-    host.add(not complaint, "start", complaint or "mpirun starts two processes")
+def check_start(host, chosen):
+    """Adds whether a session shows a frame here. A version alone does not show that, nor does an mpirun that starts other programs.
+
+    The session is one of the desktop wall, in memory unless a backend was chosen.
+    """
+    variables = {name: value for name, value in os.environ.items() if name != "DISPLAY" or chosen == "glfw"}
+    with tempfile.TemporaryDirectory(prefix="sandwall-doctor-") as folder:
+        command = [sys.executable, str(layout.HERE / "sandwall"), "run", "--wall", "desktop", "--scene", "sandbox", "--frames", "1",
+                   "--here", "--gl", chosen, "--journal", "off", "--no-pictures", "--restarts", "0", "--out", os.path.join(folder, "out")]
+        try:
+            ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
+                                   timeout=START_SECONDS, check=False, env=variables)
+            complaint = "" if ended.returncode == 0 else doctor.last_line(ended.stderr) or f"exit status {ended.returncode}"
+        except subprocess.TimeoutExpired:
+            complaint = f"a session shows no frame within {START_SECONDS} s"
+    host.add(not complaint, "start", complaint.removeprefix("sandwall: ") or "a session shows a frame")
 
 
 def check_launcher(host):
@@ -74,8 +79,12 @@ def check_display(host):
 
 
 def check_gl(host, node, chosen):
-    """Adds a finding for the chosen backend. "auto" means all: a wall needs one, and osmesa needs no card and no display."""
-    for backend in ("osmesa", "egl", "glfw") if chosen == "auto" else (chosen,):
+    """Adds a finding for the chosen backend. "auto" means all: a wall needs one, and osmesa needs no card and no display.
+
+    A build without OSMesa draws in memory with egl.
+    """
+    in_memory = layout.in_memory()
+    for backend in dict.fromkeys((in_memory, "egl", "glfw")) if chosen == "auto" else (chosen,):
         try:
             ended = subprocess.run([node, "--probe", "0", "--gl", backend, "--json"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, errors="replace", timeout=doctor.PROBE_SECONDS, check=False)
@@ -87,7 +96,7 @@ def check_gl(host, node, chosen):
         else:
             words = complaint.removeprefix("sandwall-render-node: ") or "does not answer"
             host.add(False, "gl", f"{'' if words.startswith('--gl') else f'--gl {backend}: '}{words}; docs/backends.md",
-                     needed=backend == "osmesa" or backend == chosen, backend=backend)
+                     needed=backend in (in_memory, chosen), backend=backend)
 
 
 def examine(node, master, out, backend, as_json):
@@ -102,7 +111,7 @@ def examine(node, master, out, backend, as_json):
     answers = examiner.reach(host)
     if answers is not None:
         examiner.check_programs(host, answers)
-        check_start(host)
+        check_start(host, backend)
         check_cores(host)
         check_memory(host, answers)
         check_display(host)

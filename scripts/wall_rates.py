@@ -22,6 +22,7 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
+import layout
 import session_results
 from command_line import Parser, above
 
@@ -97,7 +98,7 @@ def one_tile(folder):
 
 def session(out, scene_file, *more, wall=WALL):
     """Runs a session and returns its summary."""
-    command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--gl", "osmesa", "--out", out,
+    command = [ROOT / "scripts" / "sandwall", "run", "--wall", wall, "--scene", scene_file, "--gl", layout.in_memory(), "--out", out,
                "--no-pictures", *map(str, more)]
     ran = subprocess.run(command, capture_output=True, text=True)
     if ran.returncode != 0:

@@ -63,7 +63,7 @@ sample::Pixels drawFrame(render_node::ScenePainter& view, const render_node::Cam
 void measure(int side, int frames, const bench::Settings& settings, bench::Csv& csv) {
     const std::vector<double> bounds{0, 0.25, 0.5, 1, 2, 4};
     std::vector<Sums> sums(bounds.size());
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     render_node::ScenePainter view(dunesOf(side, settings.seed), glm::dmat4(1));
     const render_node::EyeTarget target(kWidth, kHeight);
     for (int frame = 0; frame < frames; ++frame) {

@@ -24,7 +24,7 @@ sample::Window windowOf(int tile) {
 
 /// Draws the tiles of the wall. Argument 0: whether chunks outside a tile are left out. Argument 1: cells on a side.
 void drawWall(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(1)));
     const render_node::EyeTarget target(1024, 768);
     const bool culling = state.range(0) != 0;
@@ -65,7 +65,7 @@ BENCHMARK(drawWall)
 /// Draws a tile while the head moves, so that every frame draws the whole tile and new chunks. Argument: cells on a
 /// side.
 void moveHead(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(static_cast<int>(state.range(0)));
     const render_node::EyeTarget target(1024, 768);
     render_node::ScenePainter view(scene, glm::dmat4(1));
@@ -89,7 +89,7 @@ BENCHMARK(moveHead)
 
 /// Gives the changed heights of a new furrow to the view, and draws. Argument: side of the changed square [cell].
 void updateDamage(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(64, 48);
     render_node::ScenePainter view(scene, glm::dmat4(1));
@@ -105,7 +105,7 @@ BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(bench
 /// Measures a frame in which the tool of Dorjgotov et al. 2007 digs, for one eye of a tile that shows the whole field.
 /// Argument 0: 1 draws what changed, 0 everything. Argument 1: cells on a side. The step of sand is not timed.
 void dig(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const int side = static_cast<int>(state.range(1));
     scene::Scene scene = sample::flatScene(side, side, 0.01);
     sand::grid::makeDunes({.height = 0.02}, scene.terrain);  // these dunes are at rest
@@ -145,7 +145,7 @@ BENCHMARK(dig)
 
 /// Draws a tile of the wall with overlays. Argument 0: Overlays::bits().
 void overlays(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(512);
     render_node::ScenePainter view(scene, glm::dmat4(1));
     view.setLayers(lockstep::Overlays(static_cast<std::uint8_t>(state.range(0))));
@@ -161,7 +161,7 @@ void overlays(benchmark::State& state) {
 BENCHMARK(overlays)->ArgName("bits")->DenseRange(0, 3)->Iterations(30)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void readBack(benchmark::State& state) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const render_node::EyeTarget target(1024, 768);
     for (auto _ : state) {
         benchmark::DoNotOptimize(target.read());

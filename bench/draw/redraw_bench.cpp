@@ -154,7 +154,7 @@ void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrai
 int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
     const scene::Scene scene = scene::loadScene(options.scene);
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     sand::Replica terrain(scene);
     const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.surface().data());
     const std::int32_t level = scene.referenceHeight();

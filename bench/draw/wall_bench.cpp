@@ -78,7 +78,7 @@ int measure(const std::string& wallFile, const std::string& sceneFile, int round
     const glm::dmat4 sceneToRoom =
         walls::stageToRoom(wall.stage, field.columns() * field.cellSize(), field.rows() * field.cellSize(),
                            scene.referenceHeight() * field.unit());
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const glm::ivec2 pixels = wall.tiles.front().pixels;
     const render_node::EyeTarget target(pixels.x, pixels.y);
     const std::vector<render_node::Camera> cameras = camerasOf(wall);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "base/byte_stream.hpp"
 
@@ -76,6 +77,6 @@ using GetSecurity = const Security*();
 
 /// Loads sandwall-security.so from the folder of this program. Returns the same object at every call. Throws
 /// base::InputError that begins with `option` if the module is missing.
-[[nodiscard]] const Security& loadSecurity(const std::string& option);
+[[nodiscard]] const Security& loadSecurity(std::string_view option);
 
 }  // namespace haptic_bridge

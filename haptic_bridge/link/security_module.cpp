@@ -5,18 +5,18 @@
 namespace haptic_bridge {
 namespace {
 
-const Security& load(const std::string& option) {
+const Security& load(std::string_view option) {
     void* const symbol = host::loadModule({.file = "sandwall-security.so",
                                            .symbol = kSecuritySymbol,
-                                           .askedBy = option,
+                                           .askedBy = std::string(option),
                                            .ifMissing = "build Sandwall with Debian's libssl-dev",
-                                           .ifNotLoaded = "install Debian's libssl3"});
+                                           .ifNotLoaded = "install Debian's libssl3 (Debian 13: libssl3t64)"});
     return *reinterpret_cast<GetSecurity*>(symbol)();
 }
 
 }  // namespace
 
-const Security& loadSecurity(const std::string& option) {
+const Security& loadSecurity(std::string_view option) {
     static const Security& security = load(option);
     return security;
 }

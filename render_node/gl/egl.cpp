@@ -54,6 +54,19 @@ public:
         }
         return devices_[static_cast<std::size_t>(number)];
     }
+    /// Returns the number of Mesa's software renderer.
+    [[nodiscard]] int software() const {
+        const auto query = load<PFNEGLQUERYDEVICESTRINGEXTPROC>("eglQueryDeviceStringEXT");
+        for (std::size_t i = 0; query != nullptr && i < devices_.size(); ++i) {
+            if (lists(query(devices_[i], EGL_EXTENSIONS), "EGL_MESA_device_software")) {
+                return static_cast<int>(i);
+            }
+        }
+        throw InputError(
+            "--gl auto: EGL has no software device; install libgl1-mesa-dri and libegl-mesa0, or choose another "
+            "--gl; " +
+            list());
+    }
     /// Returns a text such as "there are 0 (/dev/dri/card0), 1 (software)".
     [[nodiscard]] std::string list() const {
         std::string text;
@@ -146,6 +159,8 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform3(const PlatformRequest& request) { return new Egl(request.device); }
+extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request) {
+    return new Egl(request.software ? Devices().software() : request.device);
+}
 
 }  // namespace render_node

@@ -49,7 +49,14 @@ std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& req
     return context;
 }
 
+/// Returns whether `automatic` has chosen EGL to draw in memory, and the wall file names no device.
+bool isSoftware(Backend backend, const walls::Tile& tile) {
+    return backend == Backend::automatic && backendFor(backend, tile) == Backend::egl && tile.place.device < 0;
+}
+
 }  // namespace
+
+const Backend kInMemory = SANDWALL_OSMESA != 0 ? Backend::osmesa : Backend::egl;
 
 std::string_view backendName(Backend backend) { return kNames.at(static_cast<std::size_t>(backend)); }
 
@@ -69,7 +76,7 @@ Backend backendFor(Backend backend, const walls::Tile& tile) {
                        std::any_of(tile.outputs.begin(), tile.outputs.end(), [](const walls::Output& output) {
                            return !output.monitor.empty() || output.window.has_value();
                        });
-    return shown ? Backend::glfw : Backend::osmesa;
+    return shown ? Backend::glfw : kInMemory;
 }
 
 void loadFunctions(GlPlatform& platform) {
@@ -103,6 +110,7 @@ PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const 
     request.who = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
     request.display = tile.place.display;
     request.device = tile.place.device;
+    request.software = isSoftware(backend, tile);
     request.eyesInTurn = wall.stereo == walls::Stereo::active;
     request.refreshHz = wall.refreshHz;
     if (backendFor(backend, tile) == Backend::glfw) {
@@ -125,6 +133,10 @@ std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall,
     return contextOf(backendFor(backend, tile), request);
 }
 
-std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) { return contextOf(backendFor(backend, {}), {}); }
+std::unique_ptr<GlContext> makeOffscreenContext(Backend backend) {
+    PlatformRequest request;
+    request.software = isSoftware(backend, {});
+    return contextOf(backendFor(backend, {}), request);
+}
 
 }  // namespace render_node

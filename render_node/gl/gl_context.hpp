@@ -18,11 +18,14 @@ class EyeTarget;
 /// Source of a process's OpenGL context. Each backend is one loadable module; all other code is the same for every
 /// backend.
 enum class Backend : std::uint8_t {
-    automatic,  // glfw if the wall file gives the tile a display, a monitor or a window's place; otherwise osmesa
+    automatic,  // glfw if the wall file gives the tile a display, a monitor or a window's place; otherwise kInMemory
     osmesa,     // draws into memory, without a display or a graphics card
     egl,        // draws off screen on a graphics card or in Mesa's software renderer
     glfw        // windows on an X display
 };
+/// Backend that draws in memory, which every machine can: osmesa, or egl on its software device in a build without
+/// OSMesa.
+extern const Backend kInMemory;
 /// Returns the backend's name for --gl: "auto", "osmesa", "egl" or "glfw".
 [[nodiscard]] std::string_view backendName(Backend backend);
 /// Returns the backend with this name. Throws base::InputError if there is no such backend.

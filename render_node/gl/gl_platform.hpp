@@ -46,6 +46,7 @@ struct PlatformRequest {
                                        // server is lost
     std::string display;               // X display; empty: $DISPLAY
     int device = -1;                   // number of the EGL device; -1: the driver chooses
+    bool software = false;             // the driver chooses EGL's software device
     bool eyesInTurn = false;           // active stereo; without quad buffers, one eye per frame in turn
     double refreshHz = 60;
     bool pointer = false;  // the pointer is shown, and takePointer() returns its events
@@ -91,7 +92,7 @@ public:
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform3(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform3";
+extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform4";
 
 }  // namespace render_node

@@ -110,6 +110,9 @@ void hintContext(bool visible) {
 
 GlfwLibrary::GlfwLibrary() {
     glfwSetErrorCallback([](int /* code */, const char* text) { lastComplaint = text; });
+#ifdef GLFW_PLATFORM  // since GLFW 3.4, which otherwise tries Wayland first
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (glfwInit() != GLFW_TRUE) {
         throw InputError("--gl glfw: GLFW does not start: " + lastComplaint);
     }

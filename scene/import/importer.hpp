@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/byte_stream.hpp"
@@ -70,6 +71,6 @@ using GetImporter = const Importer*();
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function
 /// loads GDAL and muParser. Throws base::InputError if the module is missing. The message begins with `what`, which
 /// needs it.
-[[nodiscard]] const Importer& loadImporter(const std::string& what);
+[[nodiscard]] const Importer& loadImporter(std::string_view what);
 
 }  // namespace scene

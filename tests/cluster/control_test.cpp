@@ -55,7 +55,7 @@ protected:
         EXPECT_EQ(summary()["edits"], edits);
         EXPECT_EQ(summary()["volume_final"].get<std::int64_t>() + summary()["volume_outflow"].get<std::int64_t>(),
                   summary()["volume_initial"].get<std::int64_t>());
-        EXPECT_EQ(replayedHash(), summary()["state_hash"]);
+        EXPECT_EQ(summary()["state_hash"], replayedHash());
         EXPECT_FALSE(std::filesystem::exists(out() + "/control"));
     }
     /// The process that answers at the session's socket.

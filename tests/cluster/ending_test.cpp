@@ -2,6 +2,7 @@
 #include <csignal>
 
 #include "tests/cluster/session_fixture.hpp"
+#include "tests/support/mpirun.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace {
@@ -32,7 +33,7 @@ TEST_F(Ending, CtrlCLeavesJournalAndSummaryWhole) {
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_FALSE(session->waitForEvent("stopping").is_null()) << session->output();
     expectNothingLeft();
-    EXPECT_EQ(replayedHash(), summary()["state_hash"]);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
     EXPECT_TRUE(std::filesystem::exists(out() + "/wall_anaglyph.png"));
 }
 
@@ -45,7 +46,7 @@ TEST_F(Ending, AKilledLauncherEndsTheSessionInOrder) {
 
 TEST_F(Ending, AKilledMpirunLeavesNothingRunning) {
     const auto session = runningSession();
-    kill(support::findProgram(family_, "mpirun").value(), SIGKILL);
+    kill(support::findProgram(family_, support::mpirunProcess()).value(), SIGKILL);
     EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
     expectNothingLeft();
     const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal --hash");

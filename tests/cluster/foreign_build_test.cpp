@@ -3,6 +3,7 @@
 
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/events.hpp"
+#include "tests/support/mpirun.hpp"
 #include "tests/support/run_program.hpp"
 
 namespace {
@@ -16,13 +17,13 @@ std::string buildOf(const std::string& program) {
 TEST_F(ForeignBuild, OfARankIsRefusedByName) {
     const std::string bin = SANDWALL_BIN_DIR;
     const std::string command =
-        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 HWLOC_COMPONENTS=-gl exec mpirun -q --oversubscribe "
-        "--bind-to none --mca btl self,vader -n 1 " +
-        bin + "/sandwall-master --scene " + scene() + " --wall " + wall(1, 2) + " --out " + out() + " : -n 1 " + bin +
-        "/sandwall-render-node : -n 1 " + bin + "/sandwall-render-node-foreign";
+        support::mpirunHere() + support::programsByRank({{1, bin + "/sandwall-master --scene " + scene() + " --wall " +
+                                                                 wall(1, 2) + " --out " + out()},
+                                                         {1, bin + "/sandwall-render-node"},
+                                                         {1, bin + "/sandwall-render-node-foreign"}});
     support::ChildProcess job({"/bin/sh", "-c", command}, folder_ / "output.txt");
     EXPECT_EQ(job.wait(kLong), 2) << job.output();
-    const std::string output = support::messagesIn(job.output());
+    const std::string output = support::messagesIn(support::withoutBanner(job.output()));
     EXPECT_EQ(std::count(output.begin(), output.end(), '\n'), 1) << output;
     for (const std::string& part :
          {"rank 2 (tile r1c2) on " + host(), buildOf("sandwall-master"), buildOf("sandwall-render-node-foreign")}) {

@@ -41,7 +41,7 @@ protected:
         EXPECT_EQ(replay.wait(kLong), 0) << replay.output();
         std::string printed = replay.output();  // the hash is in the last line
         printed = printed.substr(printed.size() - std::min<std::size_t>(printed.size(), 17), 16);
-        EXPECT_EQ(printed, divergences.back()["state_hash"]);
+        EXPECT_EQ(divergences.back()["state_hash"], printed);
         return printed;
     }
     void expectHealed(const Ended& ended, const nlohmann::json& wanted) {
@@ -128,7 +128,7 @@ TEST_F(Healing, FindsWhatIsWrongInTheLastFrames) {
         << told["compared"];
     EXPECT_GE(told["compared"]["first_difference"], 19);
     EXPECT_TRUE(told["journal"]["whole"]);
-    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    EXPECT_EQ(told["state_hash"], replayedHash());
 }
 
 TEST_F(Healing, LetsTheJournalDecideATie) {
@@ -167,7 +167,7 @@ TEST_F(Healing, LetsTheJournalOutvoteAMajority) {
     EXPECT_EQ(told["state_hash"], undisturbed["state_hash"]);
     EXPECT_EQ(told["volume_final"], undisturbed["volume_final"]);
     EXPECT_EQ(json("out/incidents.json")["outvoted"], 1);
-    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    EXPECT_EQ(told["state_hash"], replayedHash());
     expectEqualPictures("undisturbed", "out");
     const support::Ran verified = support::runProgram("sandwall-replay", out() + "/session.journal --verify");
     EXPECT_EQ(verified.status, 0) << verified.output;
@@ -207,8 +207,14 @@ TEST_F(Healing, ResumesASessionThatWasKilledWithAWrongMajority) {
     const nlohmann::json told = summary();
     EXPECT_EQ(told["steps"], 400);
     EXPECT_EQ(told["volume_final"], told["volume_initial"]);
-    EXPECT_EQ(replayedHash(), told["state_hash"]);
+<<<<<<< HEAD
+    EXPECT_EQ(told["state_hash"], replayedHash());
     EXPECT_EQ(told["outvoted"], before + 1);
+=======
+    EXPECT_EQ(told["state_hash"], replayedHash());
+    // The kill may come before the next step, with which the journal notes the majority. Then it has no wrong hash.
+    EXPECT_LE(told["outvoted"], 1);
+>>>>>>> 6acb5871 (Compile with g++ 14 and clang 19, on Debian 12 and 13)
 }
 
 TEST_F(Healing, GivesUpARankThatNeedsItAThirdTime) {

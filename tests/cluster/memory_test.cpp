@@ -2,15 +2,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <set>
 
 #include "tests/cluster/session_fixture.hpp"
+#include "tests/support/mpirun.hpp"
 #include "tests/support/x_server.hpp"
 
 namespace {
 
-// Largest memory of a rank without its frame buffers [byte]. It also holds at the peak, while shaders compile.
-constexpr double kMost = 120e6;
+/// Returns the largest memory of a rank without its frame buffers [byte]. It also holds at the peak, while shaders
+/// compile.
+///
+/// The parts were measured one by one (docs/figures.md). A rank that only starts MPI and waits takes 13.6 MB with Open
+/// MPI 4.1.4 and 17.1 MB with 5.0.7, nearly all of it in libraries. A process that draws without MPI holds 50 to 60 MB
+/// with Mesa 22.3 and LLVM 15, and 65 to 77 MB with Mesa 25.0 and LLVM 19, whose compiler also takes more: at their
+/// peaks, ranks of Debian 13 take 120 MB with osmesa, 125 MB with egl and 141 MB with glfw.
+double mostOf(const std::string& renderer) {
+    const auto mesa = renderer.find("Mesa ");
+    const bool newMesa = mesa != std::string::npos && std::atoi(renderer.c_str() + mesa + 5) >= 25;
+    return 120e6 + (support::hasOpenMpi5() ? 4e6 : 0) + (newMesa ? 24e6 : 0);
+}
 
 /// Returns the files that a process has mapped, such as the libraries of Mesa and of windows, as names up to the first
 /// dot.
@@ -80,8 +92,9 @@ TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffersAndHoldsTheLibrariesOfItsBacke
     const double held = report["memory_bytes"].get<double>() - frameBuffers;
     fmt::print("{}: {:.0f} MB beside {:.0f} MB of frame buffers, at its peak {:.0f} MB\n", GetParam(), held * 1e-6,
                frameBuffers * 1e-6, (peak - frameBuffers) * 1e-6);
-    EXPECT_LE(held, kMost);
-    EXPECT_LE(peak - frameBuffers, kMost) << "while shaders compile";
+    const double most = mostOf(report["renderer"]);
+    EXPECT_LE(held, most);
+    EXPECT_LE(peak - frameBuffers, most) << "while shaders compile";
     // Not libX11: Open MPI's own plug-ins bring it into every process.
     const std::vector<std::pair<std::string, std::string>> owners{
         {"libOSMesa", "osmesa"}, {"libEGL", "egl"}, {"libglfw", "glfw"}, {"libGLX", "glfw"}};

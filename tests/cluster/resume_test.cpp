@@ -107,7 +107,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(told["volume_final"], told["volume_initial"]);
     EXPECT_EQ(told["journal"]["policy"], "required");
     EXPECT_FALSE(std::filesystem::exists(journal().string() + ".previous"));
-    EXPECT_EQ(replayedHash(), told["state_hash"]);
+    EXPECT_EQ(told["state_hash"], replayedHash());
     const support::Ran verified = support::runProgram("sandwall-replay", journal().string() + " --verify");
     EXPECT_EQ(verified.status, 0) << verified.output;
 

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "scene/scene.hpp"
 #include "tests/support/folder_test.hpp"
@@ -30,6 +32,53 @@ scene::Scene tinOf(int side, std::size_t vertices) {
     start.places.resize(vertices);
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
+}
+
+/// Returns a wall of `count` tiles, named t1, t2 and so on.
+walls::Wall wallOf(int count) {
+    walls::Wall wall;
+    for (int rank = 1; rank <= count; ++rank) {
+        walls::Tile& tile = wall.tiles.emplace_back();
+        tile.rank = rank;
+        tile.name = "t" + std::to_string(rank);
+    }
+    return wall;
+}
+
+std::string misplaced(const std::vector<lockstep::RankHost>& ranks, const std::vector<std::string>& places) {
+    std::vector<master::Place> parsed;
+    std::transform(places.begin(), places.end(), std::back_inserter(parsed), master::Place::parse);
+    return test::refusalOf([&] { master::requirePlaces(ranks, wallOf(static_cast<int>(ranks.size()) - 1), parsed); });
+}
+
+TEST(StartUp, RefusesARankOnAnotherMachineThanItsHost) {
+    const std::vector<lockstep::RankHost> ranks{
+        {"head", 0, "head/1"}, {"n1", 0, "n1/2"}, {"n2", 0, "n2/3"}, {"n1", 0, "n1/2"}};
+    EXPECT_EQ(misplaced(ranks, {"1,3=left=n1/2", "2=right=n2/3"}), "nothing");
+    EXPECT_EQ(misplaced(ranks, {"1,2=left=n1/2", "3=right=n2/3"}),
+              "rank 2 (tile t2): mpirun has started it on n2, but its host is left, which is n1; look at the command "
+              "with --print-command (docs/hosts.md)");
+    EXPECT_NE(misplaced(ranks, {"1=left=n1/7"}), "nothing") << "a machine with the same name";
+    EXPECT_EQ(misplaced(ranks, {}), "nothing") << "a job that was started by hand";
+}
+
+TEST(StartUp, RefusesAPlaceThatTheLauncherWouldNotWrite) {
+    for (const std::string text : {"", "1", "1=a", "1=a=", "1==m", "=a=m", "0=a=m", "1,,2=a=m", "x=a=m", "1025=a=m"}) {
+        EXPECT_NE(test::refusalOf([&] { (void)master::Place::parse(text); }).find("--place: write RANK"),
+                  std::string::npos)
+            << text;
+    }
+}
+
+TEST(StartUp, RefusesARankThatDrawsAnotherTile) {
+    std::vector<lockstep::Readiness> ranks(3);
+    ranks[1].tile = "t1";
+    ranks[2].tile = "t2";
+    EXPECT_EQ(test::refusalOf([&] { master::requireTiles(ranks, wallOf(2)); }), "nothing");
+    ranks[2].tile = "t1";
+    ranks[2].host = "n2";
+    EXPECT_EQ(test::refusalOf([&] { master::requireTiles(ranks, wallOf(2)); }),
+              "rank 2 on n2: draws the tile t1 in place of t2; run the programs of one build");
 }
 
 TEST(StartUp, RefusesAGridThatDoesNotFitTheMemory) {

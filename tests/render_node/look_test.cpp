@@ -61,7 +61,8 @@ scene::Scene slopeScene(double east, double north) {
 
 class Look : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     EyeTarget target_{kLookWidth, kLookHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
 };

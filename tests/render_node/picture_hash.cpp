@@ -7,7 +7,7 @@
 #include "tests/support/sample_scene.hpp"
 
 int main() try {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(200);
     render_node::ScenePainter view(scene, glm::dmat4(1));
     view.setTool(sample::probeAt(scene, {1, 1, 0.05}), true);

@@ -41,13 +41,14 @@ double meanLuminance(const Pixels& pixels, int x0, int y0, int x1, int y1) {
 
 class Picture : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     EyeTarget target_{kWidth, kHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
 };
 
 TEST_F(Picture, NamesItsRenderer) {
-    EXPECT_EQ(context_->name(), "osmesa");
+    EXPECT_EQ(context_->name(), render_node::backendName(render_node::kInMemory));
     EXPECT_NE(context_->renderer().find("OpenGL"), std::string::npos) << context_->renderer();
 }
 

@@ -41,7 +41,7 @@ Pictures picturesOf(const render_node::TilePainter& painter) {
 // A tile that changes to a mode must show the same as a tile that was started in that mode. The test tries every pair
 // of modes.
 TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(48);
     const walls::Wall wall = smallWall();
     lockstep::ViewState view;
@@ -67,7 +67,7 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
 }
 
 TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
-    const auto context = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(48);
     const walls::Wall wall = smallWall();
     constexpr int kPixels = 80 * 60, kEye = 8, kColour = 4;  // [byte]: colour and depth, or colour alone

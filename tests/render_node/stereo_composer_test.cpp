@@ -65,7 +65,8 @@ protected:
         right_ = noise(width, height, 2);
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     Image left_, right_;
 };
 

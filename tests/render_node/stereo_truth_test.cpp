@@ -21,7 +21,8 @@ using walls::Stereo;
 
 class StereoPicture : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
 };
 
 /// Returns a screen of 0.8 x 0.6 m and 800 x 600 pixels, two metres in front of the viewer.

@@ -124,7 +124,8 @@ protected:
         return {differ / kPixels, elsewhere / kPixels};
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     scene::Scene scene_ = sample::duneScene(300);
     EyeTarget wholeTarget_{kWallWidth, kWallHeight};
     glm::dvec3 leftEye_{0.9675, -0.1, 0.75};

@@ -231,7 +231,8 @@ protected:
         }
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     scene::Scene scene_ = sample::duneScene(128);
     std::array<std::vector<Image>, 3> expected_;  // for each tile, in the order of walls::Eye
     int seen_ = 0;                                // number of outputs that each eye was compared on

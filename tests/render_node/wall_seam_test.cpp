@@ -185,7 +185,8 @@ protected:
         count.silhouettes += static_cast<double>(std::count(edges.begin(), edges.end(), 1));
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     sample::DugScene dug_;
 };
 

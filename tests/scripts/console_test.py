@@ -11,6 +11,7 @@ from supervisor_fixture import Supervised
 
 import console
 import job_log
+import open_mpi
 
 
 class FullDisk(Supervised):
@@ -55,10 +56,10 @@ class FullDisk(Supervised):
 
 class LogWithoutDisk(unittest.TestCase):
     def test_a_job_runs_although_no_file_can_be_made_for_its_output(self):
-        said = mock.patch("job_log.say")
+        said = mock.patch("job_stream.say")
         said.start()
         self.addCleanup(said.stop)
-        log = job_log.JobLog("/nowhere", 1)
+        log = job_log.JobLog("/nowhere", 1, open_mpi.OpenMpi4("4.1.4"))
         self.addCleanup(log.close)
         event = '@sandwall {"event":"progress","frame":7,"step":6,"fps":60.0,"skew_us":9.0,"hand":"no hand"}'
         subprocess.run(["sh", "-c", f"echo '[1,0]<stderr>:{event}' >&2"], stdout=log.out.file, stderr=log.err.file, check=True)

@@ -20,6 +20,7 @@ import sys
 import tempfile
 import time
 import traceback
+import zlib
 from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -30,6 +31,7 @@ import console  # noqa: E402
 import doctor  # noqa: E402
 import events  # noqa: E402
 import job_log  # noqa: E402
+import open_mpi  # noqa: E402
 import programs  # noqa: E402
 import rank_hosts  # noqa: E402
 import session_control  # noqa: E402
@@ -91,17 +93,17 @@ class Folder:
 
     def supervisor(self):
         options = argparse.Namespace(restarts=1000, restart_window=60, resume=False)
-        hosts = spare_hosts.SessionHosts(["node01", "node02"], [], "node")
+        hosts = spare_hosts.SessionHosts(["node01", "node02"], [], "node", "4.1.4")
         with mock.patch("supervisor.Input"):
-            one = supervisor.Supervisor(self.path, hosts, None, None, "none", options, mock.Mock(count=0))
+            one = supervisor.Supervisor(self.path, hosts, open_mpi.OpenMpi4("4.1.4"), None, None, "none", options, mock.Mock(count=0))
         one.logs = self.log
         one.server = mock.Mock()
         return one
 
-    def job_log(self):
+    def job_log(self, mpi=open_mpi.OpenMpi4("4.1.4")):
         self.tries += 1
         job_log.forget_tries(self.log, 2)
-        return job_log.JobLog(self.log, self.tries)
+        return job_log.JobLog(self.log, self.tries, mpi, [0, 1])
 
     def end(self, log, told):
         """Does what the launcher does after a job has failed: prints, writes and passes on the failure."""
@@ -138,6 +140,18 @@ def output_of_job(folder, text):
         os.write(log.err.file, piece)
         os.write(log.out.file, piece[-100:])
         log.follow(ended)
+    folder.end(log, {})
+
+
+def output_of_open_mpi_5(folder, text):
+    """A third of the output is in the file of a rank on this machine, and the rest comes through mpirun."""
+    log = folder.job_log(open_mpi.OpenMpi5("5.0.7"))
+    third = len(text) // 3
+    for piece, stream, ended in ((text[:third], log.err, False), (text[third:2 * third], log.streams[-1], False), (text[2 * third:], log.err, True)):
+        os.write(stream.file, piece)
+        log.follow(ended)
+    for text in log.rank_logs.values():
+        require_line(text)
     folder.end(log, {})
 
 
@@ -216,6 +230,18 @@ def changed_output(generator):
     return changed_bytes(text, generator) if generator.random() < 0.3 else text
 
 
+def changed_output_of_5(generator):
+    """Returns the same for Open MPI 5. Lines of ranks on other hosts have rank, length and checksum."""
+    text = b""
+    for line in changed_output(generator).split(b"\n"):
+        if generator.random() < 0.8:
+            rank = b"%d" % generator.choice((0, 2, 2, 2, 999999999))
+            line = generator.choice((b"@log node02:/tmp/sandwall-rank-2.x", line, line, line))
+            line = b"[1,2]<stderr>: @rank %s %d %08x %s" % (rank, len(line), zlib.crc32(rank + b" " + line), line)
+        text += line + b"\n"
+    return changed_bytes(text, generator) if generator.random() < 0.3 else text
+
+
 def changed_line(generator):
     return changed_bytes(b"rank 2 on node02 was killed by SIGSEGV\n", generator)
 
@@ -223,6 +249,7 @@ def changed_line(generator):
 READERS = {
     "failure_file": (failure_file, lambda generator: changed_json(FAILURE, generator)),
     "output_of_job": (output_of_job, changed_output),
+    "output_of_open_mpi_5": (output_of_open_mpi_5, changed_output_of_5),
     "summary": (summary, lambda generator: changed_json(SUMMARY, generator)),
     "restarting": (restarting, changed_line),
     "answer_of_master": (answer_of_master, lambda generator: changed_json(generator.choice((STATUS, {"ok": False, "error": "no"})), generator) + b"\n"),

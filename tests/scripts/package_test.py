@@ -23,6 +23,11 @@ def called(*words, **options):
     return subprocess.run([str(word) for word in words], capture_output=True, text=True, timeout=300, stdin=subprocess.DEVNULL, **options)
 
 
+def osmesa():
+    """Returns whether the build has the backend osmesa."""
+    return (BUILD / "bin" / "sandwall-gl-osmesa.so").exists()
+
+
 class Package(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -50,13 +55,15 @@ class Package(unittest.TestCase):
 
     def test_it_depends_on_what_the_launcher_starts_and_the_programs_load(self):
         depends = called("dpkg-deb", "-f", self.package, "Depends").stdout
-        for package in ("python3", "openmpi-bin", "libopenmpi3", "libosmesa6", "libgdal32"):
-            self.assertIn(package, depends)
+        # The numbers of libraries are those of the Debian that built the package.
+        in_memory = "libosmesa6" if osmesa() else "libegl-mesa0"
+        for package in (r"python3 ", r"openmpi-bin\b", r"libopenmpi\d+ ", in_memory, r"libgdal\d+ "):
+            self.assertRegex(depends, package)
 
     def test_it_holds_only_what_a_session_needs(self):
         found = sorted(path.name for path in (self.prefix / "lib" / "sandwall").iterdir())
         self.assertEqual(found, ["python", *sorted(
-            f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", "gl-osmesa.so", "haptic-server", "import.so",
+            f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", *(["gl-osmesa.so"] if osmesa() else []), "haptic-server", "import.so",
                                             "master", "relax", "render-node", "replay", "security.so", "track", "watch"))])
         self.assertFalse([path for path in self.tree.rglob("*") if path.suffix in (".pyc", ".hpp", ".cpp")])
 
@@ -76,7 +83,7 @@ class Package(unittest.TestCase):
         self.assertEqual(versions.returncode, 0, versions.stderr)
         self.assertEqual(len({entry["build"] for entry in json.loads(versions.stdout)["programs"]}), 1)
         ended = self.sandwall("run", "--wall", "desktop", "--scene", "small.toml", "--device", "script:stroke", "--pace", "fast", "--steps", "30",
-                              "--gl", "osmesa", "--no-pictures", "--json")
+                              "--gl", "osmesa" if osmesa() else "egl", "--no-pictures", "--json")
         self.assertEqual(ended.returncode, 0, ended.stderr)
         report = json.loads(ended.stdout)
         self.assertTrue(report["good"], report)

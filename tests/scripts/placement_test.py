@@ -9,11 +9,19 @@ import unittest
 from launcher_fixture import LauncherTest
 
 
+# Each rank adds a line to one file, because Open MPI 5 does not bring the output of other hosts to the launcher.
+SAY = """#!/bin/sh
+echo "rank $OMPI_COMM_WORLD_RANK on ${MADE_UP_HOST:-here} threads $LP_NUM_THREADS: ${0##*/}" >> "${0%/*}/../placed"
+"""
+
+
 class Placement(LauncherTest):
     def ranks(self, hosts, *options):
+        for name in ("sandwall-master", "sandwall-render-node"):
+            self.script(name, SAY)
         ended = self.start(hosts, *options)
         self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
-        lines = re.findall(r"rank (\d+) on (\S+) threads (\S+): (\S+)", ended.stdout)
+        lines = re.findall(r"rank (\d+) on (\S+) threads (\S+): (\S+)", (self.folder / "placed").read_text())
         self.assertEqual(len(lines), len(hosts) + 1, ended.stdout + ended.stderr)
         return {int(rank): words for rank, *words in lines}
 

@@ -100,12 +100,6 @@ class HostsOfFile(unittest.TestCase):
             rank_hosts.hosts_of_file("/nowhere", 1)
 
 
-class Transport(unittest.TestCase):
-    def test_open_mpi_keeps_what_is_behind_the_first_dot_of_a_name(self):
-        words = rank_hosts.transport(["wall-node.1.example.org", "wall-node.2.example.org"], None)
-        self.assertIn("--mca orte_keep_fqdn_hostnames 1", " ".join(words))
-
-
 class Network(unittest.TestCase):
     def test_a_network_is_written_as_mpirun_takes_it(self):
         self.assertEqual(rank_hosts.checked_network("10.1.2.3/24"), "10.1.2.0/24")
@@ -114,17 +108,6 @@ class Network(unittest.TestCase):
         for text in ("", "10.0.0.1", "eth0", "10.0.0.0/33", "10.0.0/24", "10.0.0.0/24,lo"):
             with self.assertRaisesRegex(rank_hosts.BadInput, f"--network: '{text}' is not a network"):
                 rank_hosts.checked_network(text)
-
-
-class Programs(unittest.TestCase):
-    def test_every_change_of_host_is_a_program_of_its_own(self):
-        # mpirun numbers ranks program by program. So rank r must be on the r-th host of the list.
-        words = rank_hosts.programs(["a", "a", HERE, "b", "a"], ["master"], ["node"])
-        self.assertEqual(" ".join(words), "-n 1 --host localhost master : -n 2 --host a:2 node : "
-                         "-n 1 --host localhost:1 node : -n 1 --host b:1 node : -n 1 --host a:1 node")
-
-    def test_one_machine_needs_no_hosts(self):
-        self.assertEqual(" ".join(rank_hosts.programs([HERE] * 3, ["master"], ["node"])), "-n 1 master : -n 3 node")
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from unittest import mock
 from supervisor_fixture import Supervised
 
 import job_log
+import open_mpi
 import supervisor
 
 SERVER = """#!/bin/bash
@@ -113,10 +114,10 @@ class HungServer(unittest.TestCase):
         self.addCleanup(patched.stop)
         temporary = tempfile.TemporaryDirectory(prefix="sandwall-hung-")
         self.addCleanup(temporary.cleanup)
-        self.log = job_log.JobLog(temporary.name, 1)
+        self.log = job_log.JobLog(temporary.name, 1, open_mpi.OpenMpi4("4.1.4"))
         self.addCleanup(self.log.close)
         self.server = mock.Mock(**{"process.poll.return_value": None, "listens.return_value": True})
-        self.watched = supervisor.Supervisor(temporary.name, None, None, None, None, mock.Mock(restarts=3, restart_window=60), mock.Mock())
+        self.watched = supervisor.Supervisor(temporary.name, None, open_mpi.OpenMpi4("4.1.4"), None, None, None, mock.Mock(restarts=3, restart_window=60), mock.Mock())
         self.watched.server, self.watched.job = self.server, mock.Mock(log=self.log)
 
     def event(self, name, **fields):

@@ -19,7 +19,6 @@ echo "sandwall-render-node: --gl $4: install Debian's made-up package" >&2
 exit 2
 """
 MPIRUN = """#!/bin/sh
-[ "$1" = --version ] && { echo 'mpirun (Open MPI) 4.1.4'; exit 0; }
 [ -z "$MPI_FAULT" ] || { echo "$MPI_FAULT" >&2; exit 1; }
 """
 SED = """#!/bin/sh
@@ -68,6 +67,19 @@ class ThisMachine(LauncherTest):
         self.assertTrue(self.findings(1)["osmesa"]["needed"])
         self.environment.update(BACKENDS="osmesa", MPI_FAULT="no slots")
         self.assertEqual(self.findings(1)["start"]["message"], "no slots")
+
+    def test_a_build_without_osmesa_draws_in_memory_with_egl(self):
+        self.script("sandwall-gl-egl.so", "")
+        self.environment["BACKENDS"] = "egl"
+        found = self.findings(0)
+        self.assertNotIn("osmesa", found)
+        self.assertTrue(found["egl"]["good"])
+        self.environment["BACKENDS"] = "glfw"
+        self.assertTrue(self.findings(1)["egl"]["needed"])
+
+    def test_an_mpirun_that_no_session_can_use_is_red(self):
+        self.environment["MADE_UP_MPI"] = "3.1"
+        self.assertIn("is of Open MPI 3.1; Sandwall supports Open MPI 4.1 and 5", self.findings(1)["start"]["message"])
 
     def test_a_chosen_backend_is_the_only_one_asked_and_is_needed(self):
         found = self.findings(0, "--gl", "egl")

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-
 #include <cfenv>
+
+#include "base/float_register.hpp"
 
 namespace test {
 
@@ -14,17 +13,18 @@ class OtherFloats {
 public:
     OtherFloats() {
         std::fesetround(FE_UPWARD);
-        _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+        using namespace base::float_register;
+        set(get() | kFlushesResults | kFlushesOperands);
     }
     ~OtherFloats() {
         std::fesetround(FE_TONEAREST);
-        _mm_setcsr(before_);
+        base::float_register::set(before_);
     }
     OtherFloats(const OtherFloats&) = delete;
     OtherFloats& operator=(const OtherFloats&) = delete;
 
 private:
-    unsigned before_ = _mm_getcsr();
+    unsigned before_ = base::float_register::get();
 };
 
 }  // namespace test

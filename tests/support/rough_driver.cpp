@@ -2,12 +2,10 @@
 // Simulates an OpenGL driver that was compiled with fast-math (LD_PRELOAD). In the process of the rank
 // SANDWALL_ROUGH_RANK, OSMesaMakeCurrent and each glFinish leave the calling thread rounding up, and taking subnormal
 // numbers as zero. A rank calls glFinish in every frame.
-#include <pmmintrin.h>
-#include <xmmintrin.h>
-
 #include <cfenv>
 #include <cstring>
 
+#include "base/float_register.hpp"
 #include "tests/support/preloaded.hpp"
 
 namespace {
@@ -20,7 +18,8 @@ using GetProcAddress = Plain (*)(const char*);
 void roughen() {
     if (preloaded::isRankOf("SANDWALL_ROUGH_RANK")) {
         std::fesetround(FE_UPWARD);
-        _mm_setcsr(_mm_getcsr() | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+        using namespace base::float_register;
+        set(get() | kFlushesResults | kFlushesOperands);
     }
 }
 

@@ -200,7 +200,8 @@ protected:
         sand::grid::makeDunes({.height = 0.008, .length = 0.1}, scene.terrain);  // the dunes are at rest
         return scene;
     }
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     scene::Scene scene_ = strip();
     sand::Replica terrain_{scene_};
 };

@@ -174,7 +174,8 @@ protected:
         return tally;
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
 };
 
 TEST_F(Redraw, OfADesktopInPartsIsEqualToTheWhole) {

@@ -96,7 +96,8 @@ protected:
         }
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     walls::Wall wall_;
     scene::Scene scene_ = sample::duneScene(128);
     sand::Replica first_{scene_}, second_{scene_};

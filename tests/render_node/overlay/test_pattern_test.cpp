@@ -61,7 +61,8 @@ protected:
     }
     [[nodiscard]] double pixel() const { return wall_.grid->tileSize.x / wall_.grid->tilePixels.x; }  // [m]
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     walls::Wall wall_ = sample::reduced(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), 4);
 };
 

@@ -47,7 +47,8 @@ void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridg
 
 class GoldenTin : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
 };
 
 TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {

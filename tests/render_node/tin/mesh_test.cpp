@@ -66,7 +66,8 @@ Unlike compare(const Pixels& a, const Pixels& b) {
 
 class TinLook : public testing::Test {
 protected:
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     EyeTarget target_{kPictureWidth, kPictureHeight};
     render_node::Camera above_ = sample::camera({1, 1, 1.5}, {1, 1, 0});
     render_node::Camera slanted_ = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});

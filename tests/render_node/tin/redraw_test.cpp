@@ -111,7 +111,8 @@ protected:
         EXPECT_GT(severalParts, 3);
     }
 
-    std::unique_ptr<render_node::GlContext> context_ = render_node::makeOffscreenContext(render_node::Backend::osmesa);
+    std::unique_ptr<render_node::GlContext> context_ =
+        render_node::makeOffscreenContext(render_node::Backend::automatic);
     render_node::Camera above_ = sample::camera({1, 1, 2.4}, {1, 1, 0});
     render_node::Camera slanted_ = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
 };
