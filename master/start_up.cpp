@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "host/build_id.hpp"
 #include "host/event.hpp"
