@@ -6,6 +6,7 @@ The machine of the launcher decides at run time, because on a cluster the mpirun
 
 import dataclasses
 import glob
+import ipaddress
 import itertools
 import os
 import re
@@ -154,7 +155,19 @@ class OpenMpi5:
     def hosts_file(self, job):
         if job.here():
             return None
+        self.require_different_names(job.hosts)
         return "".join(f"{host}\n" for host in [HERE, *job.hosts])
+
+    def require_different_names(self, hosts):
+        """Throws BadInput if two hosts have the same name up to the first dot. mpirun would take them for one machine.
+
+        Tried with 5.0.7: its option prte_keep_fqdn_hostnames changes nothing.
+        """
+        known = {}
+        for host in hosts:
+            if not is_address(host) and known.setdefault(host.partition(".")[0], host) != host:
+                raise BadInput(f"{known[host.partition('.')[0]]}, {host}: mpirun (Open MPI) {self.version} takes hosts with the same name "
+                               "up to the first dot for one machine; write addresses in the list of hosts; docs/hosts.md")
 
     def variables(self, environment):
         """Passes the program in place of ssh on under the name that Open MPI 5 reads."""
@@ -189,6 +202,14 @@ def passed_on(job):
             given.add(name)
             words += ["-x", word]
     return words
+
+
+def is_address(host):
+    try:
+        ipaddress.ip_address(host)
+        return True
+    except ValueError:
+        return False
 
 
 def current_umask():

@@ -73,6 +73,13 @@ class Commands(unittest.TestCase):
         for option in (" : ", "--host ", "vader", " -q", "oob_tcp"):
             self.assertNotIn(option, command)
 
+    def test_version_5_refuses_names_that_it_takes_for_one_machine(self):
+        for hosts in (["wall-node.1.x", "wall-node.2.x"], ["a", "b", "a.example.org"]):
+            with self.assertRaisesRegex(BadInput, rf"^{hosts[0]}, {hosts[-1]}: mpirun .* takes hosts with the same name up to the first dot"):
+                FIVE.hosts_file(open_mpi.Job([], [], hosts))
+        good = ["10.0.0.1", "10.0.0.2", "a.x", "b.x", "a.x", HERE]
+        self.assertEqual(FIVE.hosts_file(open_mpi.Job([], [], good)).split()[1:], good)
+
     def test_version_5_on_one_machine_needs_no_file_of_hosts(self):
         command = self.command(FIVE, [HERE] * 3)
         self.assertIn(" --mca btl self,sm --pmixmca ptl_tcp_if_include lo --oversubscribe -n 4 sh -c ", command)
