@@ -5,9 +5,10 @@
 
 #include <fstream>
 #include <map>
-#include <regex>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/scene_fixture.hpp"
@@ -67,16 +68,29 @@ TEST_F(ForceTable, RefusesInOneLineWhatIsNoConstant) {
     }
 }
 
-TEST_F(ForceTable, BoundsAreThoseOfTheDocument) {
+/// Returns the bounds in the table of the document: constant, key, default, "least … most", unit.
+std::map<std::string, std::pair<double, double>> documentedBounds() {
     std::ifstream document(std::string(SANDWALL_SOURCE_DIR) + "/docs/forces.md");
-    const std::regex row(R"(^\|[^|]*\| `(\w+)` \|[^|]*\| (\S+) … (\S+) \|)");
+    const std::string between = " … ";
     std::map<std::string, std::pair<double, double>> bounds;
-    std::smatch found;
     for (std::string line; std::getline(document, line);) {
-        if (std::regex_search(line, found, row)) {
-            bounds[found[1]] = {std::stod(found[2]), std::stod(found[3])};
+        std::vector<std::string> cells;
+        std::istringstream stream(line);
+        for (std::string cell; std::getline(stream, cell, '|');) {
+            cells.push_back(cell);
+        }
+        if (cells.size() == 6 && cells[2].rfind(" `", 0) == 0) {
+            if (const std::size_t middle = cells[4].find(between); middle != std::string::npos) {
+                bounds[cells[2].substr(2, cells[2].size() - 4)] = {std::stod(cells[4]),
+                                                                   std::stod(cells[4].substr(middle + between.size()))};
+            }
         }
     }
+    return bounds;
+}
+
+TEST_F(ForceTable, BoundsAreThoseOfTheDocument) {
+    auto bounds = documentedBounds();
     for (const sand::ForceKey& key : sand::forceKeys()) {
         if (key.constant != &sand::ForceConstants::unitLength) {  // it has no upper bound
             EXPECT_EQ(bounds[key.name], std::pair(key.lowest, key.highest)) << key.name;
