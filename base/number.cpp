@@ -19,7 +19,10 @@ bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
 std::size_t readNumber(std::string_view text, double& value) {
     const auto [end, error] = fast_float::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} ? static_cast<std::size_t>(end - text.data()) : 0;
+    const auto length = static_cast<std::size_t>(end - text.data());
+    // Some versions of fast_float read a number that is too large as infinity, without an error.
+    const bool tooLarge = std::isinf(value) && std::any_of(text.data(), end, isDigit);
+    return error == std::errc{} && !tooLarge ? length : 0;
 }
 
 std::optional<double> numberOf(std::string_view word) {

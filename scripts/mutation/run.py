@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Plants one bug at a time in a copy of the sources, and expects a test to fail: scripts/mutate.sh. docs/testing.md"""
 
-import argparse
 import collections
 import concurrent.futures
 import os
@@ -13,7 +12,9 @@ import sys
 import time
 import tomllib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import draw
+from command_line import Parser
 from workspace import ROOT, DoesNotCompile, Workspace
 
 PATCHES = ROOT / "tests" / "mutations"
@@ -123,7 +124,7 @@ def tests_for(name, programs):
 
 
 def parse(arguments):
-    parser = argparse.ArgumentParser(prog="scripts/mutate.sh", description=__doc__)
+    parser = Parser(prog="scripts/mutate.sh", description=__doc__)
     parser.add_argument("which", nargs="*", metavar="FOLDER|PATCH",
                         help="only the bugs in sources below these folders, or these patches (default: all, and the drawn bugs)")
     parser.add_argument("--drawn", type=int, default=COUNT, metavar="N", help=f"how many bugs to draw (default: {COUNT}; 0: none)")

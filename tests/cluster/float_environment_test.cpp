@@ -7,8 +7,8 @@ using FloatEnvironment = SessionTest;
 
 // The driver changes the rounding of its rank at the start and in every frame (tests/support/rough_driver.cpp).
 TEST_F(FloatEnvironment, ADriverThatChangesItIsReportedAndTheSandStaysTheSame) {
-    environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("rough-driver.so")).string(),
-                    "SANDWALL_ROUGH_RANK=2", "SANDWALL_EVENTS=1"};
+    environment_ = {"LD_PRELOAD=" + support::linkTo("rough-driver.so", folder_), "SANDWALL_ROUGH_RANK=2",
+                    "SANDWALL_EVENTS=1"};
     const Ended ended = runToEnd({"--wall", wall(1, 2, "mono"), "--scene", scene(), "--device", "script:gis", "--pace",
                                   "fast", "--steps", "300", "--out", out(), "--no-pictures"});
     ASSERT_EQ(ended.status, 0) << ended.output;

@@ -145,7 +145,7 @@ protected:
 
     /// Sets the clock of this rank ahead (tests/support/other_clock.cpp).
     void setAhead(int rank) {
-        environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("other-clock.so")).string(),
+        environment_ = {"LD_PRELOAD=" + support::linkTo("other-clock.so", folder_),
                         "SANDWALL_CLOCK_RANK=" + std::to_string(rank),
                         "SANDWALL_CLOCK_AHEAD=" + std::to_string(static_cast<int>(kAhead))};
     }

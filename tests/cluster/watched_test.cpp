@@ -15,7 +15,7 @@ protected:
     /// Runs five frames on two tiles. `rank` hangs in `function` (tests/support/hang_at.cpp). The start may take
     /// `startSeconds`: on a busy machine the ranks that do not hang need many seconds.
     Ended hang(int rank, const std::string& function, int startSeconds = 120, bool stopped = false) {
-        environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("hang-at.so")).string(),
+        environment_ = {"LD_PRELOAD=" + support::linkTo("hang-at.so", folder_),
                         "SANDWALL_HANG_RANK=" + std::to_string(rank), "SANDWALL_HANG_AT=" + function,
                         fmt::format("SANDWALL_START_TIMEOUT={}", startSeconds), "SANDWALL_EVENTS=1"};
         if (stopped) {

@@ -63,7 +63,7 @@ TEST_F(WrongServer, WhoseMemoryHasChangedAtTheEndIsCountedAndNotHealed) {
 // The master sends the server the number of the last step that the wall shows. A shown step must be on disk.
 TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
     constexpr std::size_t kFails = 40;  // calls of fdatasync before the one that fails; the first is the header's
-    environment_ = {"LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("sync-log.so")).string(),
+    environment_ = {"LD_PRELOAD=" + support::linkTo("sync-log.so", folder_),
                     "SANDWALL_SYNC_LOG=" + (folder_ / "syncs").string(),
                     "SANDWALL_SYNC_FAILS=" + std::to_string(kFails + 1)};
     const test::SandServer server(scene::loadScene(scene()));

@@ -53,7 +53,7 @@ TEST(Version, IsAnsweredByEveryProgramOfTheBuild) {
         // Open MPI cannot start without a folder for temporary files. Programs of an MPI job must answer --help without
         // starting it. The start takes seconds on a busy machine, and all jobs of a user share one folder.
         const support::Ran help =
-            support::runCommand("TMPDIR=/dev/null " + support::pathOfProgram(program) + " --help");
+            support::runCommand("TMPDIR=/dev/null '" + support::pathOfProgram(program) + "' --help");
         EXPECT_EQ(help.status, 0) << program;
         EXPECT_NE(help.output.find("--version"), std::string::npos) << program << ": " << help.output;
     }

@@ -14,6 +14,7 @@ from supervisor_fixture import HOST, Supervised
 
 import events
 import job_log
+import open_mpi
 import supervisor
 
 
@@ -180,7 +181,7 @@ class Waits(unittest.TestCase):
         self.now += seconds
 
     def supervisor(self, restarts=20, window=60):
-        return supervisor.Supervisor("", None, None, None, None, mock.Mock(restarts=restarts, restart_window=window), self.stop)
+        return supervisor.Supervisor("", None, None, None, None, None, mock.Mock(restarts=restarts, restart_window=window), self.stop)
 
     def test_the_first_restart_comes_at_once_and_each_further_one_later(self):
         allowance = supervisor.Allowance(20, 60)
@@ -225,7 +226,7 @@ class Waits(unittest.TestCase):
 
     def test_the_haptic_server_is_started_again_after_the_same_waits(self):
         with tempfile.TemporaryDirectory(prefix="sandwall-waits-") as folder:
-            log = job_log.JobLog(folder, 1)
+            log = job_log.JobLog(folder, 1, open_mpi.OpenMpi4("4.1.4"))
             self.addCleanup(log.close)
             watched = self.supervisor()
             watched.failed = mock.Mock()

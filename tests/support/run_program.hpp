@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -34,12 +35,21 @@ inline Ran runCommand(const std::string& command) {
 /// Returns the path of a program of this build.
 inline std::string pathOfProgram(const std::string& name) { return SANDWALL_BIN_DIR "/" + name; }
 
+/// Makes a link to a file of this build in `folder`, and returns its path. LD_PRELOAD takes no path with a blank, and
+/// the build's own path may have one.
+inline std::string linkTo(const std::string& name, const std::filesystem::path& folder) {
+    const std::filesystem::path link = folder / name;
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(std::filesystem::absolute(pathOfProgram(name)), link);
+    return link.string();
+}
+
 /// Returns the path of the script that starts sessions.
 inline std::string launcher() { return SANDWALL_SOURCE_DIR "/scripts/sandwall"; }
 
 /// Runs one of our programs to its end. `arguments` are shell words.
 inline Ran runProgram(const std::string& name, const std::string& arguments) {
-    return runCommand(pathOfProgram(name) + " " + arguments);
+    return runCommand("'" + pathOfProgram(name) + "' " + arguments);
 }
 
 }  // namespace support

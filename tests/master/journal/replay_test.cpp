@@ -220,7 +220,7 @@ TEST_F(Replay, SaysWhatItReplayedWhereNothingElseIsAskedFor) {
 TEST_F(Replay, SaysThatItsAnswerCouldNotBeWritten) {
     record();
     for (const char* question : {"", "--hash", "--verify", "--volumes"}) {
-        const support::Ran ran = support::runCommand("{ " SANDWALL_BIN_DIR "/sandwall-replay " + journal() + " " +
+        const support::Ran ran = support::runCommand("{ '" SANDWALL_BIN_DIR "/sandwall-replay' " + journal() + " " +
                                                      question + " >/dev/full; }");
         EXPECT_EQ(ran.status, 2) << question;
         EXPECT_EQ(ran.output, "sandwall-replay: standard output: cannot be written (No space left on device)\n")
@@ -353,7 +353,7 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
           std::pair("--export new", "1.0"), std::pair("--recover new", "1.0"),
           std::pair("--export new --hash", "4.0")}) {
         const support::Ran ran =
-            support::runCommand(fmt::format("ulimit -v 1000000; bin=$PWD; cd {} && $bin/{}/sandwall-replay {} {}",
+            support::runCommand(fmt::format("ulimit -v 1000000; bin=$PWD; cd {} && \"$bin/{}/sandwall-replay\" {} {}",
                                             folder_.string(), SANDWALL_BIN_DIR, journal(), question));
         EXPECT_EQ(ran.status, 2) << question << ": " << ran.output;
         EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;

@@ -21,10 +21,9 @@ protected:
     /// call 1 is for the header.
     std::vector<std::string> keep(const std::string& policy, int fails = 0) {
         const std::string log = (folder_ / "log").string();
-        ran_ = support::runCommand(
-            "SANDWALL_SYNC_LOG=" + log + " SANDWALL_SYNC_FAILS=" + std::to_string(fails) +
-            " LD_PRELOAD=" + std::filesystem::absolute(support::pathOfProgram("sync-log.so")).string() + " " +
-            support::pathOfProgram("keep_frames") + " " + folder_.string() + " " + policy);
+        ran_ = support::runCommand("SANDWALL_SYNC_LOG=" + log + " SANDWALL_SYNC_FAILS=" + std::to_string(fails) +
+                                   " LD_PRELOAD=" + support::linkTo("sync-log.so", folder_) + " " + "'" +
+                                   support::pathOfProgram("keep_frames") + "' " + folder_.string() + " " + policy);
         std::vector<std::string> lines;
         std::ifstream stream(log);
         for (std::string line; std::getline(stream, line);) {

@@ -211,11 +211,17 @@ TEST_F(Import, PointsGoBackWhereTheyWereSurveyed) {
     for (std::array<double, 3> vertex{}; stream >> letter >> vertex[0] >> vertex[1] >> vertex[2] && letter == "v";) {
         vertices.insert(vertex);
     }
-    EXPECT_EQ(vertices, (std::set<std::array<double, 3>>{{500000, 5200000, 1200.5},
-                                                         {500040, 5200000, 1201},
-                                                         {500000, 5200030, 1202},
-                                                         {500040, 5200030, 1203},
-                                                         {500021.25, 5200011.5, 1199}}));
+    const std::set<std::array<double, 3>> points{{500000, 5200000, 1200.5},
+                                                 {500040, 5200000, 1201},
+                                                 {500000, 5200030, 1202},
+                                                 {500040, 5200030, 1203},
+                                                 {500021.25, 5200011.5, 1199}};
+    EXPECT_TRUE(std::includes(vertices.begin(), vertices.end(), points.begin(), points.end()));
+    for (const auto& vertex : vertices) {  // a closed rim has further vertices
+        EXPECT_TRUE(points.count(vertex) == 1 || vertex[0] == 500000 || vertex[0] == 500040 || vertex[1] == 5200000 ||
+                    vertex[1] == 5200030)
+            << vertex[0] << ' ' << vertex[1];
+    }
 }
 
 }  // namespace

@@ -33,8 +33,8 @@ protected:
     [[nodiscard]] support::Ran run(const std::string& arguments, const std::string& before = "") const {
         const std::filesystem::path root = std::filesystem::current_path();
         std::filesystem::current_path(folder_);
-        support::Ran ran =
-            support::runCommand(before + (root / SANDWALL_BIN_DIR / "sandwall-relax").string() + " " + arguments);
+        support::Ran ran = support::runCommand(before + "'" + (root / SANDWALL_BIN_DIR / "sandwall-relax").string() +
+                                               "' " + arguments);
         std::filesystem::current_path(root);
         return ran;
     }
