@@ -46,7 +46,7 @@ class Workspace:
 
     def environment(self):
         """Returns the environment of builds and tests. With it, one workspace uses what another one has compiled."""
-        return dict(os.environ, CCACHE_BASEDIR=str(self.folder), CCACHE_NOHASHDIR="1",
+        return dict(os.environ, SANDWALL_MAY_SKIP="1", CCACHE_BASEDIR=str(self.folder), CCACHE_NOHASHDIR="1",
                     CCACHE_SLOPPINESS="pch_defines,time_macros,include_file_mtime,include_file_ctime", PYTHONDONTWRITEBYTECODE="1",
                     SANDWALL_BIN=str(self.bin))
 
