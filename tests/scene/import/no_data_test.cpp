@@ -2,6 +2,8 @@
 // Words, NaN, infinity and no data in every kind of terrain: the table of docs/terrain.md.
 #include "scene/import/no_data.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -84,6 +86,27 @@ TEST_F(NoData, ThatIsNotDeclaredIsAHeightWithAWarning) {
     EXPECT_EQ(warningsOf(terrainOf("points", "p.csv") + "[tin]\ncell = 10\n"),
               Lines{"p.csv: 1 point has the height -9999, which usually means no data and is taken for a height here; "
                     "leave such lines out if it does"});
+}
+
+TEST_F(NoData, UsuallyHasOneOfThreeNegativeNumbers) {
+    for (const double number : {-9999.0, -32768.0, -99999.0}) {
+        EXPECT_TRUE(scene::isUsualNoData(number)) << number;
+        // A height in feet is divided by its unit, and multiplied again.
+        EXPECT_TRUE(scene::isUsualNoData(number * 0.3048 / 0.3048)) << number;
+        EXPECT_FALSE(scene::isUsualNoData(-number)) << "a height of " << -number << " m can be real";
+        EXPECT_FALSE(scene::isUsualNoData(number + 0.01)) << number;
+        EXPECT_FALSE(scene::isUsualNoData(number - 0.01)) << number;
+        write("t.asc", fmt::format("ncols 3\nnrows 2\ncellsize 100\n1 {} 3\n4 5 6\n", number));
+        EXPECT_EQ(warningsOf(terrainOf("esri_ascii", "t.asc")),
+                  Lines{fmt::format("t.asc: 1 cell has the height {0}, which usually means no data and is taken for a "
+                                    "height here; if it does, add the line 'NODATA_value {0}' to the header",
+                                    number)});
+        write("t.asc", fmt::format("ncols 3\nnrows 2\ncellsize 100\n1 {} 3\n4 5 6\n", -number));
+        EXPECT_EQ(warningsOf(terrainOf("esri_ascii", "t.asc")), Lines{});
+    }
+    for (const double number : {0.0, -999.0, -9998.0, -32767.0}) {
+        EXPECT_FALSE(scene::isUsualNoData(number)) << number;
+    }
 }
 
 TEST_F(NoData, ThatIsDeclaredWarnsOfNothing) {
