@@ -6,6 +6,11 @@
 #include "base/input_error.hpp"
 
 namespace base {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+}  // namespace
 
 std::string lowerCase(std::string_view text) {
     std::string result(text);
@@ -17,7 +22,6 @@ std::string lowerCase(std::string_view text) {
 std::string endingOf(const std::filesystem::path& file) { return lowerCase(file.extension().string()); }
 
 std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r";
     const auto begin = text.find_first_not_of(kBlanks);
     return begin == std::string_view::npos ? std::string_view{}
                                            : text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
@@ -33,6 +37,16 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
         }
         text.remove_prefix(end + 1);
     }
+}
+
+std::vector<std::string_view> words(std::string_view text) {
+    std::vector<std::string_view> words;
+    for (std::size_t begin = text.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(text.find_first_of(kBlanks, begin), text.size());
+        words.push_back(text.substr(begin, end - begin));
+        begin = text.find_first_not_of(kBlanks, end);
+    }
+    return words;
 }
 
 std::size_t indexOf(std::string_view name, const std::string_view* names, std::size_t count, std::string_view what) {

@@ -22,6 +22,9 @@ namespace base {
 /// Returns the trimmed parts of `text` between separators. An empty text is one empty part.
 [[nodiscard]] std::vector<std::string_view> split(std::string_view text, char separator);
 
+/// Returns the words of `text`. Spaces, tabs and carriage returns separate them, any number in a row.
+[[nodiscard]] std::vector<std::string_view> words(std::string_view text);
+
 /// Returns the index of `name` in `names`. Throws InputError, "no WHAT 'name'; there are …", if it is not there.
 [[nodiscard]] std::size_t indexOf(std::string_view name, const std::string_view* names, std::size_t count,
                                   std::string_view what);

@@ -4,7 +4,6 @@
 #include <istream>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "base/text_decoder.hpp"
 

@@ -9,6 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "base/text_reader.hpp"
 
 namespace haptic_bridge {
@@ -39,18 +40,6 @@ struct Line {
     }
     [[nodiscard]] double coordinate(std::size_t index) const { return value(index, -kReach, kReach); }
 };
-
-std::vector<std::string_view> cutWords(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    std::vector<std::string_view> words;
-    constexpr std::string_view blank = " \t\r";
-    for (std::size_t begin = line.find_first_not_of(blank); begin != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find_first_of(blank, begin), line.size());
-        words.push_back(line.substr(begin, end - begin));
-        begin = line.find_first_not_of(blank, end);
-    }
-    return words;
-}
 
 void addArc(const Line& line, std::vector<Strokes::Point>& points) {
     line.expect(6, "CENTRE_X CENTRE_Y RADIUS_X RADIUS_Y FROM_DEG TO_DEG");
@@ -165,7 +154,7 @@ Strokes Strokes::parse(std::string_view text, const std::string& name) {
     StrokeReader reader;
     base::TextReader lines(text, name);
     for (std::string_view read; lines.nextLine(read);) {
-        const Line line{name, lines.line(), cutWords(read)};
+        const Line line{name, lines.line(), base::words(read.substr(0, read.find('#')))};
         if (!line.words.empty()) {
             reader.take(line);
         }

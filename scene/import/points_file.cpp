@@ -25,23 +25,13 @@ namespace {
 constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
 constexpr double kFlat = 1e-9;  // width / length below which a cloud counts as a line; doubles resolve little more
 
-std::vector<std::string_view> wordsIn(std::string_view text) {
-    std::vector<std::string_view> words;
-    for (text = base::trimmed(text); !text.empty();) {  // blanks in a row are one separator
-        const std::size_t end = std::min(text.find_first_of(" \t"), text.size());
-        words.push_back(text.substr(0, end));
-        text = base::trimmed(text.substr(end));
-    }
-    return words;
-}
-
 /// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers
 /// with decimal commas.
 std::vector<std::string_view> fieldsOf(std::string_view text) {
     if (text.find(';') != std::string_view::npos) {
         return base::split(text, ';');
     }
-    std::vector<std::string_view> words = wordsIn(text);
+    std::vector<std::string_view> words = base::words(text);
     if (text.find(',') == std::string_view::npos) {
         return words;
     }

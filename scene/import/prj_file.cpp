@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <string_view>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "base/text.hpp"
@@ -15,13 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns the words of the first line that begins with `key`, in small letters; both empty without such a line.
+/// Returns the word behind `key` in the first line that begins with this word, in small letters. Returns an empty text
+/// without such a line.
 std::string valueOf(const std::string& text, std::string_view key) {
     base::TextReader lines(text, "");
     for (std::string_view line; lines.nextLine(line);) {
-        base::TextReader words(line, "");
-        if (base::lowerCase(words.nextWord()) == key) {
-            return base::lowerCase(words.nextWord());
+        const std::vector<std::string_view> words = base::words(line);
+        if (!words.empty() && base::lowerCase(words[0]) == key) {
+            return words.size() > 1 ? base::lowerCase(words[1]) : "";
         }
     }
     return "";

@@ -22,6 +22,13 @@ TEST(Text, SplitsAtEverySeparator) {
     EXPECT_EQ(base::split(",", ','), (Parts{"", ""}));
 }
 
+TEST(Text, HasWordsBetweenBlanks) {
+    EXPECT_EQ(base::words(" \tone  two\t three\r"), (Parts{"one", "two", "three"}));
+    EXPECT_EQ(base::words("one"), Parts{"one"});
+    EXPECT_EQ(base::words(" \t\r"), Parts{});
+    EXPECT_EQ(base::words(""), Parts{});
+}
+
 TEST(Text, WritesSmallLettersOfAsciiAlone) {
     EXPECT_EQ(base::lowerCase("Ab-Z\xC3\x84"), "ab-z\xC3\x84");
     EXPECT_EQ(base::endingOf("folder.d/A.b.TIF"), ".tif");
