@@ -75,6 +75,8 @@ void GdalRaster::chooseBand() {
     if (values == 0) {
         failForVariables();
     }
+    scale_ = GDALGetRasterScale(band_, nullptr);
+    offset_ = GDALGetRasterOffset(band_, nullptr);
     if (values != 1) {
         fail(fmt::format("has {} bands, but heights are only one; choose it: gdal_translate -b NUMBER {} dem.tif",
                          values, fs::path(name_).filename().string()));
@@ -134,9 +136,7 @@ bool GdalRaster::isSignedByte() const {
 }
 
 double GdalRaster::heightOf(double number) const {
-    const double scale = GDALGetRasterScale(band_, nullptr);
-    const double offset = GDALGetRasterOffset(band_, nullptr);
-    return scale == 1 && offset == 0 ? number : number * scale + offset;
+    return scale_ == 1 && offset_ == 0 ? number : number * scale_ + offset_;
 }
 
 std::optional<double> GdalRaster::noData() const {

@@ -59,6 +59,7 @@ private:
     GdalSession session_;
     Dataset dataset_;
     GDALRasterBandH band_ = nullptr;
+    double scale_ = 1, offset_ = 0;  // of the band
 };
 
 }  // namespace scene
