@@ -148,6 +148,21 @@ double heightOf(Words& words, const EsriGrid& grid) {
     return grid.noData && meansNoData(height, *grid.noData) ? kNoData : height;
 }
 
+/// Returns the number with which a written grid marks cells without data: the grid's own, or else a usual one that no
+/// height means when it is read again.
+double freeNoData(const EsriGrid& grid) {
+    const auto isFree = [&](double number) {
+        return std::none_of(grid.heights.begin(), grid.heights.end(),
+                            [&](double height) { return !std::isnan(height) && meansNoData(height, number); });
+    };
+    for (const double number : {grid.noData.value_or(-9999), -9999.0, -99999.0, -32768.0, -1e30}) {
+        if (isFree(number)) {
+            return number;
+        }
+    }
+    return kNoData;
+}
+
 }  // namespace
 
 EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check) {
@@ -190,10 +205,11 @@ bool holdsEsriGrid(const std::filesystem::path& file) {
     std::array<char, 256> first{};
     std::ifstream stream(file, std::ios::binary);
     stream.read(first.data(), first.size());
+    // Whole characters of UTF-16, the longest of which has four bytes. The end of a longer file is not there.
+    const std::size_t size = static_cast<std::size_t>(stream.gcount()) / 4 * 4;
     std::string word;
     try {
-        base::TextReader text(std::string_view(first.data(), static_cast<std::size_t>(stream.gcount()) / 4 * 4),
-                              file.string());
+        base::TextReader text(std::string_view(first.data(), size), file.string());
         word = base::lowerCase(text.nextWord());
     } catch (const base::InputError&) {
         return false;  // bytes of another format
@@ -243,20 +259,6 @@ EsriGrid withoutEmptyEdges(const EsriGrid& grid) {
         result.lines.assign(first, first + result.rows);
     }
     return result;
-}
-
-/// Returns the grid's number for no data, or else a usual one that no height means when it is read again.
-double freeNoData(const EsriGrid& grid) {
-    const auto isFree = [&](double number) {
-        return std::none_of(grid.heights.begin(), grid.heights.end(),
-                            [&](double height) { return !std::isnan(height) && meansNoData(height, number); });
-    };
-    for (const double number : {grid.noData.value_or(-9999), -9999.0, -99999.0, -32768.0, -1e30}) {
-        if (isFree(number)) {
-            return number;
-        }
-    }
-    return kNoData;
 }
 
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file) {

@@ -71,9 +71,6 @@ using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 /// around a rotated or resampled raster. Throws base::InputError if no cell has data.
 [[nodiscard]] EsriGrid withoutEmptyEdges(const EsriGrid& grid);
 
-/// Returns the number with which writeEsriGrid() marks cells without data.
-[[nodiscard]] double freeNoData(const EsriGrid& grid);
-
 /// Writes the shortest decimals from which the same numbers are read again. An existing `file` is replaced when
 /// everything is written. Throws base::InputError if the file cannot be written completely.
 void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file);
