@@ -31,7 +31,8 @@ bool cannotBeAHeight(double number) {
     return isLargest(number) || isNear(number, kSurfer) || std::abs(number) == std::numeric_limits<double>::max();
 }
 
-/// Throws base::InputError for heights that cannot be heights. `heights` are in the file's unit.
+/// Throws base::InputError for heights that cannot be heights. `heights` are in the file's unit. The line ends with
+/// `how`, in which {0} stands for the number.
 template <class Heights, class HeightOf>
 void refuseLargest(const Heights& heights, HeightOf heightOf, const std::string& file, const char* what,
                    const std::string& how) {
@@ -39,8 +40,8 @@ void refuseLargest(const Heights& heights, HeightOf heightOf, const std::string&
     const auto first = std::find_if(heights.begin(), heights.end(), found);
     if (first != heights.end()) {
         const auto count = std::count_if(first, heights.end(), found);
-        throw base::InputError(fmt::format("{}: {} {}{} the height {}, which means no data; declare it: {}", file,
-                                           count, what, count == 1 ? " has" : "s have", heightOf(*first),
+        throw base::InputError(fmt::format("{}: {} {}{} the height {}, which means no data; {}", file, count, what,
+                                           count == 1 ? " has" : "s have", heightOf(*first),
                                            fmt::format(fmt::runtime(how), heightOf(*first))));
     }
 }
@@ -72,7 +73,7 @@ std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::strin
     const std::size_t behind = how.starts_with(kIf) ? how.find_first_not_of(":, ", kIf.size()) : 0;
     refuseLargest(
         grid.heights, [&](double height) { return height * grid.units.heightsPerLength; }, grid.file, "cell",
-        how.substr(behind));
+        "declare it: " + how.substr(behind));
     std::vector<std::string> warnings;
     for (const double number : kUsual) {
         const auto count = std::count_if(grid.heights.begin(), grid.heights.end(), [&](double height) {
