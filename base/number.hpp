@@ -8,9 +8,9 @@
 
 namespace base {
 
-/// Reads the number at the begin of `text`, in any locale, also an infinite one or nan. Returns how many characters spell
-/// it. Returns 0 if no number is there, or if the number is too large for a double. All decimal numbers of the project
-/// are read here, because the libraries of some compilers have no std::from_chars for double.
+/// Reads the number at the begin of `text`, in any locale, also an infinite one or nan. Returns how many characters
+/// spell it. Returns 0 if no number is there, or if the number is too large for a double. All decimal numbers of the
+/// project are read here, because the libraries of some compilers have no std::from_chars for double.
 [[nodiscard]] std::size_t readNumber(std::string_view text, double& value);
 
 /// Returns the number that the whole of `word` spells, in any locale. A sign may be + or -. Returns nullopt if it

@@ -48,7 +48,7 @@ void GdalSession::keep(CPLErr severity, CPLErrorNum /*number*/, const char* mess
 std::vector<std::string> GdalSession::warnings(const std::string& file) const {
     std::vector<std::string> lines;
     for (const std::string& message : heard_) {
-        lines.push_back(base::InputError::oneLine(file + ": GDAL warns: " + message));
+        lines.push_back(base::InputError::oneLine(fmt::format("{}: GDAL warns: {}", file, message)));
     }
     if (unheard_ > 0) {
         lines.push_back(fmt::format("{}: GDAL warns {} more times; gdalinfo -checksum prints all", file, unheard_));
