@@ -29,7 +29,7 @@ protected:
         const std::string option = std::string("FORMAT=") + form;
         const std::array<const char*, 2> options{option.c_str(), nullptr};
         OSRExportToWktEx(reference, &text, options.data());
-        const std::string wkt = text;
+        std::string wkt = text;
         CPLFree(text);
         OSRDestroySpatialReference(reference);
         return wkt;
