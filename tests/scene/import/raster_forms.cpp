@@ -186,20 +186,16 @@ std::vector<RasterForm> rasterForms() {
         options.insert(options.end(), format.options.begin(), format.options.end());
         for (const GDALDataType type : format.types) {
             for (const std::string& option : options) {
-                const RasterForm form{format.driver, format.ending, type, option, NoData::none, false, false};
-                forms.push_back(form);
                 const bool floats = type == GDT_Float32 || type == GDT_Float64;
-                for (const NoData noData : {NoData::number, NoData::nan, NoData::mask}) {
-                    if (noData != NoData::nan || floats) {
-                        forms.push_back(form);
-                        forms.back().noData = noData;
+                for (const NoData noData : {NoData::none, NoData::number, NoData::nan, NoData::mask}) {
+                    if (noData == NoData::nan && !floats) {
+                        continue;
                     }
-                }
-                for (const bool scaled : {false, true}) {
-                    forms.push_back(form);
-                    forms.back().scaled = scaled;
-                    forms.back().southFirst = true;
-                    forms.back().noData = scaled ? NoData::number : NoData::none;
+                    for (const bool scaled : {false, true}) {
+                        for (const bool southFirst : {false, true}) {
+                            forms.push_back({format.driver, format.ending, type, option, noData, scaled, southFirst});
+                        }
+                    }
                 }
             }
         }

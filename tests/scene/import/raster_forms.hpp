@@ -26,7 +26,7 @@ struct RasterForm {
 /// format that terrain is read from.
 [[nodiscard]] std::vector<RasterForm> rasterForms();
 
-/// Formats that terrain is read from and that GDAL cannot write, or not with a place of its own choice.
+/// Formats that terrain is read from and that GDAL cannot write.
 [[nodiscard]] std::vector<std::string> formatsThatGdalCannotWrite();
 
 /// A raster as GDAL itself reads it: rows from the north, NaN where GDAL's mask says so, scale and offset applied.

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "scene/import/importer.hpp"
 #include "tests/scene/import/import_fixture.hpp"
@@ -79,11 +78,15 @@ TEST_F(RasterForms, AreReadAsGdalReadsThem) {
             fmt::print("{}: GDAL cannot write it\n", driver);
         }
     }
-    // Debian's GDAL 3.6.2 writes all of these. A driver that wrote nothing would not be tested.
-    for (const char* driver :
-         {"GTiff",  "HFA", "EHdr", "ENVI",   "GSAG", "GSBG",    "GS7BG", "ERS", "RST", "SAGA", "PCRaster", "BT",
-          "SIGDEM", "RMF", "KRO",  "netCDF", "NITF", "ROI_PAC", "ILWIS", "FIT", "HF2", "PNG",  "BMP"}) {
-        EXPECT_GT(read[driver], 0) << driver;
+    // A driver that wrote nothing would not be tested. GDAL 3.6.2 cannot read the files of Leveller that it writes.
+    for (const auto& [driver, count] : read) {
+        EXPECT_EQ(count > 0, driver != "Leveller") << driver;
+    }
+    for (const std::string& name : test::formatsThatGdalCannotWrite()) {
+        GDALDriverH driver = GDALGetDriverByName(name.c_str());
+        ASSERT_NE(driver, nullptr) << name;
+        EXPECT_EQ(GDALGetMetadataItem(driver, GDAL_DCAP_CREATE, nullptr), nullptr) << name;
+        EXPECT_EQ(GDALGetMetadataItem(driver, GDAL_DCAP_CREATECOPY, nullptr), nullptr) << name;
     }
 }
 
