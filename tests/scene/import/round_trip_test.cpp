@@ -78,12 +78,16 @@ TEST_F(RoundTrip, ARasterComesBackWithItsUnits) {
             std::filesystem::remove(path("out.prj"));
             scene::writeRaster(grid, path(file));
             const bool text = std::string(file) == "out.asc";
-            expectSame(grid, scene::readRaster(path(file)), fmt::format("{}, {}", given.name, file));
+            const scene::EsriGrid again = scene::readRaster(path(file));
+            expectSame(grid, again, fmt::format("{}, {}", given.name, file));
+            const double heightsPerLength = text ? 1 : given.heightsPerLength;
+            EXPECT_NEAR(again.units.heightsPerLength, heightsPerLength, 1e-12 * heightsPerLength)
+                << given.name << ", " << file;
             // GDAL reads the file's own unit: that of the source in a GeoTIFF, that of lengths in a text.
             const std::optional<test::GdalValues> values = test::valuesOf(path(file), text ? "AAIGrid" : "GTiff");
             ASSERT_TRUE(values) << given.name << file;
             for (std::size_t i = 0; i < grid.heights.size(); ++i) {
-                const double expected = grid.heights[i] * (text ? 1 : given.heightsPerLength);
+                const double expected = grid.heights[i] * heightsPerLength;
                 EXPECT_TRUE(std::isnan(expected) ? std::isnan(values->heights[i])
                                                  : std::abs(values->heights[i] - expected) <= (text ? 1e-6 : 1e-12))
                     << given.name << ", " << file << ": " << values->heights[i] << " instead of " << expected;
