@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "scene/import/importer.hpp"
@@ -232,15 +233,30 @@ TEST_F(Claims, TheLowestFloatIsNoHeightInAnyReader) {
     writeRaster("t.tif", {.columns = 3, .rows = 1, .heights = {-3.4028234663852886e38, 2, 3}});
     write("t.asc", "ncols 2\nnrows 1\ncellsize 1\n-3.40282e+38 1\n");
     write("s.grd", "DSAA\n2 2\n0 10\n0 10\n1 4\n1 2\n3 3.402823e38\n");
+    write("surfer.asc", "ncols 2\nnrows 1\ncellsize 1\n1.70141e+38 1\n");
+    write("double.asc", "ncols 2\nnrows 1\ncellsize 1\n-1.7976931348623157e+308 1\n");
     write("p.csv", "0,0,1\n1,0,2\n0,1,-3.4028235e38\n");
-    for (const auto& [kind, file] :
-         {std::pair{"dem", "t.tif"}, {"dem", "t.asc"}, {"esri_ascii", "t.asc"}, {"dem", "s.grd"}}) {
+    for (const auto& [kind, file] : {std::pair{"dem", "t.tif"},
+                                     {"dem", "t.asc"},
+                                     {"esri_ascii", "t.asc"},
+                                     {"dem", "s.grd"},
+                                     {"dem", "surfer.asc"},
+                                     {"dem", "double.asc"}}) {
         const std::string refused = refusal(fmt::format("[terrain]\nkind = \"{}\"\nfile = \"{}\"\n", kind, file));
         EXPECT_NE(refused.find(", which means no data; declare it: "), std::string::npos) << refused;
         EXPECT_EQ(support::runProgram("sandwall-relax", path(file) + " " + path("out.asc") + " --talus 30").status, 2);
     }
     EXPECT_EQ(refusal("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n"),
               "p.csv: 1 point has the height -3.4028235e+38, which means no data; leave such lines out");
+    std::string scan = "Gwyddion Simple Field 1.0\nXRes = 2\nYRes = 1\n";
+    scan.append(4 - scan.size() % 4, '\0');
+    for (const float height : {std::numeric_limits<float>::lowest(), 1.F}) {
+        scan.append(reinterpret_cast<const char*>(&height), sizeof height);
+    }
+    write("t.gsf", scan);
+    EXPECT_NE(refusal("[terrain]\nkind = \"gsf\"\nfile = \"t.gsf\"\n")
+                  .find(", which means no data; declare it: mask these pixels in Gwyddion"),
+              std::string::npos);
     writeRaster("t.tif",
                 {.columns = 3, .rows = 1, .heights = {-3.4028234663852886e38, 2, 3}, .noData = -3.4028234663852886e38});
     EXPECT_TRUE(scene::readRaster(path("t.tif")).isNoData(0, 0));
