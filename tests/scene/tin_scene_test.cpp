@@ -139,7 +139,7 @@ TEST_F(TinScene, ARimHasVerticesNoFartherApartThanWidest) {
           Case{"[field]\ncolumns = 64\n[terrain]\nkind = \"dunes\"\n[tin]\nwidest = 0\n", 16 * 256},
           Case{"[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\ncell = 0.1\nwidest = 0.3\n", 3 * 256}}) {
         for (const char* const rim : {"rim = \"open\"\n", ""}) {
-            const scene::Scene scene = loaded(rim + terrain + material);
+            const scene::Scene scene = loaded(std::string(rim).append(terrain).append(material));
             const sand::tin::TinStart& start = *scene.tin;
             std::array<std::vector<std::int32_t>, 4> sides;
             for (const sand::tin::Place& place : start.places) {
