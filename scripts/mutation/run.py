@@ -111,16 +111,19 @@ def common(a, b):
 
 
 def tests_for(name, programs):
-    """Returns the tests that should see a bug in the source `name`, the nearest first: the unit tests of its top folder,
-    and a few sessions."""
+    """Returns the tests that should see a bug in the source `name`, the nearest first.
+
+    For a script these are the Python tests, otherwise the unit tests of its top folder and a few sessions.
+    """
     if name.endswith(".cpp"):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
         units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
         return units + [SESSIONS] * name.startswith(WITH_SESSIONS)
     files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
-    module = re.compile(rf"\b{pathlib.PurePath(name).stem}\b")
-    return [f"{file}.py" for file in sorted(files, key=lambda file: not module.search(
-        (ROOT / "tests" / "scripts" / f"{file}.py").read_text()))]
+    stem = pathlib.PurePath(name).stem
+    module = re.compile(rf"\b{stem}\b")
+    return [f"{file}.py" for file in sorted(files, key=lambda file: (
+        file != f"{stem}_test", not module.search((ROOT / "tests" / "scripts" / f"{file}.py").read_text())))]
 
 
 def parse(arguments):
@@ -180,7 +183,7 @@ def main():
     for space in spaces:
         space.prepare()
     spaces[0].jobs = cores
-    for space in spaces:  # what the first one has compiled, the others take from ccache
+    for space in spaces:  # the others take from ccache what the first one has compiled
         try:
             space.build(targets)
         except DoesNotCompile as fault:
