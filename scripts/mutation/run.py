@@ -7,7 +7,6 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import time
 import tomllib
@@ -144,15 +143,16 @@ def parse(arguments):
 def selected(options, kept):
     """Returns the bugs that the options select."""
     folders = [pathlib.Path(which).as_posix() for which in options.which if not which.endswith(".patch")]
-    patches = [pathlib.Path(which) for which in options.which if which.endswith(".patch")]
+    patches = [ROOT / which for which in options.which if which.endswith(".patch")]
+    if patches and not folders:
+        return [Patch(path) for path in patches]
     programs = test_programs()
-    drawn = [] if patches and not folders else draw.drawn(options.seed or kept["seed"], options.drawn)
-    bugs = [Patch(path) for path in ([] if options.drawn_only else patches or sorted(PATCHES.glob("*.patch")))]
-    bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in drawn]
+    bugs = [] if options.drawn_only else [Patch(path) for path in sorted(PATCHES.glob("*.patch")) if path not in patches]
+    bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in draw.drawn(options.seed or kept["seed"], options.drawn)]
     if folders:
         bugs = [bug for bug in bugs if any(common(name, folder) == len(folder.split("/"))
                                            for name in bug.names for folder in folders)]
-    return bugs
+    return [Patch(path) for path in patches] + bugs
 
 
 def test_without_bugs(space, tests):

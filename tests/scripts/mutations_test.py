@@ -178,6 +178,20 @@ class Report(unittest.TestCase):
             self.assertEqual(ended("kill -SEGV $$"), "status -11")
             self.assertEqual(ended("exec sleep 60", limit=0.5), "the time limit")
 
+    def test_folders_and_patches_select_bugs(self):
+        def selected(*words):
+            return run.selected(run.parse(words), {"seed": "a"})
+
+        patch = tracked("tests/mutations/*.patch")[0]
+        elsewhere = "tracking" if run.Patch(ROOT / patch).names[0].startswith("scripts/") else "scripts"
+        self.assertEqual([bug.title for bug in selected(patch)], [pathlib.PurePath(patch).stem])
+        of_folder = selected(elsewhere)
+        self.assertTrue(of_folder)
+        self.assertEqual([name for bug in of_folder for name in bug.names if not name.startswith(f"{elsewhere}/")], [])
+        self.assertEqual([bug.title for bug in selected(elsewhere, patch)], [pathlib.PurePath(patch).stem, *(bug.title for bug in of_folder)])
+        self.assertEqual({type(bug) for bug in selected("--drawn-only")}, {run.DrawnBug})
+        self.assertEqual({type(bug) for bug in selected("--drawn", "0")}, {run.Patch})
+
     def test_drawn_bugs_run_the_tests_of_their_folder(self):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
         self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests"])
