@@ -21,12 +21,12 @@ install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DE
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
     scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/environment.py
-    scripts/events.py
-    scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/job_stream.py scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py
-    scripts/open_mpi.py
-    scripts/pointer.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py scripts/screens.py
-    scripts/session_control.py scripts/session_folder.py scripts/session_lines.py scripts/session_report.py
-    scripts/session_results.py scripts/session_rules.py scripts/spare_hosts.py scripts/supervisor.py scripts/text_file.py scripts/this_machine.py
+    scripts/events.py scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/job_stream.py
+    scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py scripts/open_mpi.py scripts/pointer.py
+    scripts/process_failure.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py
+    scripts/screens.py scripts/server_watch.py scripts/session_control.py scripts/session_folder.py
+    scripts/session_lines.py scripts/session_report.py scripts/session_results.py scripts/session_rules.py
+    scripts/spare_hosts.py scripts/supervisor.py scripts/text_file.py scripts/this_machine.py
     docs/schemas/summary.schema.json
     DESTINATION ${private}/python)
 install(DIRECTORY scenes/ DESTINATION ${shared}/scenes)

@@ -46,7 +46,7 @@ class FailedProcesses:
             pass  # there is none, or the report has the failures of this launcher alone
 
     def add(self, failure, restarted):
-        """Adds a supervisor.Failure. Prints why the file cannot be written."""
+        """Adds a process_failure.Failure. Prints why the file cannot be written."""
         self.all.append({"what": failure.text, "restarted": restarted, "server": failure.text.startswith(SERVER), "now": True})
         line = {"what": failure.text, "rank": failure.rank, "how": failure.how, "time": failure.when, "frame": failure.frame,
                 "step": failure.step, "restarted": restarted}

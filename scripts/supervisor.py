@@ -2,16 +2,12 @@
 """Supervises a session: reports a failed process and restarts it from the end of the journal (docs/recovery.md)."""
 
 import collections
-import dataclasses
-import json
 import os
 import pathlib
 import shutil
-import signal
 import tempfile
 import time
 
-import checked_json
 import console
 import events
 import failed_processes
@@ -19,121 +15,16 @@ import job_log
 import session_control
 import session_folder
 from console import say
+from process_failure import content_of, failure_of_job, failure_without_log, taken
 from processes import HapticServer, Input, Job, exit_status
 from rank_hosts import BadInput
+from server_watch import ServerWatch
 
 BAD_INPUT = 2
 FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
 ENDED_IN_ORDER = ("sand", "summary")  # `what` of failure.json, after which a restart would not help
-SERVER_HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
 JOURNAL = "session.journal"
-RECOVERIES = "recoveries.jsonl"
-
-
-def signal_name(number):
-    try:
-        return signal.Signals(number).name
-    except ValueError:
-        return f"signal {number}"
-
-
-def ending_of(status):
-    """Returns the end of a process as a word for programs: "SIGKILL", or "status 3"."""
-    return signal_name(-status) if status < 0 else f"status {status}"
-
-
-def how_ended(status):
-    """Returns the end of a process as words for messages: "was killed by SIGKILL", or "ended with status 3"."""
-    return f"was killed by {ending_of(status)}" if status < 0 else f"ended with {ending_of(status)}"
-
-
-@dataclasses.dataclass
-class Failure:
-    """A failure of a process: which process, how and when."""
-
-    text: str  # for messages: "rank 3 on node02 was killed by SIGSEGV"
-    rank: int = None  # the haptic server and mpirun have None
-    how: str = ""  # for programs: SIGKILL, "status 3", "hung", "broken" or "disk"
-    host_is_lost: bool = False  # the host must not draw any more
-    when: float = dataclasses.field(default_factory=time.time)
-    frame: int = None  # the last frame that was reported as shown
-    step: int = None
-    last_lines: list = dataclasses.field(default_factory=list)
-
-    def shown(self):
-        return f"frame {self.frame}, step {self.step}" if self.frame is not None else "no frame yet"
-
-    def words(self):
-        """Returns the options that give this failure to the master that continues the session."""
-        rank = [] if self.rank is None else ["--failed-rank", str(self.rank)]
-        # With an equals sign, because the text comes from another program and could begin with hyphens.
-        return ["--failed-at", f"{self.when:.3f}", f"--failure={self.text}", *rank, "--failed-how", self.how]
-
-
-def taken(path):
-    """Returns the content of the master's failure.json, or {} if the file does not exist. Removes it, so that it is read once."""
-    found = content_of(path)
-    try:
-        session_folder.forget(path)
-    except OSError:
-        pass  # it does not exist, or the folder is read-only
-    return found
-
-
-def content_of(path):
-    """Returns the content of the master's failure.json, or {} if the file does not exist or is damaged."""
-    try:
-        return events.failure_in(checked_json.parse(session_folder.read_text(path)))
-    except (OSError, ValueError):
-        return {}
-
-
-def told_name(told, hosts):
-    """Returns the name of the rank in `told`, the content of failure.json or of the event `failure`."""
-    if told["rank"] == 0:
-        return "the master"
-    tile = f" (tile {told['tile']})" if told.get("tile") else ""
-    return f"rank {told['rank']}{tile} on {told.get('host') or hosts.host_of(told['rank'])}"
-
-
-def failure_of_job(status, log, hosts, written):
-    """Returns the failure that ended a job.
-
-    Takes it from the master's failure.json or event, else from mpirun's lines, else from a rank's event.
-    """
-    told = written or log.failure or {}
-
-    def name(rank):
-        return "the master" if rank == 0 else f"rank {rank} on {hosts.host_of(rank)}"
-
-    signalled, exited = log.signalled(), log.exited()
-    rank = None
-    lost = False
-    if told.get("what") in ("broken", "hung", "disk"):
-        how = told["what"]
-        rank = told["rank"] if told.get("rank", -1) >= 0 else None
-        lost = how == "broken"
-        message = told.get("message") or f"{name(rank or 0)}: {how}"
-        text = f"{told_name(told, hosts)} hung" if how == "hung" and rank is not None else message
-    elif signalled:
-        rank, how = signalled[0], signal_name(signalled[1])
-        text = f"{name(rank)} was killed by {how}"
-    elif log.ending:
-        how = "hung"
-        rank = next(iter(log.ending["ranks"]), None)
-        text = f"{log.ending['names'] or name(rank or 0)} hung"
-    elif exited:
-        rank, how = exited[0], f"status {exited[1]}"
-        text = f"{name(rank)} ended with {how}"
-    else:
-        how = ending_of(status)
-        text = f"mpirun {how_ended(status)}"
-    if rank in log.rank_logs:
-        text += f" (its output: {log.rank_logs[rank]})"
-    failure = Failure(text, rank, how, lost, frame=log.frame, step=log.step)
-    failure.last_lines = list(log.said.get(rank) or log.said.get(0) or log.said.get(None) or [])
-    return failure
 
 
 def force_share(options):
@@ -141,14 +32,6 @@ def force_share(options):
     if options.force is None and options.force_scale is None:
         return None
     return 0 if options.force == "off" else options.force_scale if options.force_scale is not None else 1
-
-
-def failure_without_log(status, told, hosts):
-    """Returns the failure that ended a job whose output is not kept. `told` is the content of the master's failure.json."""
-    rank = told["rank"] if told.get("rank", -1) >= 0 else None
-    how = told.get("what") or ending_of(status)
-    text = told.get("message") or (f"{told_name(told, hosts)}: {how}" if rank is not None else f"mpirun {how_ended(status)}")
-    return Failure(text, rank, how)
 
 
 class Allowance:
@@ -193,23 +76,20 @@ class Supervisor:
         self.input = Input(stop)
         self.failures = []
         self.failed = failed_processes.FailedProcesses(self.out, self.resume and (self.out / JOURNAL).exists())
-        self.server = self.job = None
-        self.server_due = None  # time at which the server is started again [s]
-        self.server_hung = False
-        self.server_missed = False  # without restarts: whether the server has ended
-        self.server_loads = False  # whether the server was restarted and does not listen yet
-        self.server_failure = None  # the failure after which the server is not linked yet
+        self.watch = self.job = None  # watch: the ServerWatch of a session with a haptic server
         self.restarting = False  # whether the job has failed and has not shown a frame since then
         self.gave_up = False
         self.logs = None  # folder of the logs; without --restarts a temporary one, or None if the output is not kept
 
     def run(self):
         with tempfile.TemporaryDirectory(prefix="sandwall-") as folder:
+            server = None
             try:
                 if self.server_at:
-                    self.server = HapticServer(self.server_at, folder)
-                    self.server.start()
-                    self.haptic = self.server.address()
+                    server = HapticServer(self.server_at, folder)
+                    server.start()
+                    self.haptic = server.address()
+                    self.watch = self.watch_of(server)
                 if self.supervised:
                     self.logs = self.prepare_logs(folder)
                 elif self.mpi.keeps_output:
@@ -217,8 +97,11 @@ class Supervisor:
                 return self.tries()
             finally:
                 self.mark_restart(None)
-                if self.server:
-                    self.server.stop()
+                if server:
+                    server.stop()
+
+    def watch_of(self, server):
+        return ServerWatch(server, self.out, lambda failure: self.may_go_on(failure, showed_a_frame=True), self.allowance.wait)
 
     def prepare_logs(self, otherwise):
         """Returns OUT/log, or the temporary folder `otherwise` if OUT/log cannot be written. The master reports the latter."""
@@ -292,64 +175,21 @@ class Supervisor:
         while (status := self.job.look(self.stop)) is None:
             if log and log.frame is not None:
                 self.mark_restart(None)
-            if self.server and not self.job.asked:
-                self.look_after_server() if self.supervised else self.miss_server()
+            if self.watch and not self.job.asked:
+                self.look_after_server(log)
         if self.supervised:
             self.input.job = None
             self.job.clear()
         self.mpi.tidy(self.job.process.pid)
         return status
 
-    def look_after_server(self):
-        """Starts the haptic server again on its port if it has ended. The master connects to it again by itself."""
-        status = self.server.process.poll()
-        if status is None:
-            self.tell_linked_server()
-            self.end_hung_server()
-        elif self.server_due is not None:
-            if time.monotonic() >= self.server_due:
-                self.server_due = None
-                self.server.start()
-                self.server_loads = True
-                log = self.job.log
-                log.hand, log.refused, log.linked = None, False, None  # the values belong to the previous server
-        else:
-            hung = "was hung" if self.server_hung else how_ended(status)
-            failure = Failure(f"{failed_processes.SERVER} {hung}", how="hung" if self.server_hung else ending_of(status))
-            failure.frame, failure.step = self.job.log.frame, self.job.log.step
-            self.server_hung = False
-            if self.may_go_on(failure, showed_a_frame=True):
-                self.server_failure = failure
-                self.server_due = time.monotonic() + self.allowance.wait()
-            else:
-                self.gave_up = True
-                self.job.stop()
-
-    def miss_server(self):
-        """Prints and writes down once that the haptic server has ended, in a session without restarts."""
-        status = self.server.process.poll()
-        if status is None or self.server_missed:
-            return
-        self.server_missed = True
-        failure = Failure(f"{failed_processes.SERVER} {how_ended(status)}", how=ending_of(status))
-        say(f"{failure.text}; the session continues without it, because of --restarts 0")
-        self.failed.add(failure, restarted=False)
-
-    def tell_linked_server(self):
-        """Writes the recovery of a restarted server when its hand is linked. The master writes the recoveries of the job."""
-        failure, log = self.server_failure, self.job.log
-        if failure is None or log.linked is None:
-            return
-        self.server_failure = None
-        # The wall has continued meanwhile, so the values about a replay are null.
-        recovery = {"failure": failure.text, "failed_rank": None, "failed_how": failure.how, "seconds_to_next_frame": None,
-                    "seconds_to_link": log.linked - failure.when, "step": log.step or failure.step or 0,
-                    "frame": log.frame or failure.frame or 0, "state_hash": None,
-                    "checkpoint_step": None, "replayed_steps": None, "cut_bytes": None}
-        try:
-            session_folder.append_line(self.out / RECOVERIES, json.dumps(recovery))
-        except OSError as error:
-            say(f"{self.out / RECOVERIES}: cannot be written ({error.strerror})")
+    def look_after_server(self, log):
+        """Starts the haptic server again if it has ended. Ends the session if the server may not be started again."""
+        if not self.supervised:
+            self.watch.look_without_restarts(self.failed)
+        elif not self.watch.look(log):
+            self.gave_up = True
+            self.job.stop()
 
     def mark_restart(self, failure):
         """Leaves the failure for `sandwall ctl` until the job has shown a frame again, when `failure` is None."""
@@ -364,17 +204,6 @@ class Supervisor:
                 marker.unlink(missing_ok=True)
         except OSError:
             pass  # ctl then reports a start without the reason
-
-    def end_hung_server(self):
-        """Kills a running server without a link for SERVER_HUNG_SECONDS, because it will not recover by itself."""
-        log = self.job.log
-        if self.server_loads and self.server.listens():
-            self.server_loads = False
-            log.miss_hand()
-        if log.hand is not None and time.monotonic() - log.hand > SERVER_HUNG_SECONDS and log.told > log.hand + SERVER_HUNG_SECONDS / 2:
-            log.hand = None
-            self.server_hung = True
-            self.server.process.kill()
 
     def may_go_on(self, failure, showed_a_frame):
         """Prints the failure and returns whether the process is started again. If not, prints the report."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Draws bugs by a rule.
 
-The product's sources are put in the order of a hash of the seed and their name. Each source gives one bug. Its kind is
-the hash modulo the number of kinds that the source has, and its place the one with the smallest hash of its line. So a
-change elsewhere in the source draws the same bug again. A bug that does not compile is drawn again from the same
+The product's sources are put in the order of a hash of the seed and their name. Each source gives one bug. The hash
+modulo the number of kinds in the source chooses the kind. Of the places of this kind, the one with the smallest hash of
+its line is taken. So a change elsewhere in the source draws the same bug again. A bug that does not compile is drawn again from the same
 source, and then from a spare one. No other bug is discarded.
 """
 

@@ -7,7 +7,6 @@ import concurrent.futures
 import os
 import pathlib
 import re
-import subprocess
 import sys
 import time
 import tomllib
@@ -111,16 +110,19 @@ def common(a, b):
 
 
 def tests_for(name, programs):
-    """Returns the tests that should see a bug in the source `name`, the nearest first: the unit tests of its top folder,
-    and a few sessions."""
+    """Returns the tests that should see a bug in the source `name`, the nearest first.
+
+    For a script these are the Python tests, otherwise the unit tests of its top folder and a few sessions.
+    """
     if name.endswith(".cpp"):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
         units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
         return units + [SESSIONS] * name.startswith(WITH_SESSIONS)
     files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
-    module = re.compile(rf"\b{pathlib.PurePath(name).stem}\b")
-    return [f"{file}.py" for file in sorted(files, key=lambda file: not module.search(
-        (ROOT / "tests" / "scripts" / f"{file}.py").read_text()))]
+    stem = pathlib.PurePath(name).stem
+    module = re.compile(rf"\b{stem}\b")
+    return [f"{file}.py" for file in sorted(files, key=lambda file: (
+        file != f"{stem}_test", not module.search((ROOT / "tests" / "scripts" / f"{file}.py").read_text())))]
 
 
 def parse(arguments):
@@ -141,15 +143,16 @@ def parse(arguments):
 def selected(options, kept):
     """Returns the bugs that the options select."""
     folders = [pathlib.Path(which).as_posix() for which in options.which if not which.endswith(".patch")]
-    patches = [pathlib.Path(which) for which in options.which if which.endswith(".patch")]
+    patches = [ROOT / which for which in options.which if which.endswith(".patch")]
+    if patches and not folders:
+        return [Patch(path) for path in patches]
     programs = test_programs()
-    drawn = [] if patches and not folders else draw.drawn(options.seed or kept["seed"], options.drawn)
-    bugs = [Patch(path) for path in ([] if options.drawn_only else patches or sorted(PATCHES.glob("*.patch")))]
-    bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in drawn]
+    bugs = [] if options.drawn_only else [Patch(path) for path in sorted(PATCHES.glob("*.patch")) if path not in patches]
+    bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in draw.drawn(options.seed or kept["seed"], options.drawn)]
     if folders:
         bugs = [bug for bug in bugs if any(common(name, folder) == len(folder.split("/"))
                                            for name in bug.names for folder in folders)]
-    return bugs
+    return [Patch(path) for path in patches] + bugs
 
 
 def test_without_bugs(space, tests):
@@ -180,7 +183,7 @@ def main():
     for space in spaces:
         space.prepare()
     spaces[0].jobs = cores
-    for space in spaces:  # what the first one has compiled, the others take from ccache
+    for space in spaces:  # the others take from ccache what the first one has compiled
         try:
             space.build(targets)
         except DoesNotCompile as fault:

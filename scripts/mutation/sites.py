@@ -2,11 +2,10 @@
 """Finds the places of a source at which one bug can be planted: conditions, constants and signs.
 
 condition: the condition of an `if` is negated. constant: a whole number n becomes n + 1, any other number 1.5 n, and
-`true` becomes `false`. sign: `+` becomes `-`.
+`true` and `false` become each other. sign: `+` and `-` become each other.
 """
 
 import ast
-import bisect
 import dataclasses
 import io
 import re
@@ -41,7 +40,7 @@ def shown(code):
     return " ".join(code.split())
 
 
-# What is not code, and the tokens at which a bug can be planted. The first alternative that matches counts.
+# Matches text to skip, such as comments, and the tokens at which a bug can be planted. The first alternative that matches counts.
 CPP = re.compile(r"""
     (?P<skip> //[^\n]* | /\*.*?\*/ | R"(?P<raw>[^()\s]*)\(.*?\)(?P=raw)" | "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'
             | ^[ \t]*\#(?:\\\n|[^\n])* | static_assert\b[^;]* | operator\s*[-+]+=? | \+\+ | -- | -> )
@@ -52,7 +51,7 @@ CPP = re.compile(r"""
 
 
 def next_number(text):
-    """Returns the number of a C++ source that replaces `text`; None if it stays as it is."""
+    """Returns the number of a C++ source that replaces `text`."""
     digits = text.rstrip("uUlLzZ") if text[:2] in ("0x", "0X") else text.rstrip("uUlLfFzZ")
     suffix = text[len(digits):]
     plain = digits.replace("'", "")
@@ -63,7 +62,7 @@ def next_number(text):
 
 
 def closing(text, start):
-    """Returns the index of the bracket that closes the one at `start`; None if it stays open."""
+    """Returns the index of the bracket that closes the one at `start`, or None if the text ends before."""
     depth = 0
     for match in re.finditer(r"""//[^\n]*|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])'|[()]""", text[start:]):
         depth += {"(": 1, ")": -1}.get(match[0], 0)
@@ -73,7 +72,7 @@ def closing(text, start):
 
 
 def condition(text, start):
-    """Returns where the condition of the `if` at `start` begins and ends; None if it has none."""
+    """Returns where the condition of the `if` at `start` begins and ends, or None for an `if` without brackets."""
     opening = re.compile(r"if\s*(?:constexpr\s*)?\(").match(text, start)
     end = opening and closing(text, opening.end() - 1)
     if not end:
@@ -95,20 +94,26 @@ def cpp_sites(text):
 
 
 def python_sites(text):
-    starts = [0]
+    starts = [0]  # index of each line
     for line in text.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
 
     def index(row, column):
-        return starts[row - 1] + column
+        """Returns the index of a position of ast, whose column is in bytes."""
+        line = text[starts[row - 1]:starts[row]]
+        return starts[row - 1] + len(line.encode()[:column].decode())
 
-    # ast gives columns in bytes, so only sources whose lines are plain ASCII, or columns before other characters, agree.
     def span(node):
-        first, last = text[starts[node.lineno - 1]:], text[starts[node.end_lineno - 1]:]
-        return (starts[node.lineno - 1] + len(first.encode()[:node.col_offset].decode()),
-                starts[node.end_lineno - 1] + len(last.encode()[:node.end_col_offset].decode()))
+        return index(node.lineno, node.col_offset), index(node.end_lineno, node.end_col_offset)
 
-    for node in ast.walk(ast.parse(text)):
+    strings = []  # format strings, whose parts have no position of their own in each version of Python
+    nodes = [ast.parse(text)]
+    while nodes:
+        node = nodes.pop()
+        if isinstance(node, ast.JoinedStr):
+            strings.append(span(node))
+            continue
+        nodes += ast.iter_child_nodes(node)
         if isinstance(node, (ast.If, ast.IfExp)):
             start, end = span(node.test)
             yield Site("condition", start, end, f"(not ({text[start:end]}))")
@@ -118,34 +123,12 @@ def python_sites(text):
             yield Site("constant", *span(node), repr(changed))
     for token in tokenize.generate_tokens(io.StringIO(text).readline):
         if token.type == tokenize.OP and token.string in ("+", "-", "+=", "-="):
-            start = index(*token.start)
-            yield Site("sign", start, start + 1, "-" if token.string[0] == "+" else "+")
+            start = starts[token.start[0] - 1] + token.start[1]
+            if not any(first <= start < last for first, last in strings):
+                yield Site("sign", start, start + 1, "-" if token.string[0] == "+" else "+")
 
 
 def sites(name, text):
-    """Returns the places of the source `name` with the text `text`, in the order of the text.
-
-    A place in a format string of Python has no position of its own and is left out.
-    """
-    if name.endswith((".cpp", ".hpp")):
-        found = cpp_sites(text)
-    else:
-        inside = format_strings(text)
-        found = (site for site in python_sites(text) if not inside(site.start))
+    """Returns the places of the source `name` with the text `text`, in the order of the text. Leaves out format strings of Python."""
+    found = cpp_sites(text) if name.endswith(".cpp") else python_sites(text)
     return sorted(set(found), key=lambda site: (site.start, site.end))
-
-
-def format_strings(text):
-    """Returns a function that tells whether an index is in a string."""
-    starts = [0]
-    for line in text.splitlines(keepends=True):
-        starts.append(starts[-1] + len(line))
-    spans = [(starts[token.start[0] - 1] + token.start[1], starts[token.end[0] - 1] + token.end[1])
-             for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type == tokenize.STRING]
-    begins = [begin for begin, _ in spans]
-
-    def inside(index):
-        at = bisect.bisect_right(begins, index) - 1
-        return at >= 0 and index < spans[at][1]
-
-    return inside

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
@@ -111,12 +113,18 @@ std::uint64_t keptBefore(const master::Journal& journal, std::uint64_t undo) {
     return kept;
 }
 
-/// Returns how many words of two texts differ.
+/// Returns how many words of two texts differ. The texts have the same number of words, and not none.
 int differences(const std::string& a, const std::string& b) {
-    std::istringstream ofA(a), ofB(b);
+    const auto wordsOf = [](const std::string& text) {
+        std::istringstream stream(text);
+        return std::vector<std::string>(std::istream_iterator<std::string>(stream), {});
+    };
+    const std::vector<std::string> ofA = wordsOf(a), ofB = wordsOf(b);
+    EXPECT_FALSE(ofA.empty());
+    EXPECT_EQ(ofA.size(), ofB.size());
     int count = 0;
-    for (std::string x, y; ofA >> x && ofB >> y;) {
-        count += x == y ? 0 : 1;
+    for (std::size_t i = 0; i < std::min(ofA.size(), ofB.size()); ++i) {
+        count += ofA[i] == ofB[i] ? 0 : 1;
     }
     return count;
 }

@@ -16,8 +16,8 @@ namespace {
 ///
 /// The parts were measured one by one (docs/figures.md). A rank that only starts MPI and waits takes 13.6 MB with Open
 /// MPI 4.1.4 and 17.1 MB with 5.0.7, nearly all of it in libraries. A process that draws without MPI holds 50 to 60 MB
-/// with Mesa 22.3 and LLVM 15, and 65 to 77 MB with Mesa 25.0 and LLVM 19, whose compiler also takes more: at their
-/// peaks, ranks of Debian 13 take 120 MB with osmesa, 125 MB with egl and 141 MB with glfw.
+/// with Mesa 22.3 and LLVM 15, and 65 to 77 MB with Mesa 25.0 and LLVM 19. The compiler of LLVM 19 takes more,
+/// too. At their peaks, ranks of Debian 13 take 120 MB with osmesa, 125 MB with egl and 141 MB with glfw.
 double mostOf(const std::string& renderer) {
     const auto mesa = renderer.find("Mesa ");
     const bool newMesa = mesa != std::string::npos && std::atoi(renderer.c_str() + mesa + 5) >= 25;

@@ -32,6 +32,7 @@ import doctor  # noqa: E402
 import events  # noqa: E402
 import job_log  # noqa: E402
 import open_mpi  # noqa: E402
+import process_failure  # noqa: E402
 import programs  # noqa: E402
 import rank_hosts  # noqa: E402
 import session_control  # noqa: E402
@@ -97,7 +98,6 @@ class Folder:
         with mock.patch("supervisor.Input"):
             one = supervisor.Supervisor(self.path, hosts, open_mpi.OpenMpi4("4.1.4"), None, None, "none", options, mock.Mock(count=0))
         one.logs = self.log
-        one.server = mock.Mock()
         return one
 
     def job_log(self, mpi=open_mpi.OpenMpi4("4.1.4")):
@@ -108,7 +108,7 @@ class Folder:
     def end(self, log, told):
         """Does what the launcher does after a job has failed: prints, writes and passes on the failure."""
         one = self.supervisor()
-        failure = supervisor.failure_of_job(1, log, one.hosts, told)
+        failure = process_failure.failure_of_job(1, log, one.hosts, told)
         for word in failure.words():
             require_line(word)
         require_line(failure.shown())
@@ -118,19 +118,18 @@ class Folder:
             require_line(session_control.why_silent(self.path))
         one.hosts.struck(failure)
         one.report("too many failures")
-        one.server_failure = failure
-        one.job = mock.Mock(log=log)
-        one.server_loads = True
-        one.tell_linked_server()
-        one.end_hung_server()
+        watch = one.watch_of(mock.Mock())
+        watch.failure, watch.loads = failure, True
+        watch.tell_linked(log)
+        watch.end_hung(log)
         one.mark_restart(None)
         log.close()
 
 
 def failure_file(folder, text):
     (folder.path / "failure.json").write_bytes(text)
-    supervisor.content_of(folder.path / "failure.json").get("what")
-    folder.end(folder.job_log(), supervisor.taken(folder.path / "failure.json"))
+    process_failure.content_of(folder.path / "failure.json").get("what")
+    folder.end(folder.job_log(), process_failure.taken(folder.path / "failure.json"))
 
 
 def output_of_job(folder, text):

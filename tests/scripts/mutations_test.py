@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Tests that every patch of tests/mutations applies, and names a test program and tests that exist. Tests the rule by
-which scripts/mutate.sh draws further bugs.
+which scripts/mutate.sh draws further bugs, and what it reports.
 
 usage: mutations_test.py
 """
 
 import ast
+import contextlib
 import fnmatch
+import io
+import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import tomllib
 import unittest
 
@@ -20,11 +24,11 @@ sys.path.insert(0, str(ROOT / "scripts" / "mutation"))
 import draw  # noqa: E402
 import run  # noqa: E402
 import sites  # noqa: E402
+import workspace  # noqa: E402
 
 HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# (?:tests: (?P<program>\w+) (?P<filter>\S+)|script tests: (?P<file>\w+\.py)(?: (?P<test>[\w.]+))?)\n"
                     r"(# programs: [\w -]+\n)?(?=diff --git |--- a/)")
-PROGRAMS = {name for file in tracked("tests/*CMakeLists.txt")
-            for name in re.findall(r"^ *sandwall_test\((\w+)", (ROOT / file).read_text(), re.MULTILINE)}
+PROGRAMS = run.test_programs()
 
 
 def faults(name, text, tests, applies):
@@ -90,6 +94,7 @@ p->next++;
 """
     SCRIPT = """if size > 10 and not f"{size + 1}":  # 1 + 1
     share -= 0.5
+    text = "ä+" if "-" in name else f"{-size}" + f"{size}"
 """
 
     def changes(self, name, text):
@@ -101,7 +106,7 @@ p->next++;
             ("sign", "-", "+"), ("constant", "1.5e-3F", "(1.5 * 1.5e-3F)"), ("constant", "true", "false")])
         self.assertEqual(self.changes("a.py", self.SCRIPT), [
             ("condition", 'size > 10 and not f"{size + 1}"', '(not (size > 10 and not f"{size + 1}"))'), ("constant", "10", "11"),
-            ("sign", "-", "+"), ("constant", "0.5", "0.75")])
+            ("sign", "-", "+"), ("constant", "0.5", "0.75"), ("condition", '"-" in name', '(not ("-" in name))'), ("sign", "+", "-")])
         self.assertEqual(sites.sites("a.cpp", self.CODE)[1].planted(self.CODE).splitlines()[2],
                          "if (const int a = f(2);!(a > 0x1FU)) {")
 
@@ -127,6 +132,74 @@ p->next++;
         self.assertEqual([entry["bug"] for entry in unseen if entry["bug"] not in names], [], "not drawn from the present sources")
         for entry in unseen:
             self.assertRegex(entry["why"], r"^[A-Z].*\.$")
+
+
+class Bug:
+    """A bug with a given result."""
+
+    def __init__(self, title, result):
+        self.title = self.key = title
+        self.try_in = lambda _: result
+
+
+class Report(unittest.TestCase):
+    def report(self, bugs, unseen=()):
+        """Returns the exit status and the lines that try_all() prints."""
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            status = run.try_all(bugs, [None, None], unseen)
+        return status, printed.getvalue()
+
+    def test_a_bug_that_no_test_sees_fails_the_run(self):
+        seen, unseen = Bug("seen", (True, "caught by Sand.Falls")), Bug("unseen", (False, "SURVIVED"))
+        self.assertEqual(self.report([seen])[0], 0)
+        status, printed = self.report([seen, unseen])
+        self.assertEqual(status, 1)
+        self.assertRegex(printed, r"(?m)^seen +caught by Sand.Falls$")
+        self.assertRegex(printed, r"(?m)^unseen +SURVIVED$")
+        self.assertRegex(printed, r"(?m)^1 caught or explained, 1 not,")
+        self.assertEqual(self.report([unseen], [{"bug": "another", "why": "No user sees it."}])[0], 1)
+        self.assertEqual(self.report([unseen], [{"bug": "unseen", "why": "No user sees it."}])[0], 0)
+
+    def test_a_test_program_tells_its_first_failure(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-mutations-") as folder:
+            space = workspace.Workspace(pathlib.Path(folder), 1)
+            space.bin.mkdir(parents=True)
+
+            def ended(lines, limit=60):
+                (space.bin / "tests").write_text(f"#!/bin/sh\n{lines}\n")
+                (space.bin / "tests").chmod(0o755)
+                return space.run("tests Sand.*", limit)
+
+            self.assertIsNone(ended('[ "$1" = "--gtest_filter=Sand.*" ]'))
+            self.assertIsNone(ended(f"exit {workspace.SKIPPED}"))
+            self.assertEqual(ended("echo '[  PASSED  ] 0 tests.'"), "no test")
+            self.assertEqual(ended("echo '[  FAILED  ] Sand.Falls (2 ms)'; echo '[  FAILED  ] Sand.Rests'; exit 1"), "Sand.Falls")
+            self.assertEqual(ended("exit 3"), "status 3")
+            self.assertEqual(ended("kill -SEGV $$"), "status -11")
+            self.assertEqual(ended("exec sleep 60", limit=0.5), "the time limit")
+
+    def test_folders_and_patches_select_bugs(self):
+        def selected(*words):
+            return run.selected(run.parse(words), {"seed": "a"})
+
+        patch = tracked("tests/mutations/*.patch")[0]
+        elsewhere = "tracking" if run.Patch(ROOT / patch).names[0].startswith("scripts/") else "scripts"
+        self.assertEqual([bug.title for bug in selected(patch)], [pathlib.PurePath(patch).stem])
+        of_folder = selected(elsewhere)
+        self.assertTrue(of_folder)
+        self.assertEqual([name for bug in of_folder for name in bug.names if not name.startswith(f"{elsewhere}/")], [])
+        self.assertEqual([bug.title for bug in selected(elsewhere, patch)], [pathlib.PurePath(patch).stem, *(bug.title for bug in of_folder)])
+        self.assertEqual({type(bug) for bug in selected("--drawn-only")}, {run.DrawnBug})
+        self.assertEqual({type(bug) for bug in selected("--drawn", "0")}, {run.Patch})
+
+    def test_drawn_bugs_run_the_tests_of_their_folder(self):
+        programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
+        self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests"])
+        self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
+        self.assertEqual(run.tests_for("scripts/programs.py", programs)[0], "programs_test.py")
+        self.assertLessEqual(run.SLOW, set(PROGRAMS))
+        for pattern in run.SESSIONS.split()[1].split(":"):
+            self.assertTrue(fnmatch.filter(PROJECT.all_tests(), pattern), pattern)
 
 
 if __name__ == "__main__":

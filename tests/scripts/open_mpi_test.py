@@ -12,6 +12,7 @@ from unittest import mock
 
 import launcher_fixture  # finds scripts/
 import job_log
+import job_stream
 import open_mpi
 from launcher_fixture import LauncherTest
 from rank_hosts import HERE, BadInput
@@ -20,8 +21,13 @@ FOUR, FIVE = open_mpi.OpenMpi4("4.1.4"), open_mpi.OpenMpi5("5.0.7")
 
 
 def relayed(rank, text):
-    """Returns a line as host::relayedLine() writes it; rank_output_test.cpp has the same example."""
+    """Returns a line as host::relayedLine() writes it."""
     return b"@rank %d %d %08x %s" % (rank, len(text), zlib.crc32(b"%d " % rank + text), text)
+
+
+class Relayed(unittest.TestCase):
+    def test_a_line_that_a_program_has_written_is_read(self):
+        self.assertEqual(job_stream.relayed(b"@rank 3 5 f379341c hello"), ([(3, b"hello")], False))  # of rank_output_test.cpp
 
 
 class Versions(unittest.TestCase):

@@ -230,18 +230,18 @@ class Waits(unittest.TestCase):
             self.addCleanup(log.close)
             watched = self.supervisor()
             watched.failed = mock.Mock()
-            watched.job = mock.Mock(log=log)
-            watched.server = mock.Mock(**{"process.poll.return_value": -11})
+            server = mock.Mock(**{"process.poll.return_value": -11})
+            watched.watch = watched.watch_of(server)
             for seconds in (0, 1, 2, 4, 8, 8):
-                watched.server.start.reset_mock()
-                watched.look_after_server()  # finds that the server has ended
+                server.start.reset_mock()
+                watched.look_after_server(log)  # finds that the server has ended
                 if seconds > 0:
                     self.now += seconds - 0.01
-                    watched.look_after_server()
-                    self.assertFalse(watched.server.start.called, f"too early for {seconds} s")
+                    watched.look_after_server(log)
+                    self.assertFalse(server.start.called, f"too early for {seconds} s")
                     self.now += 0.01
-                watched.look_after_server()
-                watched.server.start.assert_called_once()
+                watched.look_after_server(log)
+                server.start.assert_called_once()
 
 
 if __name__ == "__main__":

@@ -118,7 +118,7 @@ class HungServer(unittest.TestCase):
         self.addCleanup(self.log.close)
         self.server = mock.Mock(**{"process.poll.return_value": None, "listens.return_value": True})
         self.watched = supervisor.Supervisor(temporary.name, None, open_mpi.OpenMpi4("4.1.4"), None, None, None, mock.Mock(restarts=3, restart_window=60), mock.Mock())
-        self.watched.server, self.watched.job = self.server, mock.Mock(log=self.log)
+        self.watched.watch = self.watched.watch_of(self.server)
 
     def event(self, name, **fields):
         self.log.read_event({"event": name, **fields})
@@ -129,17 +129,17 @@ class HungServer(unittest.TestCase):
         for _ in range(seconds):
             self.now += 1
             self.event("progress", frame=1, step=1, fps=60.0, skew_us=0.0, hand=hand)
-            self.watched.look_after_server()
+            self.watched.look_after_server(self.log)
         return self.server.process.kill.called
 
     def end(self):
         """Lets the killed process end, and starts the server again after the wait for it."""
         self.server.process.kill.reset_mock()
         self.server.process.poll.return_value = -9
-        self.watched.look_after_server()
+        self.watched.look_after_server(self.log)
         self.assertTrue(self.watched.failures[-1].text.endswith("was hung"))
-        self.now = self.watched.server_due
-        self.watched.look_after_server()  # starts the server
+        self.now = self.watched.watch.due
+        self.watched.look_after_server(self.log)  # starts the server
         self.server.start.assert_called_once()
         self.server.process.poll.return_value = None
 
@@ -163,7 +163,7 @@ class HungServer(unittest.TestCase):
     def test_while_the_wall_stands_nobody_is_hung(self):
         self.wall_goes_on(5, "hand linked")
         self.now += 60
-        self.watched.look_after_server()
+        self.watched.look_after_server(self.log)
         self.assertFalse(self.server.process.kill.called)
 
     def test_one_that_was_started_again_and_never_answers_is_killed_too(self):

@@ -12,8 +12,8 @@ namespace support {
 /// over the loopback interface if `transport` is "tcp".
 inline Ran runRanks(int ranks, const std::string& program, const std::string& arguments,
                     const std::string& transport = "vader") {
-    return runCommand("timeout 600 sh -c \"" + mpirunHere(transport) + " -n " + std::to_string(ranks) +
-                      " " SANDWALL_BIN_DIR "/" + program + " " + arguments + "\"");
+    return runCommand("timeout 600 sh -c \"" + mpirunHere(transport) + " -n " + std::to_string(ranks) + " '" +
+                      pathOfProgram(program) + "' " + arguments + "\"");
 }
 
 }  // namespace support
