@@ -250,14 +250,25 @@ void Erosion::changeRules(const Rules& rules) {
 }
 
 bool Erosion::amiss(const CellRect& cells) const {
+    const auto rests = [this](int x, int y) {
+        return !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_);
+    };
+    for (int x = cells.x0; cells.y0 == 0 && x < cells.x1; ++x) {  // over the southern rim
+        if (north_.row(-1)[x] != 0 && rests(x, 0)) {
+            return true;
+        }
+    }
     for (int y = cells.y0; y < cells.y1; ++y) {
+        if (cells.x0 == 0 && east_.row(y)[-1] != 0 && rests(0, y)) {  // over the western rim
+            return true;
+        }
         std::int32_t flows = 0;  // joins the whole row, because nearly all memory holds 0
         for (int x = cells.x0; x < cells.x1; ++x) {
             flows |= east_.row(y)[x] | north_.row(y)[x] | (sliding_ ? sliding_->row(y)[x] : 0);
         }
         for (int x = cells.x0; flows != 0 && x < cells.x1; ++x) {
             if ((east_.row(y)[x] != 0 || north_.row(y)[x] != 0 || (sliding_ && sliding_->row(y)[x] != 0)) &&
-                !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_)) {
+                rests(x, y)) {
                 return true;
             }
         }

@@ -97,7 +97,8 @@ public:
     /// Returns the number of sweeps since construction.
     [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
     /// Returns whether a cell of `cells` has a flux other than 0 although its block is at rest. Only corrupted memory
-    /// can cause that. With a band, also checks the marks of sliding cells.
+    /// can cause that. A cell at the western or southern rim also has the flux over this rim. With a band, also checks
+    /// the marks of sliding cells.
     [[nodiscard]] bool amiss(const CellRect& cells) const;
     /// Makes the next sweep visit every block. Does not reset the age of the inertia.
     void wakeAll();

@@ -36,8 +36,8 @@ struct Cut {
 /// The cells that a tool covers or that may take its sand, divided into parts. Sand never leaves its part.
 ///
 /// Cells are joined over faces. Walls divide them. A cell also leaves its part if its rock is higher than the highest
-/// cell from which the tool takes sand in this part. If such cells cut a part in two, each
-/// piece becomes a part, for which the same holds.
+/// cell from which the tool takes sand in this part. If such cells cut a part in two, each piece becomes a part, for
+/// which the same holds.
 class Surroundings {
 public:
     static constexpr std::int32_t kNone = -1;  // part of a cell to which no sand may go

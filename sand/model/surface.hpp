@@ -83,7 +83,7 @@ public:
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once. Ignores rock, walls and tools.
     virtual void settle() = 0;
-    /// Returns whether rock or walls allow settle() not at all, so that only sweeps bring the sand to rest.
+    /// Returns whether there is rock or a wall that settle() would ignore. Only sweeps then bring the sand to rest.
     [[nodiscard]] virtual bool settlesBySweeps() const { return false; }
     /// Returns the time of a sweep in which all sand moves, at least that of the field's cells [cell of a grid].
     [[nodiscard]] virtual std::int64_t sweepCost() const = 0;

@@ -2,6 +2,7 @@
 // Corrupted memory of any kind and at any place shows in the hash after one round of the audit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -56,10 +57,10 @@ int spoiltTiles(Replica terrain, const Replica& right, int tile) {
     return spoilt;
 }
 
-/// Calls corrupt(replica, column, row) for the first and the last cell of every tile. Expects that one round of the
-/// audit finds the tile of this cell, and no other tile.
-template <class Corrupt>
-void expectFound(const Corrupt& corrupt) {
+/// Calls corrupt(replica, column, row) for the first and the last cell of every tile for which isMeant(cells) is true.
+/// Expects that one round of the audit finds the tile of this cell, and no other tile.
+template <class Corrupt, class IsMeant>
+void expectFoundIn(const IsMeant& isMeant, const Corrupt& corrupt) {
     Replica right = restingSand();
     ASSERT_TRUE(right.settled()) << "the memory of sand that flows is not audited, because the next sweep writes it";
     const std::uint64_t hash = right.stateHash();
@@ -68,6 +69,9 @@ void expectFound(const Corrupt& corrupt) {
     ASSERT_EQ(right.hashTiles().tileCount(), 12);
     for (int tile = 0; tile < right.hashTiles().tileCount(); ++tile) {
         const sand::CellRect cells = right.hashTiles().cellsOf(tile);
+        if (!isMeant(cells)) {
+            continue;
+        }
         for (const auto& [column, row] : {std::pair(cells.x0, cells.y0), std::pair(cells.x1 - 1, cells.y1 - 1)}) {
             Replica terrain(restingSand());
             (void)terrain.stateHash();
@@ -75,6 +79,11 @@ void expectFound(const Corrupt& corrupt) {
             EXPECT_EQ(spoiltTiles(std::move(terrain), right, tile), 1) << "tile " << tile;
         }
     }
+}
+
+template <class Corrupt>
+void expectFound(const Corrupt& corrupt) {
+    expectFoundIn([](const sand::CellRect&) { return true; }, corrupt);
 }
 
 Erosion& memoryOf(Replica& terrain) { return const_cast<Erosion&>(samples::erosionOf(terrain)); }
@@ -89,6 +98,41 @@ TEST(Audit, FindsAFluxToTheEastInEveryTile) {
 
 TEST(Audit, FindsAFluxToTheNorthInEveryTile) {
     expectFound([](Replica& terrain, int column, int row) { northOf(memoryOf(terrain)).row(row)[column] = 1; });
+}
+
+// A cell at the western or southern rim gains what such a flux brings over the rim.
+TEST(Audit, FindsAFluxOverTheWesternRimInEveryTileThere) {
+    expectFoundIn([](const sand::CellRect& cells) { return cells.x0 == 0; },
+                  [](Replica& terrain, int, int row) { eastOf(memoryOf(terrain)).row(row)[-1] = 1; });
+}
+
+TEST(Audit, FindsAFluxOverTheSouthernRimInEveryTileThere) {
+    expectFoundIn([](const sand::CellRect& cells) { return cells.y0 == 0; },
+                  [](Replica& terrain, int column, int) { northOf(memoryOf(terrain)).row(-1)[column] = 1; });
+}
+
+// An audit must not take sand that falls over an open rim for corrupted memory.
+TEST(Audit, LeavesSandThatFallsOverAnOpenRim) {
+    scene::Scene scene = samples::flatScene(40, 40);
+    scene.rules.rim = sand::Rim::open;
+    scene.rules.sweepsPerStep = 1;
+    for (int y = 0; y < 40; ++y) {
+        std::fill_n(scene.terrain.row(y), 40, 12 * sand::kUnitsPerCell);
+    }
+    Replica audited(scene), other(scene);
+    int west = 0, south = 0;  // steps after which sand falls there
+    do {
+        const sand::Step step{1, audited.stepNumber() + 1, false, {}};
+        audited.apply(step);
+        other.apply(step);
+        west += eastOf(memoryOf(audited)).row(20)[-1] != 0 ? 1 : 0;
+        south += northOf(memoryOf(audited)).row(-1)[20] != 0 ? 1 : 0;
+        audited.audit(audited.hashTiles().tileCount());
+        ASSERT_EQ(audited.stateHash(), other.stateHash()) << "step " << step.number;
+    } while (!audited.settled() && audited.stepNumber() < 3000);
+    EXPECT_TRUE(audited.settled());
+    EXPECT_GT(west, 10);
+    EXPECT_GT(south, 10);
 }
 
 // Sand in a cell with such a mark would slide although it is not steep enough to start.

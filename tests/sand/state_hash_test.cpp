@@ -3,11 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <map>
 #include <string>
 
 #include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
+#include "tests/support/distinct_hashes.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -18,6 +18,7 @@ using sand::Edit;
 using sand::Replica;
 using sand::Step;
 using sand::Tuning;
+using test::DistinctHashes;
 
 constexpr int kSide = 40;  // [cell]
 
@@ -38,20 +39,8 @@ Edit loadOf(int age, std::int64_t outflow) {
     return Edit::loaded(sand::grid::Snapshot(field, sand::grid::Inertia(age), outflow).encode());
 }
 
-/// Adds a name for `hash`, and expects that no other name has it.
-class Hashes {
-public:
-    void add(const std::string& name, std::uint64_t hash) {
-        const auto [found, isNew] = names_.emplace(hash, name);
-        EXPECT_TRUE(isNew) << name << " has the hash of " << found->second;
-    }
-
-private:
-    std::map<std::uint64_t, std::string> names_;
-};
-
 TEST(StateHash, TellsThePlaceOfTheToolAndWhetherItIsEngaged) {
-    Hashes hashes;
+    DistinctHashes hashes;
     const std::uint64_t plain = hashAfter([](Step&) {});
     hashes.add("plain", plain);
     EXPECT_EQ(hashAfter([](Step& step) { step.epoch = 7; }), plain) << "the state does not hold the epoch";
@@ -72,7 +61,7 @@ TEST(StateHash, TellsThePlaceOfTheToolAndWhetherItIsEngaged) {
 }
 
 TEST(StateHash, TellsTheAgeOfTheInertiaAndTheOutflow) {
-    Hashes hashes;
+    DistinctHashes hashes;
     for (const int age : {0, 1, 2, 1000}) {
         const Replica terrain = after([age](Step& step) { step.edit = loadOf(age, 0); });
         ASSERT_EQ(terrain.leftOut(), "");
@@ -85,7 +74,7 @@ TEST(StateHash, TellsTheAgeOfTheInertiaAndTheOutflow) {
 }
 
 TEST(StateHash, TellsTheHeadingThatAHandHasTurnedTheToolTo) {
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("not turned", hashAfter([](Step&) {}));
     for (const double degrees : {90.0, -90.0, 180.0, 0.01}) {
         for (const bool mirrored : {false, true}) {
@@ -98,7 +87,7 @@ TEST(StateHash, TellsTheHeadingThatAHandHasTurnedTheToolTo) {
 }
 
 TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("not tuned", hashAfter([](Step&) {}));
     const auto tuned = [](const std::function<void(Tuning&)>& change) {
         return hashAfter([&](Step& step) {
@@ -134,7 +123,7 @@ TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
 
 // The operator turns the tool, and a hand turns it back. The rules have another heading than the hand.
 TEST(StateHash, TellsTheHeadingOfTheRulesFromThatOfTheHand) {
-    Hashes hashes;
+    DistinctHashes hashes;
     for (const double ofRules : {0.0, 90.0}) {
         for (const double ofHand : {0.0, 45.0, 90.0}) {
             Replica terrain(samples::flatScene(kSide, kSide));

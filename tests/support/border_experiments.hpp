@@ -145,13 +145,13 @@ inline Steepness wetBank(int n, double start) {
 /// Level sand on both sides of a wall one cell wide, and in a pocket of walls.
 inline Case walled(const Ground& ground, int n, sand::ToolKind kind) {
     Case given = caseOf(ground, n);
-    const int thick = 1, middle = n / 2, from = 11 * n / 16, to = 14 * n / 16;
+    const int middle = n / 2, from = 11 * n / 16, to = 14 * n / 16;
     const double scale = n / 64.0;
     given.tool = kind;
     given.radius = 4 * scale;
     given.height = [=](double, double) { return 8 * scale; };
     given.wall = [=](int x, int y) {
-        const bool line = x >= middle && x < middle + thick;
+        const bool line = x == middle;
         const bool inside = x > from && x < to && y > from && y < to;
         const bool box = x >= from && x <= to && y >= from && y <= to;
         return line || (box && !inside);

@@ -52,8 +52,8 @@ public:
     [[nodiscard]] std::int64_t takeOutflow() { return std::exchange(outflow_, 0); }
     /// Writes the sand to the layer. Adds the vertices whose volume has changed to `moved`.
     void store(VertexSand& layer, std::vector<Vertex>& moved) const;
-    /// Writes to the layer which sand moves: that of the vertices at which sand flowed in the last
-    /// sweep since begin(). Adds the vertices at which this has changed to `changed`.
+    /// Writes to the layer which sand moves: that of the vertices at which sand flowed in the last sweep since begin().
+    /// Adds the vertices at which this has changed to `changed`.
     void storeMotion(VertexSand& layer, std::vector<Vertex>& changed);
     /// Returns whether sweeps have visited so many vertices at rest that forgetting them would have cost less.
     [[nodiscard]] bool manyRest() const;

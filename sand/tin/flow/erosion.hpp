@@ -75,8 +75,7 @@ public:
     /// again.
     ///
     /// Adds the vertices that moved, began to move or stopped to `moved`, in ascending order, each once. The cost grows
-    /// with the amount of moving
-    /// sand. It is negligible when all sand is at rest.
+    /// with the amount of moving sand. It is negligible when all sand is at rest.
     int sweep(VertexSand& layer, int sweeps, const Underside* held, std::vector<Vertex>& moved);
     /// Runs at most `most` sweeps without momentum and without an obstacle, fewer if all sand is at rest before.
     /// Returns their number. Sand needs more sweeps than with sweep(), but the pile is more accurate.

@@ -2,7 +2,9 @@
 // One sub-step of a tool beside a hole: each part of the ground around the tool shares out its own sand.
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "sand/tin/tool/displacement.hpp"
 
@@ -73,7 +75,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         return std::exchange(receivers_, {});
     };
     const std::vector<Receiver> ahead = receiversOf(press.ahead.x == 0 && press.ahead.y == 0);
-    const std::vector<Receiver> around = receiversOf(true);
+    std::optional<std::vector<Receiver>> around;  // found when a part first has no receiver ahead
     std::vector<Vertex> parts;
     std::transform(cuts.begin(), cuts.end(), std::back_inserter(parts),
                    [&](const Cut& cut) { return partOf(cut.vertex); });
@@ -88,11 +90,16 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
                 taken_ += cut.taken;
             }
         }
-        for (const auto* ring : {&ahead, &around}) {
-            if (receivers_.empty()) {
-                std::copy_if(ring->begin(), ring->end(), std::back_inserter(receivers_),
-                             [&](const Receiver& receiver) { return partOf(layer, receiver) == part; });
+        const auto takeOurs = [&](const std::vector<Receiver>& ring) {
+            std::copy_if(ring.begin(), ring.end(), std::back_inserter(receivers_),
+                         [&](const Receiver& receiver) { return partOf(layer, receiver) == part; });
+        };
+        takeOurs(ahead);
+        if (receivers_.empty()) {
+            if (!around) {
+                around = receiversOf(true);
             }
+            takeOurs(*around);
         }
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
             addNeighbours(layer, press.at, [&](Vertex vertex) { return partOf(vertex) == part; });

@@ -5,6 +5,7 @@
 #include <memory>
 #include <random>
 
+#include "tests/sand/tin/level_scene.hpp"
 #include "tests/sand/tin/tin_terrain.hpp"
 #include "tests/support/tin_piles.hpp"
 
@@ -17,19 +18,12 @@ using sand::Step;
 using tin_samples::TinTerrain;
 using tin_samples::verticesOf;
 
-/// Returns level sand on random points. Its tool is a quarter as wide as the field and is pressed at random places.
+/// Returns level sand. Its tool is a quarter as wide as the field and is pressed at random places.
 scene::Scene levelSand(int side, std::uint32_t seed) {
-    sand::tin::TinStart start = tin_piles::levelStart(side, seed);
-    start.settings.spacing = start.settings.maxError = 0;
-    start.settings.mostVertices = 1 << 19;
-    scene::Scene scene;
-    scene.rules.columns = scene.rules.rows = side;
-    scene.rules.threshold = 65536;
-    scene.rules.startThreshold = 65536 + 65536 / 1000;
+    scene::Scene scene = tin_samples::levelScene(side, seed);
     scene.rules.sweepsPerStep = 64;
     scene.rules.toolKind = sand::ToolKind::circle;
     scene.rules.toolRadius = 13 * sand::kProbePerCell;
-    scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }
 

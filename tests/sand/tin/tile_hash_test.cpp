@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <map>
 #include <string>
 
+#include "tests/support/distinct_hashes.hpp"
 #include "tests/support/tin_piles.hpp"
 
 namespace tin_hash {
@@ -19,6 +19,7 @@ using sand::tin::TileHash;
 using sand::tin::TinState;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
+using test::DistinctHashes;
 
 constexpr std::int32_t kSide = 2560;  // [probe unit]
 
@@ -33,21 +34,9 @@ VertexSand layerWith(const std::vector<Place>& places) {
     return layer;
 }
 
-/// Adds a name for `hash`, and expects that no other name has it.
-class Hashes {
-public:
-    void add(const std::string& name, std::uint64_t hash) {
-        const auto [found, isNew] = names_.emplace(hash, name);
-        EXPECT_TRUE(isNew) << name << " has the hash of " << found->second;
-    }
-
-private:
-    std::map<std::uint64_t, std::string> names_;
-};
-
 // Vertices, volumes and constraints are the same. Only the place of one vertex is another.
 TEST(TinHash, TellsThePlaceOfAVertex) {
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("here", hashOf(layerWith({{1000, 1200}})));
     hashes.add("farther east", hashOf(layerWith({{1001, 1200}})));
     hashes.add("farther north", hashOf(layerWith({{1000, 1201}})));
@@ -56,7 +45,7 @@ TEST(TinHash, TellsThePlaceOfAVertex) {
 }
 
 TEST(TinHash, TellsWhichVertexHasWhichPlaceAndVolume) {
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("one", hashOf(layerWith({{1000, 1200}})));
     hashes.add("one and one", hashOf(layerWith({{1000, 1200}, {300, 400}})));
     hashes.add("places exchanged", hashOf(layerWith({{300, 400}, {1000, 1200}})));
@@ -76,7 +65,7 @@ TEST(TinHash, TellsEveryConstraint) {
         layer.constrain(from, to);
         return hashOf(layer);
     };
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("none", hashOf(layerWith({{1000, 1200}, {1400, 1500}, {700, 1800}})));
     hashes.add("4 to 5", constrained(4, 5));
     hashes.add("4 to 6", constrained(4, 6));
@@ -95,7 +84,7 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
         change(state);
         return hashOf(layer, state);
     };
-    Hashes hashes;
+    DistinctHashes hashes;
     hashes.add("nothing", hashOf(layer));
     hashes.add("an imprint", with([](TinState&) {}));
     hashes.add("outflow", with([](TinState& state) { state.outflow = 1; }));
