@@ -21,7 +21,8 @@ install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DE
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
     scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/environment.py
-    scripts/events.py scripts/failed_processes.py scripts/film.py scripts/job_log.py scripts/job_stream.py
+    scripts/events.py scripts/failed_processes.py scripts/film.py scripts/first_frame.py scripts/job_log.py
+    scripts/job_stream.py
     scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py scripts/open_mpi.py scripts/pointer.py
     scripts/process_failure.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py
     scripts/screens.py scripts/server_watch.py scripts/session_control.py scripts/session_folder.py

@@ -17,6 +17,7 @@ import threading
 import time
 
 import checked_json
+import first_frame
 import open_mpi
 import session_folder
 from rank_hosts import HERE, BadInput
@@ -355,17 +356,20 @@ def show(hosts, as_json):
     return 1 if red else 0
 
 
-def examine(hosts, wall_text, node, master, out, gl, as_json=False):
-    """Checks this machine and the host of every rank. `wall_text` is None if the hosts come from a file of hosts.
+def examine(hosts, wall, node, master, out, gl, as_json=False, options=()):
+    """Checks this machine and the host of every rank. `wall` is the path of the wall file, or None if `hosts` are the slots of a file of hosts.
 
-    Returns the exit status of show().
+    `options` are those of the coming session for all its hosts, such as --network. Returns the exit status of show().
     """
-    here, *others = machines(hosts, wall_text is not None)
+    text = None if wall is None else pathlib.Path(wall).read_text(encoding="utf-8")
+    here, *others = machines(hosts, wall is not None)
     build, _ = version_of(node)
-    doctor = Doctor(node, build, wall_text, gl)
+    doctor = Doctor(node, build, text, gl)
     check_master(here, master, build)
     check_out(here, out)
     doctor.examine(here)  # first, because the other hosts are compared with this machine
     with concurrent.futures.ThreadPoolExecutor(MOST_HOSTS_AT_ONCE) as pool:
         list(pool.map(doctor.examine, others))
+    if not any(is_red(good, details) for host in (here, *others) for good, _, _, details in host.findings):
+        first_frame.check_hosts(here, hosts, wall, gl, options)
     return show([here, *others], as_json)

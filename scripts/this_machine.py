@@ -4,15 +4,13 @@
 import math
 import os
 import subprocess
-import sys
-import tempfile
 
 import doctor
+import first_frame
 import layout
 import screens
 from rank_hosts import HERE, BadInput
 
-START_SECONDS = 60
 # Memory of a session on the desktop wall: three processes, and what each cell of the field adds to all of them. The scene
 # sandbox took 93 MiB, and 82 bytes per cell up to 2048 x 2048 cells. Sand that was dug is drawn in more detail, so there is
 # room for twice as much.
@@ -22,21 +20,9 @@ FIELD_SIDES = (512, 1024, 2048, 4096)
 
 
 def check_start(host, chosen):
-    """Adds whether a session shows a frame here. A version alone does not show that, nor does an mpirun that starts other programs.
-
-    The session is one of the desktop wall, in memory unless a backend was chosen.
-    """
+    """Adds whether a session shows a frame on the desktop wall. It draws in memory unless a backend was chosen."""
     variables = {name: value for name, value in os.environ.items() if name != "DISPLAY" or chosen == "glfw"}
-    with tempfile.TemporaryDirectory(prefix="sandwall-doctor-") as folder:
-        command = [sys.executable, str(layout.HERE / "sandwall"), "run", "--wall", "desktop", "--scene", "sandbox", "--frames", "1",
-                   "--here", "--gl", chosen, "--journal", "off", "--no-pictures", "--restarts", "0", "--out", os.path.join(folder, "out")]
-        try:
-            ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
-                                   timeout=START_SECONDS, check=False, env=variables)
-            complaint = "" if ended.returncode == 0 else doctor.last_line(ended.stderr) or f"exit status {ended.returncode}"
-        except subprocess.TimeoutExpired:
-            complaint = f"a session shows no frame within {START_SECONDS} s"
-    host.add(not complaint, "start", complaint.removeprefix("sandwall: ") or "a session shows a frame")
+    first_frame.check(host, "desktop", chosen, options=["--here"], variables=variables)
 
 
 def check_launcher(host):

@@ -55,7 +55,7 @@ class Doctor(LauncherTest):
         self.script("agent", AGENT)
         self.script("sandwall-render-node", NODE)
         self.script("sandwall-master", NODE)
-        self.script("mpirun", "#!/bin/sh\necho 'mpirun (Open MPI) 4.1.4'\n")
+        self.script("mpirun", "#!/bin/sh\necho \"$*\" >\"${0%/*}/started\"\n[ -z \"$MPI_FAULT\" ] || { echo \"$MPI_FAULT\" >&2; exit 1; }\n")
         for name, text in (("date", DATE), ("sed", SED), ("bash", BASH)):
             self.script(name, text)
         self.name = socket.gethostname()
@@ -93,7 +93,8 @@ class Doctor(LauncherTest):
         status, found = self.examine(["sound1", "-", "sound1", "sound1"])
         self.assertEqual((status, self.reds(found)), (0, 0), found)
         self.assertEqual([check for host, check in found if host == self.name],
-                         ["master", "disk", "build", "mpi", "memory", "gl"])
+                         ["master", "disk", "build", "mpi", "memory", "gl", "start"])
+        self.assertEqual(found[self.name, "start"][1], "a session shows a frame on 4 ranks")
         self.assertEqual([check for host, check in found if host == "sound1"],
                          ["ssh", "build", "mpi", "memory", "clock", "ports", "gl"])
         self.assertEqual(found["sound1", "build"][1], "0123456789abcdef")
@@ -101,6 +102,24 @@ class Doctor(LauncherTest):
         self.assertEqual(found["sound1", "gl"][1], "ranks 1, 3-4: auto: made-up renderer")
         self.assertEqual(found[self.name, "gl"][1], "rank 2: auto: made-up renderer")
         self.assertRegex(found["sound1", "ports"][1], r"connects to this machine at 127\.0\.0\.1, port \d+")
+
+    def test_hosts_on_which_no_session_starts_are_red_at_the_end(self):
+        self.environment["MPI_FAULT"] = "no daemon on sound1"
+        status, found = self.examine(["sound1", "-"])
+        self.assertEqual((status, self.reds(found)), (1, 1), found)
+        self.assertEqual(found[self.name, "start"], ("RED", "no daemon on sound1"))
+
+    def test_the_session_that_is_tried_has_the_hosts_and_options_of_the_coming_one(self):
+        self.assertEqual(self.examine(["sound1", "-", "sound1"], "--network", "127.0.0.0/8", "--env", "MADE_UP_NAME=1")[0], 0)
+        started = (self.folder / "bin" / "started").read_text()
+        self.assertRegex(started, r"btl_tcp_if_include 127\.0\.0\.0/8 .*-x MADE_UP_NAME ")
+        self.assertRegex(started, r"--host sound1:1 .* : -n 1 --host localhost:1 .* : -n 1 --host sound1:1 ")
+        self.assertIn(" --frames 1 ", started)
+        self.assertNotIn("--resume", started)
+
+    def test_no_session_is_tried_where_another_check_is_red(self):
+        self.only_red("narrow1", "screen")
+        self.assertFalse((self.folder / "bin" / "started").exists())
 
     def test_one_machine_needs_no_ssh(self):
         self.environment["OMPI_MCA_plm_rsh_agent"] = "/nowhere/ssh"
