@@ -7,7 +7,7 @@ set -euo pipefail
 
 usage() {
     cat >&2 <<'END'
-usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--hosts N] [--spares N] [--cut HOST@SECONDS] [-- OPTION...]
+usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--hosts N] [--spares N] [--cut HOST@SECONDS] [--doctor] [-- OPTION...]
        scripts/emulate_cluster.sh --check          # exit status 0 if this machine can emulate hosts, else 1
        scripts/emulate_cluster.sh --tear-down      # removes the namespaces of a killed run
   --wall, --scene   default: walls/configs/tiled_3x4.toml, scenes/writing.toml
@@ -15,6 +15,7 @@ usage: scripts/emulate_cluster.sh --out DIR [--wall FILE] [--scene FILE] [--host
                     one host per rank)
   --spares N        number of spare hosts, which draw only when another host cannot (default: 0)
   --cut node03@10   takes the link of node03 down 10 seconds after the first frame; can be repeated
+  --doctor          examines all hosts before the session, and ends with status 1 if a check is red
   --rate RATE       rate of every link in both directions (default: 1gbit)
   OPTION            more options of sandwall run, such as --steps 600
 END
@@ -24,7 +25,7 @@ END
 root=$(cd "$(dirname "$0")/.." && pwd)
 bin=${SANDWALL_BIN:-$root/build/release/bin}
 wall=$root/walls/configs/tiled_3x4.toml scene=$root/scenes/writing.toml
-out='' hosts='' spares=0 rate=1gbit cuts=() more=()
+out='' hosts='' spares=0 rate=1gbit doctor='' cuts=() more=()
 network=10.77.0
 prefix=sandwall-emulated-
 
@@ -65,6 +66,7 @@ while [[ $# -gt 0 ]]; do
         --hosts) [[ ${2:?} =~ ^[1-9][0-9]*$ ]] || usage; hosts=$2; shift 2 ;;
         --spares) spares=${2:?}; shift 2 ;;
         --cut) [[ ${2:?} =~ ^node[0-9]+@[0-9.]+$ ]] || usage; cuts+=("$2"); shift 2 ;;
+        --doctor) doctor=1; shift ;;
         --rate) rate=${2:?}; shift 2 ;;
         --check)
             need ip; need tc; need unshare
@@ -153,6 +155,9 @@ exec ip netns exec "$mine\$host" unshare --uts --mount sh -c "hostname \$host; m
 END
 chmod +x "$folder/agent"
 
+# on_head COMMAND...: runs a command on the master's host.
+on_head() { exec ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$@"; }
+
 # cut HOST SECONDS: takes the link of HOST down SECONDS after the first frame.
 cut() {
     until [[ -S $out/control ]]; do sleep 0.1; done
@@ -170,8 +175,9 @@ echo "emulate_cluster.sh: $hosts hosts for $ranks render ranks, $spares spares, 
 export OMPI_MCA_plm_rsh_agent=$folder/agent TMPDIR=$folder/tmp-head
 mkdir -p "$TMPDIR"
 status=0
-ip netns exec "${mine}head" unshare --uts sh -c 'hostname head; exec "$@"' sh "$root/scripts/sandwall" run \
-    --wall "$wall" --scene "$scene" --gl "$gl" --out "$out" --hosts "$folder/hosts" --network "$network.0/24" "${more[@]}" &
+hosts_options=(--gl "$gl" --out "$out" --network "$network.0/24")
+[[ -z $doctor ]] || (on_head "$root/scripts/sandwall" doctor "$folder/hosts" "${hosts_options[@]}") || exit 1
+on_head "$root/scripts/sandwall" run --wall "$wall" --scene "$scene" --hosts "$folder/hosts" "${hosts_options[@]}" "${more[@]}" &
 session=$!
 trap 'kill -INT $session 2>/dev/null' INT TERM HUP
 # A signal ends `wait` before the session ends.

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs the sessions in which systems and versions of Open MPI differ, and checks each (docs/testing.md).
 
-A rank is killed, and the session continues by itself. It is ended and resumed. Then an emulated cluster runs in which each host
-comes several times, and one in which a spare takes the place of a host that is cut off. Each rank must run on its host, and the
-hash must equal that of a replay of the journal. The exit status is 0 if all of this holds, else 1.
+A rank is killed, and the session continues by itself. It is ended and resumed. Then the doctor examines an emulated cluster
+in which each host comes several times, and a session runs there. In another emulated cluster, a spare takes the place of a
+host that is cut off. Each rank must run on its host, and the hash must equal that of a replay of the journal. The exit status
+is 0 if all of this holds, else 1.
 """
 
 import json
@@ -120,7 +121,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     names = [f"node{number:02d}" for number in range(1, HOSTS + 1)]
     tests = {"kill_and_resume": lambda folder: kill_and_resume(folder),
-             "hosts_that_come_again": lambda folder: emulated(folder, [], ["--steps", "60"], dealt(names)),
+             "hosts_that_come_again": lambda folder: emulated(folder, ["--doctor"], ["--steps", "60"], dealt(names)),
              "a_host_is_cut_off": lambda folder: emulated(folder, ["--spares", "1", "--cut", "node02@4"], ["--steps", "1500"],
                                                           dealt(["node01", f"node{HOSTS + 1:02d}", *names[2:]]))}
     failed = 0
