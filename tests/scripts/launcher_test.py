@@ -5,6 +5,7 @@
 import contextlib
 import os
 import pty
+import re
 import shlex
 import signal
 import socket
@@ -165,7 +166,7 @@ class Values(LauncherTest):
         for rank in range(3):
             self.assertEqual((self.folder / f"listed.values.{rank}").read_text(), "given-77aa31 taken-5c1f09\n")
             lines = (self.folder / f"listed.{rank}").read_text(errors="replace").splitlines()
-            self.assertTrue(any("orted" in line for line in lines), "the daemon of node1 is not in the list")
+            self.assertTrue(any(re.search("orted|prted", line) for line in lines), "the daemon of node1 is not in the list")
             self.assertFalse([line for line in lines if "taken-5c1f09" in line])
             self.assertTrue(all("scripts/sandwall run" in line for line in lines if "given-77aa31" in line))
 

@@ -61,8 +61,8 @@ std::optional<fs::path> fileWithEnding(const std::vector<fs::path>& files, std::
 
 /// Refuses an EHdr raster whose header does not say how many bits a number has, unless they are what ESRI's manual says
 /// for its ending. GDAL divides the size of the file by the number of cells.
-void checkBits(const GdalRaster& raster, const fs::path& data, const std::optional<fs::path>& header) {
-    if (!header || valueIn(*header, "nbits")) {
+void checkBits(const GdalRaster& raster, const fs::path& data, const fs::path& header) {
+    if (valueIn(header, "nbits")) {
         return;
     }
     const bool floats = base::endingOf(data) == ".flt";
@@ -96,6 +96,26 @@ std::uint64_t cellBytes(const GdalRaster& raster) {
            static_cast<std::uint64_t>(GDALGetRasterCount(raster.dataset())) * static_cast<std::uint64_t>(bits) / 8;
 }
 
+/// Returns the number behind `key` in a header as bytes or bits, or `missing` without a number that a file can have.
+std::uint64_t countIn(const fs::path& header, std::string_view key, std::uint64_t missing) {
+    const double number = base::numberOf(valueIn(header, key).value_or("")).value_or(-1);
+    return number >= 0 && number <= 1e15 ? static_cast<std::uint64_t>(number) : missing;
+}
+
+/// Refuses an EHdr raster whose file ends before its last row. Rows may have padding, and numbers less than a byte.
+/// GDAL 3.10 reads zeros behind the end.
+void checkRows(const GdalRaster& raster, std::uintmax_t bytes, const fs::path& header) {
+    const auto columns = static_cast<std::uint64_t>(raster.columns()), rows = static_cast<std::uint64_t>(raster.rows());
+    const auto bands = static_cast<std::uint64_t>(GDALGetRasterCount(raster.dataset()));
+    const int bits = GDALGetDataTypeSizeBits(GDALGetRasterDataType(raster.band()));
+    const std::uint64_t row = (columns * countIn(header, "nbits", static_cast<std::uint64_t>(bits)) + 7) / 8;
+    const std::uint64_t step = std::max(countIn(header, "totalrowbytes", 0), countIn(header, "bandrowbytes", row));
+    const std::uint64_t skipped = countIn(header, "skipbytes", 0);
+    const std::uint64_t needed = skipped + std::max(row * rows * bands, step * (rows - 1) + row);
+    const bool padded = step != row || valueIn(header, "bandgapbytes").has_value();
+    checkSize(raster, bytes, needed, skipped == 0 && !padded);
+}
+
 std::string beginOf(const fs::path& file) {
     constexpr std::size_t kMostHeader = 1 << 20;  // [byte]
     std::string begin(kMostHeader, '\0');
@@ -111,14 +131,9 @@ void checkSizes(const GdalRaster& raster, const std::vector<fs::path>& files) {
     const std::uintmax_t bytes = fs::file_size(data);
     constexpr std::uint64_t kPcrasterHeader = 256;
     if (driver == "EHdr") {
-        const std::optional<fs::path> header = fileWithEnding(files, ".hdr");
-        checkBits(raster, data, header);
-        // Numbers of less than a byte, and rows with padding, are left to GDAL, which reports their ends.
-        if (header && !valueIn(*header, "totalrowbytes") && !valueIn(*header, "bandrowbytes") &&
-            !valueIn(*header, "bandgapbytes")) {
-            const bool skips = valueIn(*header, "skipbytes").has_value();
-            const std::string bits = valueIn(*header, "nbits").value_or("8");
-            checkSize(raster, bytes, base::numberOf(bits).value_or(8) < 8 ? 0 : cellBytes(raster), !skips);
+        if (const std::optional<fs::path> header = fileWithEnding(files, ".hdr")) {
+            checkBits(raster, data, *header);
+            checkRows(raster, bytes, *header);
         }
     } else if (driver == "ENVI") {
         const std::optional<fs::path> header = fileWithEnding(files, ".hdr");
@@ -127,6 +142,11 @@ void checkSizes(const GdalRaster& raster, const std::vector<fs::path>& files) {
         const auto behind = static_cast<std::uint64_t>(std::clamp(skipped, 0.0, 1e15));
         if (!header || valueIn(*header, "file compression").value_or("0") == "0") {
             checkSize(raster, bytes, behind + cellBytes(raster), behind == 0);
+        }
+    } else if (driver == "ERS") {
+        const fs::path cells = fs::path(data).replace_extension();
+        if (std::error_code none; fs::is_regular_file(cells, none)) {
+            checkSize(raster, fs::file_size(cells), countIn(data, "headeroffset", 0) + cellBytes(raster), false);
         }
     } else if (driver == "RST" || driver == "SAGA" || driver == "ROI_PAC") {
         checkSize(raster, bytes, cellBytes(raster), true);
