@@ -2,26 +2,9 @@
 // The force thread must not allocate memory, because that may take longer than its millisecond.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <new>
-
 #include "tests/sand/force/force_samples.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
-
-namespace {
-thread_local int asked = 0;
-}  // namespace
-
-// Not inlined, because g++ would otherwise warn that memory of malloc is given to delete, and memory of new to free.
-[[gnu::noinline]] void* operator new(std::size_t size) {
-    ++asked;
-    if (void* memory = std::malloc(size > 0 ? size : 1)) {
-        return memory;
-    }
-    throw std::bad_alloc();
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/heap_count.hpp"
 
 namespace {
 
@@ -41,7 +24,7 @@ TEST(ForceModel, AsksForNoMemory) {
             constants.between = between;
             sand::force::ForceModel model(constants);
             double sum = 0;
-            const int before = asked;
+            const long before = test::heapRequests();
             for (int tick = 0; tick < 100; ++tick) {
                 const int step = tick / 16;
                 sum += model
@@ -49,11 +32,11 @@ TEST(ForceModel, AsksForNoMemory) {
                                placeAt(kRadius, kRadius * tick / 20), tick * kTick)
                            .push.z;
             }
-            EXPECT_EQ(asked, before);
+            EXPECT_EQ(test::heapRequests(), before);
             EXPECT_GT(sum, 0);
         }
     }
-    EXPECT_GT(asked, 0) << "nobody counted";
+    EXPECT_GT(test::heapRequests(), 0) << "nobody counted";
 }
 
 }  // namespace

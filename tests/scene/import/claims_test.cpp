@@ -123,7 +123,8 @@ TEST_F(Claims, NoFormatIsReadWhenItIsCut) {
         const std::string file = folder + "/t." + form.ending;
         if (test::writeForm(form, file) && test::valuesOf(file, form.driver)) {
             std::string data = form.driver == "ERS" ? folder + "/t" : form.driver == "ILWIS" ? folder + "/t.mp#" : file;
-            std::filesystem::resize_file(data, std::filesystem::file_size(data) * 6 / 10);
+            // GDAL writes up to 1.75 times the bytes that a header with NBITS=4 says.
+            std::filesystem::resize_file(data, std::filesystem::file_size(data) / 2);
             const std::string refused =
                 test::refusalOf([&] { (void)scene::loadImporter("test").readDem(file, scene::RasterCheck{}); });
             // AAIGrid is only opened for its units: readEsriGrid() reads its heights.
@@ -161,11 +162,18 @@ TEST_F(Claims, ASurferTextHasAllItsNumbersAndNoOthers) {
     EXPECT_NE(refusedRaster("t.grd").find("but there are 7"), std::string::npos);
 }
 
+// GDAL 3.6 has no type for bytes with a sign, and takes those of other signs for them.
+#if GDAL_VERSION_NUM >= GDAL_COMPUTE_VERSION(3, 7, 0)
+constexpr int kNegative = 0;
+#else
+constexpr int kNegative = 256;
+#endif
+
 TEST_F(Claims, SignedBytesHaveTheirSign) {
     const auto heights = [&](std::optional<double> noData) {
         writeRaster("t.tif", {.columns = 3,
                               .rows = 1,
-                              .heights = {253, 127, 128},
+                              .heights = {kNegative - 3, 127, kNegative - 128},
                               .type = GDT_Byte,
                               .noData = noData,
                               .options = {"PIXELTYPE=SIGNEDBYTE"}});
