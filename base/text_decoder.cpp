@@ -12,7 +12,6 @@ namespace {
 constexpr char32_t kMark = 0xFEFF;         // byte order mark; inside a text it is an invisible blank
 constexpr char32_t kReplacement = 0xFFFD;  // for half of a surrogate pair
 constexpr char32_t kNoBreakSpace = 0xA0;
-constexpr std::string_view kMarkOfUtf8 = "\xEF\xBB\xBF";
 
 std::uint8_t byteAt(std::string_view bytes, std::size_t at) { return static_cast<std::uint8_t>(bytes[at]); }
 
