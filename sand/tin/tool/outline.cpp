@@ -171,14 +171,15 @@ void drawSole(Drawing& drawing, double length, double width) {
 
 /// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. It is above the
 /// bowl by less than a fifteenth of the radius, within 0.98 of the outline, if points of the mesh are a sixth of the
-/// radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer ring. Otherwise
-/// triangles would reach from the outline over the ring. The narrow bowl of an ellipsoid needs more points inside.
+/// radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer rings. Otherwise
+/// triangles would reach from the outline over a ring. The narrow bowl of an ellipsoid needs more points inside.
 void drawBowl(Drawing& drawing, double length, double width) {
-    constexpr double kOuter = 0.96;
-    const Polygon outer = ellipse({0, 0}, kOuter * length, kOuter * width, 32);
-    // A ring so close to the outline that its triangles would be slivers is left out.
-    for (std::size_t i = 0; i < outer.size() && (1 - kOuter) * std::min(length, width) >= kShortest; ++i) {
-        drawing.edge(outer[i], outer[(i + 1) % outer.size()]);
+    for (const double share : {0.96, 0.99}) {
+        const Polygon ring = ellipse({0, 0}, share * length, share * width, 32);
+        // A ring so close to the outline that its triangles would be slivers is left out.
+        for (std::size_t i = 0; i < ring.size() && (1 - share) * std::min(length, width) >= kShortest; ++i) {
+            drawing.edge(ring[i], ring[(i + 1) % ring.size()]);
+        }
     }
     const bool narrow = width < length;
     const auto inner = [&](double share, int count) {
