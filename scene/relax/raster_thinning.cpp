@@ -68,7 +68,8 @@ Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
                                  .width = spacing.x * (raster.columns - 1),
                                  .depth = spacing.y * (raster.rows - 1)};
     const auto holes = sand::tin::holesOf(heights, cells);
-    const sand::tin::Border border = sand::tin::borderOf(heights, cells, holes.get(), goal.maxError);
+    const sand::tin::Border border = sand::tin::borderOf(heights, cells, holes.get(), goal.maxError,
+                                                         {.onOutline = sand::tin::usualOnOutline(cells)});
     if (border.places.size() + 4 > static_cast<std::size_t>(goal.maxVertices)) {
         throw base::InputError(
             fmt::format("{}: the outline of its cells without data takes {} vertices, and {} are the "

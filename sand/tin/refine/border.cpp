@@ -10,15 +10,13 @@
 namespace sand::tin {
 namespace {
 
-constexpr int kLongestEdge = 4;  // longest edge of an outline [cell]: sand beside it needs small triangles to flow
-
 std::int32_t wayBetween(const Place& a, const Place& b) { return std::abs(b.x - a.x) + std::abs(b.y - a.y); }
 
 class BorderMaker {
 public:
     BorderMaker(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
-                std::int32_t longestOnRim)
-        : heights_(heights), cells_(cells), holes_(holes), maxError_(maxError), longestOnRim_(longestOnRim) {
+                const LongestEdges& longest)
+        : heights_(heights), cells_(cells), holes_(holes), maxError_(maxError), longest_(longest) {
         for (const Place& corner : corners()) {
             numbers_.emplace(corner, static_cast<Vertex>(numbers_.size()));
         }
@@ -26,9 +24,8 @@ public:
 
     Border take() {
         if (holes_ != nullptr) {
-            const std::int32_t longest = kLongestEdge * std::max(cells_.spacing.x, cells_.spacing.y);
             for (const Holes::Part& part : holes_->outline()) {
-                const std::vector<Vertex> along = add(part.from, part.to, longest);
+                const std::vector<Vertex> along = add(part.from, part.to, longest_.onOutline);
                 for (std::size_t i = 1; i < along.size(); ++i) {
                     border_.edges.emplace_back(std::minmax(along[i - 1], along[i]));
                 }
@@ -176,7 +173,7 @@ private:
             // long.
             const Place middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
             if (!std::isnan(heightAt(middle))) {
-                add(a, b, longestOnRim_);
+                add(a, b, longest_.onRim);
             }
         }
     }
@@ -185,7 +182,7 @@ private:
     const Cells& cells_;
     const Holes* holes_;
     double maxError_;
-    std::int32_t longestOnRim_;
+    LongestEdges longest_;
     std::map<Place, Vertex> numbers_;  // of corners and border
     Border border_;
 };
@@ -209,8 +206,8 @@ std::shared_ptr<const Holes> holesOf(std::span<const double> heights, const Cell
 }
 
 Border borderOf(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
-                std::int32_t longestOnRim) {
-    return BorderMaker(heights, cells, holes, maxError, longestOnRim).take();
+                const LongestEdges& longest) {
+    return BorderMaker(heights, cells, holes, maxError, longest).take();
 }
 
 }  // namespace sand::tin

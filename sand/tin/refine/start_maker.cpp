@@ -66,24 +66,28 @@ std::int32_t widerSpacing(std::int32_t spacing, std::int32_t width, std::int32_t
     return spacing < std::max(width, depth) ? 2 * spacing : 0;
 }
 
-/// Returns a border with error `maxError`, or with a larger one if it would otherwise exceed `most` vertices. A closed
-/// rim gets fewer vertices first. Throws std::length_error if every border exceeds them.
+/// Returns a border with error `maxError`, or with a larger one if it would otherwise exceed `most` vertices. Outlines
+/// and a closed rim get fewer vertices first. Throws std::length_error if every border exceeds them.
 Border borderWithin(std::size_t most, std::span<const double> heights, const Cells& cells, const Holes* holes,
-                    std::int32_t longestOnRim, Rim rim, double maxError) {
-    const auto within = [&](double error) { return borderOf(heights, cells, holes, error, longestOnRim); };
+                    LongestEdges longest, Rim rim, double maxError) {
+    const auto within = [&](double error) { return borderOf(heights, cells, holes, error, longest); };
     Border border = within(maxError);
+    while (border.places.size() > most && longest.onOutline < usualOnOutline(cells)) {
+        longest.onOutline = std::min(2 * longest.onOutline, usualOnOutline(cells));
+        border = within(maxError);
+    }
     if (border.places.size() <= most) {
         return border;
     }
     Border least = within(kAnyError);
-    while (rim == Rim::closed && longestOnRim > 0 && least.places.size() > most) {
-        longestOnRim = widerSpacing(longestOnRim, cells.width, cells.depth);
+    while (rim == Rim::closed && longest.onRim > 0 && least.places.size() > most) {
+        longest.onRim = widerSpacing(longest.onRim, cells.width, cells.depth);
         least = within(kAnyError);
     }
     border = within(maxError);
     if (least.places.size() > most) {
         const std::string what = holes == nullptr ? "the open rim" : "the outline of cells without data";
-        throw std::length_error(what + (holes != nullptr && longestOnRim > 0 ? " and the open rim take " : " takes ") +
+        throw std::length_error(what + (holes != nullptr && longest.onRim > 0 ? " and the open rim take " : " takes ") +
                                 std::to_string(least.places.size()) + " vertices, and there is room for " +
                                 std::to_string(most) + " beside corners and points at 'widest'; raise 'vertices'");
     }
@@ -132,8 +136,10 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
     start.holes = holesOf(heights, cells);
     const Settings& settings = start.settings;
     const std::int64_t room = settings.mostVertices - Lattice(settings.widest).size(field.columns(), field.rows());
-    Border given = borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
-                                start.holes.get(), rimSpacing(settings), rim, settings.maxError);
+    const std::int32_t onRim = rimSpacing(settings);
+    Border given =
+        borderWithin(static_cast<std::size_t>(std::max<std::int64_t>(room - kCorners, 0)), heights, cells,
+                     start.holes.get(), {std::min(onRim, usualOnOutline(cells)), onRim}, rim, settings.maxError);
     // Round as the start does, because the errors must be those of its surface.
     for (double& height : given.heights) {
         height = nearestHeight(height);
