@@ -160,12 +160,14 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& a
     const int step = tin ? sand::kProbePerCell / 4 : sand::kProbePerCell;
     double most = 0;
     const auto holes = tin ? dynamic_cast<const sand::tin::TinSurface&>(sand.surface()).start().holes : nullptr;
+    const sand::Ground* const ground = tin ? nullptr : std::get<sand::GridData>(sand.surface().data()).ground;
     for (std::int32_t y = step / 2; y < sand.rules().rows * sand::kProbePerCell; y += step) {
         for (std::int32_t x = step / 2; x < sand.rules().columns * sand::kProbePerCell; x += step) {
             const sand::Offset offset{std::int64_t{x} - at.x, std::int64_t{y} - at.y};
             const sand::Offset wider{offset.x * 50 / 49, offset.y * 50 / 49};
             if (std::max(std::abs(offset.x), std::abs(offset.y)) > shape.radius || !turned.covers(wider) ||
-                (holes != nullptr && holes->holds({x, y}))) {
+                (holes != nullptr && holes->holds({x, y})) ||
+                (ground != nullptr && ground->isWall(x / sand::kProbePerCell, y / sand::kProbePerCell))) {
                 continue;
             }
             const double under = static_cast<double>(turned.underside(at.z, offset));

@@ -170,9 +170,10 @@ void drawSole(Drawing& drawing, double length, double width) {
 }
 
 /// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. It is above the
-/// bowl by less than a fifteenth of the radius, within 0.98 of the outline, if points of the mesh are a sixth of the
-/// radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer rings. Otherwise
-/// triangles would reach from the outline over a ring. The narrow bowl of an ellipsoid needs more points inside.
+/// bowl by less than a fifteenth of the radius, for an ellipsoid a fourteenth. This holds within 0.98 of the outline,
+/// if points of the mesh are a sixth of the radius apart. A bowl is steepest at its outline, so that edges must join
+/// the points of the outer rings. Otherwise triangles would reach from the outline over a ring. The narrow bowl of an
+/// ellipsoid needs more points inside.
 void drawBowl(Drawing& drawing, double length, double width) {
     for (const double share : {0.96, 0.99}) {
         const Polygon ring = ellipse({0, 0}, share * length, share * width, 32);

@@ -10,11 +10,13 @@ namespace {
 
 using borders::Case;
 using borders::Hand;
+using borders::kCoarse;
+using borders::kGrid;
+using borders::kGrounds;
+using borders::kSide;
+using borders::kTin;
 using enum sand::ToolKind;
 
-constexpr int kSide = 64;
-constexpr borders::Ground kGrid{}, kTin{.tin = true}, kCoarse{.tin = true, .widest = 16};
-constexpr std::array kGrounds{kGrid, kTin};
 constexpr std::array kTools{sphere, circle, rectangle, ellipse, ellipsoid, footprint};
 
 std::string nameOf(const borders::Ground& ground) { return ground.tin ? "TIN" : "grid"; }
@@ -45,23 +47,6 @@ TEST(Border, PilesLeanAgainstRimsCornersWallsAndRockAsInAMirror) {
                         << nameOf(ground) << ", face " << static_cast<int>(face) << ", prism " << prism << ", band "
                         << band;
                 }
-            }
-        }
-    }
-}
-
-// O5: a slope below the talus rests, also beside a wall and a closed rim.
-TEST(Border, ASlopeBelowTheTalusRestsBesideWalls) {
-    for (const borders::Ground& ground : kGrounds) {
-        Case given = borders::caseOf(ground, kSide);
-        given.height = [](double x, double) { return 0.95 * borders::kTalus * x; };
-        given.wall = [](int x, int) { return x == 40; };
-        sand::Replica sand(borders::sceneOf(given));
-        const sand::Replica before = sand;
-        ASSERT_TRUE(Hand(sand).rest(1)) << nameOf(ground);
-        for (int y = 0; y < kSide; ++y) {
-            for (int x = 0; x < kSide; ++x) {
-                ASSERT_EQ(borders::heightAt(sand, x + 0.5, y + 0.5), borders::heightAt(before, x + 0.5, y + 0.5));
             }
         }
     }
@@ -118,9 +103,11 @@ TEST(Border, SandPassesOverRockThatIsLowerThanIt) {
     EXPECT_GT(east, 1);
 }
 
-// A bowl in a mesh is made of triangles, which stand above it by less than a fifteenth of the radius.
+// A bowl in a mesh is made of triangles, which stand above it by less than a fifteenth of the radius. On a finer mesh a
+// tool has more of them.
 TEST(Border, NoSandStandsAboveTheUndersideOfATool) {
     using enum borders::Where;
+    EXPECT_LE(borders::underTool(kTin, 2 * kSide, sphere, hole), 0.4);
     for (const borders::Where where : {middle, rim, hole}) {
         for (const sand::ToolKind kind : {sphere, ellipsoid}) {
             EXPECT_LE(borders::underTool(kTin, kSide, kind, where), 0.4)

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "tests/support/border_experiments.hpp"
+
+/// Tools that are held in corners, half outside the field, and over walls, while the operator settles the sand.
+namespace borders {
+
+/// Place of a tool that is held, in fields with closed rims unless it says open.
+enum class HeldAt { inCorner, outsideCorner, outsideRim, outsideOpenRim, overWall, overPocket, overRock };
+inline constexpr std::array kHeldAt{HeldAt::inCorner, HeldAt::outsideCorner, HeldAt::outsideRim, HeldAt::outsideOpenRim,
+                                    HeldAt::overWall, HeldAt::overPocket,    HeldAt::overRock};
+inline std::string nameOf(HeldAt place) {
+    constexpr std::array kNames{"in a corner",        "beyond a corner",  "beyond a closed rim",
+                                "beyond an open rim", "over a thin wall", "over a pocket",
+                                "over rock"};
+    return kNames[static_cast<std::size_t>(place)];
+}
+
+struct HeldSettle {
+    double largest = 0;        // of the sand above the tool's underside [cell at n = 64]
+    std::int64_t changed = 0;  // of the volume of all sand with the outflow [volume unit]
+    double exchanged = 0;      // volume that has passed a wall [cell³]
+    bool still = false;        // whether a step after the settle moved nothing
+};
+
+/// A tool is dragged to its place and pressed a radius deep into uneven sand. The operator settles the sand.
+inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind, HeldAt place) {
+    const double scale = n / 64.0;
+    const bool walls = place == HeldAt::overWall || place == HeldAt::overPocket;
+    Case given = walls ? walled(ground, n, kind) : caseOf(ground, n);
+    given.tool = kind;
+    given.radius = 6 * scale;
+    given.sweeps = 4;
+    given.maxError = 0;  // because a vertex that is removed moves the surface beside it
+    given.rim = place == HeldAt::outsideOpenRim ? sand::Rim::open : sand::Rim::closed;
+    given.height = [=](double x, double y) {
+        return scale * (20 + 4 * std::sin(x / scale / 5) * std::cos(y / scale / 6));
+    };
+    if (place == HeldAt::overRock) {
+        given.rock = [=](double x, double) { return x > n / 2.0 && x < n / 2.0 + 2 * scale ? 14 * scale : 0; };
+    }
+    const auto [x, y] = [&]() -> std::pair<double, double> {
+        switch (place) {
+            case HeldAt::inCorner:
+                return {2.3, 1.8};
+            case HeldAt::outsideCorner:
+                return {-1.6, -2.1};
+            case HeldAt::outsideRim:
+            case HeldAt::outsideOpenRim:
+                return {64.7, 30.2};
+            case HeldAt::overPocket:
+                return {48.3, 47.6};
+            default:
+                return {32.6, 20.4};
+        }
+    }();
+    sand::Replica sand(sceneOf(given));
+    const sand::Replica before = sand;
+    Hand hand(sand);
+    hand.drag((x + 4) * scale, (y + 7) * scale, x * scale, y * scale, 20 * scale);
+    hand.hold(sand::Edit::settle);
+    for (int i = 0; i < 20000 && !sand.settled(); ++i) {
+        hand.hold();
+    }
+    HeldSettle result;
+    result.largest = overUnderside(sand, sand.probe()) / scale;
+    result.changed = sand.volume() + sand.outflow() - before.volume();
+    result.exchanged = given.rim == sand::Rim::open ? 0 : borders::exchanged(before, sand);
+    const auto settled = sand.copySand()->encode();
+    hand.hold();
+    result.still = sand.settled() && sand.copySand()->encode() == settled;
+    return result;
+}
+
+}  // namespace borders
