@@ -178,6 +178,9 @@ bool Holes::holds(std::int64_t x, std::int64_t y, int scale) const {
     if (isHole(column, row)) {
         return true;
     }
+    if (upright_ == outline_.size()) {  // there is no pinch, as in most scenes
+        return false;
+    }
     for (int north = 0; north < 2; ++north) {
         for (int east = 0; east < 2; ++east) {
             if (std::abs(x - std::int64_t{scale} * cells_.west(column + east)) < std::int64_t{scale} * bridge_ &&
