@@ -106,7 +106,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
             file, {.raster = [&](int columns, int rows) { master::requireMemoryOfRaster(hosts, columns, rows, file); },
                    .field = [&](int columns, int rows,
                                 bool tin) { master::requireMemory(hosts, columns, rows, tin, file); }});
-        for (const scene::RasterStatement& statement : scene.statements) {
+        for (const scene::RasterStatement& statement : *scene.statements) {
             host::printLine("{}: {}", statement.file, statement.text());
         }
         for (const std::string& warning : scene.warnings) {

@@ -33,7 +33,7 @@ struct Latency {
 /// The results of a session, which summary.json contains.
 struct Summary {
     std::string scene, wall;
-    std::vector<scene::RasterStatement> terrain;  // of the scene's files; empty in a session that was resumed
+    std::optional<std::vector<scene::RasterStatement>> terrain;  // of the scene's files; nullopt if unknown
     std::uint64_t frames = 0, steps = 0;
     std::uint64_t edits = 0;  // steps with an operator's edit
     int ranks = 0;

@@ -132,10 +132,13 @@ ordered_json rankPart(const Summary& summary, std::size_t index) {
             {"frame_buffer_bytes", report.frameBufferBytes}};
 }
 
-/// Returns what the numbers of each file of terrain mean.
-ordered_json jsonOf(const std::vector<scene::RasterStatement>& terrain) {
+/// Returns what the numbers of each file of terrain mean; null if that is unknown.
+ordered_json jsonOf(const std::optional<std::vector<scene::RasterStatement>>& terrain) {
+    if (!terrain) {
+        return nullptr;
+    }
     ordered_json json = ordered_json::array();
-    for (const scene::RasterStatement& file : terrain) {
+    for (const scene::RasterStatement& file : *terrain) {
         json.push_back({{"file", file.file},
                         {"across", file.across},
                         {"across_from", file.acrossFrom},

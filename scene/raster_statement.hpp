@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "base/byte_stream.hpp"
+
 namespace scene {
 
 /// Tells what the numbers of a terrain mean, and how the program knows it. Programs print it when they have read
@@ -17,6 +19,10 @@ struct RasterStatement {
 
     /// Returns "metres across (EPSG:32633), feet up (vertical datum), no data -9999 in 72 % of cells".
     [[nodiscard]] std::string text() const;
+
+    void encode(base::ByteWriter& writer) const;
+    /// Reads what encode() wrote. Throws base::FormatError for a share outside [0, 1], and for a text that is too long.
+    static RasterStatement decode(base::ByteReader& reader);
     friend bool operator==(const RasterStatement&, const RasterStatement&) = default;
 };
 

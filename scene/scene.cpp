@@ -1,21 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/scene.hpp"
 
+#include <algorithm>
+
 #include "sand/model/grid_codec.hpp"
 
 namespace scene {
 namespace {
 
 /// Parts that may follow a scene, each with its length in bytes.
-enum class Part : std::uint8_t { georeference = 1 };
+enum class Part : std::uint8_t { georeference = 1, statements = 2 };
+
+constexpr std::uint32_t kMostStatements = 16;  // a terrain has two files at most
+
+void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writer) {
+    writer.put(static_cast<std::uint8_t>(part));
+    writer.putBlock(bytes.bytes());
+}
+
+void encodeStatements(const std::vector<RasterStatement>& statements, base::ByteWriter& writer) {
+    base::ByteWriter part;
+    part.put(static_cast<std::uint32_t>(statements.size()));
+    for (const RasterStatement& statement : statements) {
+        statement.encode(part);
+    }
+    encodePart(Part::statements, part, writer);
+}
+
+std::vector<RasterStatement> decodeStatements(base::ByteReader& reader) {
+    const auto count = reader.get<std::uint32_t>();
+    if (count > kMostStatements) {
+        throw base::FormatError("a scene with too many files of terrain");
+    }
+    std::vector<RasterStatement> statements;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        statements.push_back(RasterStatement::decode(reader));
+    }
+    return statements;
+}
 
 void decodePart(base::ByteReader& reader, Scene& scene) {
-    const auto part = reader.get<std::uint8_t>();
+    const auto part = static_cast<Part>(reader.get<std::uint8_t>());
     base::ByteReader bytes(reader.getBlock());
-    if (part != static_cast<std::uint8_t>(Part::georeference)) {
-        throw base::FormatError("a scene with a part that this version does not know");
+    switch (part) {
+        case Part::georeference:
+            scene.georeference = Georeference::decode(bytes);
+            break;
+        case Part::statements:
+            scene.statements = decodeStatements(bytes);
+            break;
+        default:
+            throw base::FormatError("a scene with a part that this version does not know");
     }
-    scene.georeference = Georeference::decode(bytes);
     if (!bytes.atEnd()) {
         throw base::FormatError("a scene with a part that is longer than it should be");
     }
@@ -49,10 +85,27 @@ base::Bytes Scene::encode() const {
     if (georeference != Georeference{}) {
         base::ByteWriter part;
         georeference.encode(part);
-        writer.put(static_cast<std::uint8_t>(Part::georeference));
-        writer.putBlock(part.bytes());
+        encodePart(Part::georeference, part, writer);
+    }
+    // The last part, so that isEncodedAs() can leave it out.
+    if (statements) {
+        encodeStatements(*statements, writer);
     }
     return writer.take();
+}
+
+bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
+    base::Bytes own = encode();
+    if (statements) {
+        base::ByteWriter part;
+        encodeStatements(*statements, part);
+        own.resize(own.size() - part.bytes().size());
+    }
+    if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
+        return false;
+    }
+    const auto rest = bytes.subspan(own.size());
+    return rest.empty() || rest.front() == static_cast<std::uint8_t>(Part::statements);
 }
 
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,10 +33,12 @@ struct Scene : sand::Start {
     std::string name;
     sand::ForceConstants force;
     Look look;
-    Georeference georeference;                // origin of the terrain; default values if it came from no file
-    std::vector<RasterStatement> statements;  // units and no data of the files of terrain; not encoded
-    std::vector<std::string> warnings;        // one line each, for the program that loads the scene to print
-    Material material;                        // source of the rules; not encoded, and neither are the warnings
+    Georeference georeference;  // origin of the terrain; default values if it came from no file
+    /// Units and no data of the files of terrain, in the order in which they were read. nullopt if unknown, as in a
+    /// scene from a journal of an earlier build.
+    std::optional<std::vector<RasterStatement>> statements;
+    std::vector<std::string> warnings;  // one line each, for the program that loads the scene to print
+    Material material;                  // source of the rules; not encoded, and neither are the warnings
 
     /// Returns the numbers of this scene with which a material is used.
     [[nodiscard]] MaterialGrid grid() const {
@@ -42,7 +46,10 @@ struct Scene : sand::Start {
     }
     /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins.
     [[nodiscard]] base::Bytes encode() const;
-    /// Reads what encode() wrote, except statements, warnings and material. Throws base::FormatError for invalid bytes.
+    /// Returns whether `bytes` are this scene. The statements do not count, because the same scene may be read by
+    /// another path, and journals of earlier builds have none.
+    [[nodiscard]] bool isEncodedAs(std::span<const std::uint8_t> bytes) const;
+    /// Reads what encode() wrote, except warnings and material. Throws base::FormatError for invalid bytes.
     static Scene decode(std::span<const std::uint8_t> bytes);
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);

@@ -13,7 +13,7 @@ std::string describeScene(const std::string& file) {
     const scene::Scene scene = scene::loadScene(file);
     std::string text = fmt::format("scene '{}': {} x {} cells of {}\n", scene.name, scene.rules.columns,
                                    scene.rules.rows, scene.terrain.cellSize());
-    for (const scene::RasterStatement& statement : scene.statements) {
+    for (const scene::RasterStatement& statement : *scene.statements) {
         fmt::format_to(std::back_inserter(text), "{}: {}\n", statement.file, statement.text());
     }
     for (const std::string& warning : scene.warnings) {

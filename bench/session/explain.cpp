@@ -187,7 +187,7 @@ void explainSteps(const scene::Scene& scene, const Settings& settings, Explanati
 
 void explain(const Settings& settings, Csv& csv) {
     const scene::Scene scene = scene::loadScene(settings.scene);
-    for (const scene::RasterStatement& statement : scene.statements) {
+    for (const scene::RasterStatement& statement : *scene.statements) {
         csv.note(statement.file + ": " + statement.text());
     }
     for (const std::string& warning : scene.warnings) {

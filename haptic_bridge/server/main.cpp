@@ -119,7 +119,7 @@ scene::Scene openScene(const std::string& file) {
     const std::int64_t free = host::freeMemoryOfProcess();
     scene::Scene scene = scene::loadScene(file, scene::checksOfOneReplica(file, free));
     scene::requireReplica(scene, file, free);
-    for (const scene::RasterStatement& statement : scene.statements) {
+    for (const scene::RasterStatement& statement : *scene.statements) {
         print(statement.file + ": " + statement.text());
     }
     for (const std::string& warning : scene.warnings) {

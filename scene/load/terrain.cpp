@@ -103,7 +103,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
     scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
     if (source.statement) {
-        scene.statements.push_back(*source.statement);
+        scene.statements->push_back(*source.statement);
     }
     if (!source.points.empty()) {
         if (!file.has("tin")) {
@@ -211,7 +211,7 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);
         requireSameUnits(scene.georeference.units, terrain.has("file") ? terrain.text("file") : terrain.text("kind"),
                          rock);
-        scene.statements.push_back(statementOf(rock));
+        scene.statements->push_back(statementOf(rock));
         scene.warnings.insert(scene.warnings.end(), rock.warnings.begin(), rock.warnings.end());
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
             terrain.fail("bedrock",
@@ -240,6 +240,7 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<sand::Ground> ground;
+    scene.statements.emplace();
     scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
                              : fromSource(file, terrain, kind - 2, scene, ground, checks);
     readBedrock(terrain, scene.terrain, checks, ground, scene);

@@ -62,6 +62,9 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     EXPECT_EQ(result["divergences"], 0);
     EXPECT_EQ(result["server_divergences"], 0);
     EXPECT_EQ(result["volume_final"].get<std::int64_t>(), result["volume_initial"].get<std::int64_t>());
+    ASSERT_EQ(result["terrain"].size(), 1U);
+    EXPECT_EQ(result["terrain"][0]["across"], "metres");
+    EXPECT_EQ(result["terrain"][0]["up_from"], "band");
 
     const support::Ran replayed = support::runProgram(
         "sandwall-replay", out() + "/session.journal --hash --heights " + home + " --forces " + again);
@@ -87,6 +90,19 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     EXPECT_GT(moved, 100);
     EXPECT_LT(moved, 96 * 64 / 2);
     EXPECT_NEAR(after.at(95, 63), before.at(95, 63), 0.51) << "a corner that the hand never touched";
+
+    // A film and a resumed session read the journal instead of the raster.
+    support::ChildProcess film({support::launcher(), "film", out() + "/session.journal", "--wall", wall(1, 1), "--out",
+                                (folder_ / "film").string()},
+                               folder_ / "film.txt");
+    ASSERT_EQ(film.wait(300), 0) << film.output();
+    EXPECT_EQ(json("film/summary.json")["terrain"], result["terrain"]);
+    const Ended resumed =
+        runToEnd({"--wall", wall(1, 1), "--resume", "--scene", scene, "--device", "script:gis", "--pace", "fast",
+                  "--steps", "92", "--out", out(), "--no-pictures", "--restarts", "0"});
+    EXPECT_EQ(resumed.status, 0) << resumed.output;
+    EXPECT_EQ(summary()["steps"], 92);
+    EXPECT_EQ(summary()["terrain"], result["terrain"]);
 }
 
 }  // namespace

@@ -45,7 +45,9 @@ nlohmann::json written(const master::Summary& summary) {
 
 TEST(Summary, HasTheUnitsOfEachFileOfTerrain) {
     master::Summary summary = draggedWall(false);
-    EXPECT_EQ(written(summary)["terrain"], nlohmann::json::array());
+    EXPECT_EQ(written(summary)["terrain"], nlohmann::json()) << "unknown";
+    summary.terrain.emplace();
+    EXPECT_EQ(written(summary)["terrain"], nlohmann::json::array()) << "no files";
     summary.terrain = {{"valley.asc", "metres", "EPSG:32633", "feet", "vertical datum", "-9999", 0.25},
                        {"rock.asc", "metres", "EPSG:32633", "the same", "no unit of heights", std::nullopt, 0}};
     const nlohmann::json terrain = written(summary)["terrain"];

@@ -203,12 +203,55 @@ TEST_F(SceneFile, ShadedLikeAMapSurvivesItsEncoding) {
 }
 
 TEST_F(SceneFile, AnEncodingThatIsCutAnywhereIsRefused) {
-    const base::Bytes bytes = scene::loadScene(write("s.toml", kFlat)).encode();
+    scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
+    const base::Bytes bytes = scene.encode();
     EXPECT_NO_THROW((void)scene::Scene::decode(bytes));
     ASSERT_GT(bytes.size(), 100U) << "there is something to cut";
+    scene.statements.reset();
+    const std::size_t whole = scene.encode().size();  // without the last part, as an earlier build has written it
+    EXPECT_NO_THROW((void)scene::Scene::decode(std::span(bytes).first(whole)));
     for (std::size_t length = 0; length < bytes.size(); ++length) {
+        if (length == whole) {
+            continue;
+        }
         EXPECT_THROW((void)scene::Scene::decode(std::span(bytes).first(length)), base::FormatError) << length;
     }
+}
+
+TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
+    write("t.asc", "ncols 2\nnrows 2\ncellsize 1\nNODATA_value -1\n1 2\n-1 4\n");
+    const std::string text = "[material]\n[tool]\nradius = 1\n[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n";
+    const scene::Scene scene = scene::loadScene(write("s.toml", text));
+    ASSERT_EQ(scene.statements.value().size(), 1U);
+    EXPECT_EQ(scene.statements->front().noData, "-1");
+    const base::Bytes bytes = scene.encode();
+    EXPECT_EQ(scene::Scene::decode(bytes).statements, scene.statements);
+    EXPECT_EQ(scene::loadScene(write("flat.toml", kFlat)).statements.value().size(), 0U) << "no files";
+
+    // An earlier build has written neither part nor its length.
+    scene::Scene old = scene;
+    old.statements.reset();
+    const base::Bytes before = old.encode();
+    ASSERT_LT(before.size(), bytes.size());
+    EXPECT_TRUE(std::equal(before.begin(), before.end(), bytes.begin()));
+    EXPECT_EQ(scene::Scene::decode(before).statements, std::nullopt);
+    EXPECT_EQ(scene::Scene::decode(before).encode(), before);
+
+    // The same scene may have been read by another path, or by an earlier build.
+    scene::Scene moved = scene;
+    moved.statements->front().file = "elsewhere/t.asc";
+    scene::Scene other = scene;
+    other.terrain.setHeight(1, 1, scene.terrain.height(1, 1) + 1);
+    for (const scene::Scene* same : std::array<const scene::Scene*, 3>{&scene, &old, &moved}) {
+        EXPECT_TRUE(same->isEncodedAs(bytes));
+        EXPECT_TRUE(same->isEncodedAs(before));
+        EXPECT_FALSE(same->isEncodedAs(other.encode()));
+        EXPECT_FALSE(same->isEncodedAs(std::span(before).first(before.size() - 1)));
+    }
+    scene::Scene placed = scene;
+    placed.georeference.west = 7;
+    EXPECT_FALSE(scene.isEncodedAs(placed.encode()));
+    EXPECT_FALSE(placed.isEncodedAs(bytes));
 }
 
 TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {

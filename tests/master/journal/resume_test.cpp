@@ -254,6 +254,26 @@ TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
     EXPECT_EQ(refusal(other, file.string()), "not refused");
 }
 
+// A user may give the scene by another path than at the start, and an earlier build has written no statements.
+TEST_F(Resume, TheFilesOfATerrainHaveTheirUnitsAgain) {
+    std::ofstream(folder_ / "t.asc") << "ncols 3\nnrows 2\ncellsize 1\n1 2 3\n4 5 6\n";
+    const std::filesystem::path file = folder_ / "scene.toml";
+    std::ofstream(file) << "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
+    scene::Scene scene = scene::loadScene(file);
+    ASSERT_EQ(scene.statements.value().size(), 1U);
+    const std::filesystem::path ours = folder_ / "ours" / "session.journal", old = folder_ / "old" / "session.journal";
+    std::filesystem::create_directories(ours.parent_path());
+    std::filesystem::create_directories(old.parent_path());
+    { master::JournalWriter writer(ours, scene, "test"); }
+    EXPECT_EQ(master::readSession(ours, "")->scene.statements, scene.statements);
+    EXPECT_EQ(master::readJournal(ours).scene.statements, scene.statements);
+    EXPECT_EQ(refusal(ours, (folder_ / "." / "scene.toml").string()), "not refused");
+    scene.statements.reset();
+    { master::JournalWriter writer(old, scene, "test"); }
+    EXPECT_EQ(master::readSession(old, "")->scene.statements, std::nullopt);
+    EXPECT_EQ(refusal(old, file.string()), "not refused");
+}
+
 // The heights of this scene would take 1 GiB.
 TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
     const std::filesystem::path file = folder_ / "scene.toml";

@@ -268,9 +268,9 @@ TEST_F(Rock, HasTheHeightsOfTheSameFile) {
     for (int column = 0; column < 3; ++column) {
         EXPECT_EQ(scene.ground->bedrock(column, 0), scene.terrain.height(column, 0));
     }
-    ASSERT_EQ(scene.statements.size(), 2U);
-    EXPECT_EQ(scene.statements[0].up, "metres");
-    EXPECT_EQ(scene.statements[1].up, "metres");
+    ASSERT_EQ(scene.statements.value().size(), 2U);
+    EXPECT_EQ((*scene.statements)[0].up, "metres");
+    EXPECT_EQ((*scene.statements)[1].up, "metres");
 }
 
 TEST_F(Rock, InOtherUnitsIsRefusedByName) {
@@ -306,8 +306,8 @@ TEST_F(Units, ATinSaysThemToo) {
               std::string::npos)
         << points.output;
     const scene::Scene scene = load("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\n[tin]\n");
-    ASSERT_EQ(scene.statements.size(), 1U);
-    EXPECT_EQ(scene.statements[0].acrossFrom, "points");
+    ASSERT_EQ(scene.statements.value().size(), 1U);
+    EXPECT_EQ((*scene.statements)[0].acrossFrom, "points");
 }
 
 }  // namespace
