@@ -192,7 +192,10 @@ private:
                                  field, kTransform));
             }
             if (!value) {
-                fail(line, fmt::format("{} must be a finite number, got '{}'", "xyz"[i], field));
+                const bool both =
+                    field.find('.') != std::string_view::npos && field.find(',') != std::string_view::npos;
+                fail(line, fmt::format("{} must be a finite number, got '{}'{}", "xyz"[i], field,
+                                       both ? "; leave separators of thousands out" : ""));
             }
             point.at(i) = *value;
         }
@@ -209,7 +212,7 @@ private:
             const auto degrees = std::find_if(fields.begin(), fields.end(), isDegrees);
             fail(line, fmt::format("expected three columns x, y, z, but '{}' begins a title of {}{}", fields[0],
                                    fields.size(),
-                                   degrees == fields.end() ? ""
+                                   degrees == fields.end() ? "; leave other columns out"
                                                            : fmt::format("; '{}' is in degrees, but sand needs lengths",
                                                                          base::unquoted(*degrees))));
         }

@@ -172,7 +172,7 @@ sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTabl
     const double highest = putOnLattice(points, scene.georeference, one, *start);
     if (highest > sand::kMaxHeight) {
         terrain.fail("file",
-                     fmt::format("a height of {} from 'datum' is beyond the range of ±{} (4096 cells); set 'datum'",
+                     fmt::format("a height of {:.6g} from 'datum' is beyond the range of ±{} (4096 cells); set 'datum'",
                                  highest * one.unit(), sand::kMaxHeight * one.unit()));
     }
     requireRange(file, highest, scene.rules.columns, scene.rules.rows, one.unit());

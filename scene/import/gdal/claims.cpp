@@ -234,6 +234,28 @@ std::optional<std::string> lengthUnitInHeader(const GdalRaster& raster) {
     return unit.empty() ? std::nullopt : std::optional(unit);
 }
 
+std::string missingHeader(const fs::path& file) {
+    constexpr std::array<std::string_view, 4> kRaw{".flt", ".bil", ".bip", ".bsq"};
+    if (std::find(kRaw.begin(), kRaw.end(), base::endingOf(file)) == kRaw.end()) {
+        return "";
+    }
+    std::error_code none;
+    fs::path header = fs::path(file).replace_extension(".HDR");
+    if (!fs::is_regular_file(header, none)) {
+        header.replace_extension(".hdr");
+    }
+    const std::string name = header.filename().string();
+    if (!fs::is_regular_file(header, none)) {
+        return "; it needs its header " + name + " beside it";
+    }
+    for (const char* key : {"ncols", "nrows"}) {
+        if (!valueIn(header, key) && !valueIn(header, "envi")) {
+            return fmt::format("; its header {} has no {}", name, key);
+        }
+    }
+    return "";
+}
+
 void checkClaims(const GdalRaster& raster) {
     const std::vector<fs::path> files = filesOf(raster);
     checkSizes(raster, files);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +19,10 @@ namespace scene {
 /// Throws base::InputError if a file is shorter or several times longer than its header says. Also throws if a number
 /// in a text has a decimal comma. The line has the file, and in a text the line.
 void checkClaims(const GdalRaster& raster);
+
+/// Returns what a raster without a header inside lacks beside it, as the end of a message: "; it needs its header t.hdr
+/// beside it". Returns an empty text if nothing is known to be missing.
+[[nodiscard]] std::string missingHeader(const std::filesystem::path& file);
 
 /// Returns the unit of lengths that the text header of an Idrisi or ENVI raster names, in small letters. GDAL 3.6.2
 /// takes metres for a unit that it does not know, also for degrees. Returns nullopt for other formats and without a

@@ -38,14 +38,29 @@ fs::path checked(const fs::path& file) {
     return fs::absolute(file);
 }
 
+/// Returns GDAL's complaint without the path, with which some drivers begin it once or twice, and without a full stop.
+std::string withoutPath(std::string complaint, const std::string& path) {
+    for (const std::string& begin : {"`" + path + "' ", path + ": ", path + ":"}) {
+        while (complaint.starts_with(begin)) {
+            complaint.erase(0, begin.size());
+        }
+    }
+    while (complaint.ends_with('.')) {
+        complaint.pop_back();
+    }
+    return complaint;
+}
+
 }  // namespace
 
-GdalRaster::GdalRaster(const fs::path& file)
+GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
     : name_(file.string()),
-      dataset_(GDALOpenEx(checked(file).c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+      dataset_(GDALOpenEx((inMemory.empty() ? checked(file) : inMemory).c_str(),
+                          GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                           static_cast<const char* const*>(kDrivers), nullptr, nullptr)) {
     if (!dataset_) {
-        fail("cannot be read as a raster: " + session_.complaint());
+        fail("cannot be read as a raster: " + withoutPath(session_.complaint(), fs::absolute(file).string()) +
+             missingHeader(file));
     }
     chooseBand();
     checkClaims(*this);

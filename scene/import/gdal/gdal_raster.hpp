@@ -16,7 +16,8 @@ namespace scene {
 /// base::InputError, whose message begins with the file.
 class GdalRaster {
 public:
-    explicit GdalRaster(const std::filesystem::path& file);
+    /// Opens `inMemory` in place of `file`, unless it is empty. Messages name `file`.
+    explicit GdalRaster(const std::filesystem::path& file, const std::filesystem::path& inMemory = {});
 
     [[nodiscard]] int columns() const { return GDALGetRasterXSize(dataset_.get()); }
     [[nodiscard]] int rows() const { return GDALGetRasterYSize(dataset_.get()); }

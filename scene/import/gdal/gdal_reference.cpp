@@ -33,9 +33,9 @@ std::string warpCommandOf(const GdalRaster& raster, OGRSpatialReferenceH referen
     return warpCommand(raster.name(), longitude, latitude, reference == nullptr ? "-s_srs EPSG:4326 " : "");
 }
 
-std::string wktOf(OGRSpatialReferenceH reference) {
+std::string textOf(OGRSpatialReferenceH reference, const char* format) {
     char* text = nullptr;
-    const std::array<const char*, 3> options = {"FORMAT=WKT2", "MULTILINE=NO", nullptr};
+    const std::array<const char*, 3> options = {format, "MULTILINE=NO", nullptr};
     const OGRErr error = OSRExportToWktEx(reference, &text, options.data());
     const GdalText owner(text);
     return error == OGRERR_NONE && text != nullptr ? text : "";
@@ -99,7 +99,7 @@ void readReference(const GdalRaster& raster, OGRSpatialReferenceH reference, Ras
         raster.fail(
             fmt::format("its lengths are in '{}', which is not a known unit; write its coordinates in metres", *named));
     }
-    described.units.crs = wktOf(reference);
+    described.units.crs = textOf(reference, "FORMAT=WKT2");
     const char* const code = OSRGetAuthorityCode(reference, nullptr);
     const char* const authority = OSRGetAuthorityName(reference, nullptr);
     const char* const name = OSRGetName(reference);
@@ -227,6 +227,13 @@ RasterDescription describe(const GdalRaster& raster) {
         readAxes(raster, described);
     }
     readHeightUnit(raster, reference, prj, described);
+    constexpr double kKilometre = 1000;  // [m]
+    if (units.heightMetres == 0 && units.lengthMetres >= kKilometre) {
+        raster.fail(fmt::format(
+            "its lengths are in units of {} m ({}), and it does not declare the unit of its heights, which could be "
+            "the same or metres; set the unit: gdal_edit.py -units m (of a GeoTIFF, which gdal_translate makes)",
+            units.lengthMetres, described.origins.across));
+    }
     if (units.heightMetres == 0) {
         units.heightMetres = units.lengthMetres;  // heights without a unit have that of lengths
     } else if (units.lengthMetres == 0) {
@@ -249,5 +256,7 @@ SpatialReference referenceOf(const std::string& crs, const std::string& file) {
     }
     return reference;
 }
+
+std::string esriTextOf(OGRSpatialReferenceH reference) { return textOf(reference, "FORMAT=WKT1_ESRI"); }
 
 }  // namespace scene

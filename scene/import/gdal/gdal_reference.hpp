@@ -15,4 +15,7 @@ namespace scene {
 /// Returns the reference system of a WKT. Throws base::InputError, whose message begins with `file`.
 [[nodiscard]] SpatialReference referenceOf(const std::string& crs, const std::string& file);
 
+/// Returns a system in the form of a .prj file, or an empty text if it cannot be said so.
+[[nodiscard]] std::string esriTextOf(OGRSpatialReferenceH reference);
+
 }  // namespace scene

@@ -75,6 +75,24 @@ TEST_F(Claims, ABilWithoutNbitsIsNotGuessed) {
               "t.bil: its header says that it has 64 bytes, but it has 32; the file is cut; copy it again");
 }
 
+TEST_F(Claims, ARasterWithoutItsHeaderSaysWhatIsMissing) {
+    for (const char* ending : {".flt", ".bil"}) {
+        const std::string name = std::string("t") + ending, begin = name + ": cannot be read as a raster: ";
+        write(name, std::string(24, '\0'));
+        std::filesystem::remove(path("t.hdr"));
+        EXPECT_EQ(refusedRaster(name),
+                  begin + "not recognized as a supported file format; it needs its header t.hdr beside it");
+        write("t.hdr", "ncols 3\nxllcorner 0\nyllcorner 0\ncellsize 10\nbyteorder LSBFIRST\n");
+        EXPECT_EQ(refusedRaster(name),
+                  begin + "not recognized as a supported file format; its header t.hdr has no nrows");
+        write("t.hdr", "nrows 2\ncellsize 10\n");
+        EXPECT_EQ(refusedRaster(name),
+                  begin + "not recognized as a supported file format; its header t.hdr has no ncols");
+    }
+    write("t.tif", std::string("II*\0\0", 5));
+    EXPECT_EQ(refusedRaster("t.tif"), "t.tif: cannot be read as a raster: Cannot read TIFF header");
+}
+
 TEST_F(Claims, AnEnviRasterThatIsCutHasNoHeightsOfZero) {
     const std::string header =
         "ENVI\nsamples = 4\nlines = 4\nbands = 1\nheader offset = {}\nfile type = ENVI Standard\ndata type = 4\n"

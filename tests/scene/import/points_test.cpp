@@ -42,7 +42,8 @@ TEST_F(PointsFile, ComplaintsNameLineAndValue) {
     EXPECT_EQ(refused("0 0 nan\n"), "p.csv:1: z must be a finite number, got 'nan'");
     EXPECT_EQ(refused("x y z\nx y z\n"), "p.csv:2: x must be a finite number, got 'x'");
     EXPECT_EQ(refused("z,x,y\n1,2,3\n"), "p.csv:1: the columns must be x, y, z, and 'z' is number 1");
-    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"), "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4");
+    EXPECT_EQ(refused("id,e,n,h\n1,2,3,4\n"),
+              "p.csv:1: expected three columns x, y, z, but 'id' begins a title of 4; leave other columns out");
 }
 
 TEST_F(PointsFile, TheFirstPointIsNoTitleHoweverItIsWritten) {
@@ -85,6 +86,13 @@ TEST_F(PointsFile, DecimalCommasAreReadWhereNoCommaSeparates) {
         refused("0.5;0;1\n1;0;1,500\n"),
         "p.csv:2: '1,500' in line 2 has a decimal comma, and '0.5' in line 1 a decimal point, so that the comma could "
         "separate thousands; write decimal points in all numbers");
+}
+
+TEST_F(PointsFile, SeparatorsOfThousandsAreNamed) {
+    EXPECT_EQ(refused("x;y;z\n500.000,5;0;1\n"),
+              "p.csv:2: x must be a finite number, got '500.000,5'; leave separators of thousands out");
+    EXPECT_EQ(refused("x;y;z\n0;5,200,000.5;1\n"),
+              "p.csv:2: y must be a finite number, got '5,200,000.5'; leave separators of thousands out");
 }
 
 TEST_F(PointsFile, NamesOfColumnsDecideTheirOrder) {

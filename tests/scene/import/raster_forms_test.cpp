@@ -59,7 +59,7 @@ TEST_F(RasterForms, AreReadAsGdalReadsThem) {
         const std::string folder = path(std::to_string(++number));
         std::filesystem::create_directory(folder);
         const std::string name = form.driver == "SRTMHGT" ? "N47E010" : "t";
-        const std::string file = folder + "/" + name + "." + form.ending;
+        const std::string file = fmt::format("{}/{}.{}", folder, name, form.ending);
         const bool written = test::writeForm(form, file);
         const std::string result = written ? compare(form, file) : "GDAL cannot write it";
         read[form.driver] += written && result != "GDAL cannot read it" ? 1 : 0;

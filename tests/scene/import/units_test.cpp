@@ -204,6 +204,11 @@ TEST_F(Units, AxesOfNetcdfGiveTheUnitOfLengths) {
     EXPECT_NEAR(scene::readRaster(path("t.nc")).at(3, 2), 12 * 0.3048, 1e-12);
     write("t.nc", netcdf("", "", "ft"));
     EXPECT_EQ(scene::readRaster(path("t.nc")).at(3, 2), 12) << "lengths without a unit have that of heights";
+    write("t.nc", netcdf("km", "km", "unknown"));
+    EXPECT_EQ(refusedRaster("t.nc"),
+              "t.nc: its lengths are in units of 1000 m (axes), and it does not declare the unit of its heights, which "
+              "could be the same or metres; set the unit: gdal_edit.py -units m (of a GeoTIFF, which gdal_translate "
+              "makes)");
     write("t.nc", netcdf("km", "m", "m"));
     EXPECT_EQ(refusedRaster("t.nc"), "t.nc: its axis 'x' is in km, and 'y' in m; write both in metres");
     write("t.nc", netcdf("furlongs", "furlongs", "m"));
