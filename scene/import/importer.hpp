@@ -58,6 +58,11 @@ public:
 
     /// Returns a coordinate reference system in the form of the .prj file beside an ESRI ASCII grid.
     [[nodiscard]] virtual std::string esriWkt(const std::string& crs, const std::string& file) const = 0;
+
+    /// Returns whether two coordinate reference systems in WKT have the same horizontal part, in whatever words.
+    /// `file` is for messages.
+    [[nodiscard]] virtual bool sameSystem(const std::string& one, const std::string& other,
+                                          const std::string& file) const = 0;
 };
 
 /// Memory of a raster: 16 bytes per pixel, so that a field of the largest sides just fits.
@@ -65,7 +70,7 @@ inline constexpr double kRasterBytesPerPixel = 16;
 inline constexpr double kMostRasterBytes = 4294967296.0;
 
 /// Symbol that the module defines, with C linkage. It returns the one object, which is never deleted.
-inline constexpr const char* kImportSymbol = "sandwallImport4";
+inline constexpr const char* kImportSymbol = "sandwallImport5";
 using GetImporter = const Importer*();
 
 /// Loads sandwall-import.so from the folder of this program. Returns the same object at every call. Only this function

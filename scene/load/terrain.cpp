@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "sand/grid/dunes.hpp"
@@ -13,6 +14,7 @@
 #include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_units.hpp"
+#include "scene/import/rock_fit.hpp"
 #include "scene/load/terrain_source.hpp"
 #include "scene/load/tin_table.hpp"
 
@@ -96,9 +98,10 @@ private:
 };
 
 /// Returns the field of a source. Cells without data become walls. They are drawn as flats at the lowest height of the
-/// terrain.
+/// terrain. Sets `survey` to the raster without heights if it has a place.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
-                             std::shared_ptr<sand::Ground>& ground, const SizeChecks& checks) {
+                             std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,
+                             const SizeChecks& checks) {
     AskedBeforeHeights asked(file, terrain, checks);
     const TerrainSource source = readSource(file, terrain, kind, std::ref(asked));
     scene.warnings.insert(scene.warnings.end(), source.warnings.begin(), source.warnings.end());
@@ -121,6 +124,9 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
+    if (source.mayBeDegrees) {
+        survey = withoutHeights(grid);
+    }
     asked.askOfField(grid.columns, grid.rows);
     sand::HeightField field(grid.columns, grid.rows, grid.cellSize);
     std::int32_t lowest = sand::kMaxHeight;
@@ -192,8 +198,10 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
     }
 }
 
+/// Reads `layer` or `bedrock`. `survey` is the raster of the terrain, without heights, if it has a place. Rock must
+/// then have the same place. Under other terrain only the number of cells must be the same.
 void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
-                 std::shared_ptr<sand::Ground>& ground, Scene& scene) {
+                 const std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground, Scene& scene) {
     if (terrain.has("layer") && terrain.has("bedrock")) {
         terrain.fail("bedrock", "give 'layer' or 'bedrock', not both: each gives the height of the rock");
     }
@@ -209,8 +217,12 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
             }
         };
         const EsriGrid rock = readRaster(terrain.folder() / terrain.text("bedrock"), check);
-        requireSameUnits(scene.georeference.units, terrain.has("file") ? terrain.text("file") : terrain.text("kind"),
-                         rock);
+        if (survey) {
+            requireFit(*survey, rock);
+        } else {
+            requireSameUnits(scene.georeference.units,
+                             terrain.has("file") ? terrain.text("file") : terrain.text("kind"), rock);
+        }
         scene.statements->push_back(statementOf(rock));
         scene.warnings.insert(scene.warnings.end(), rock.warnings.begin(), rock.warnings.end());
         if (rock.columns != field.columns() || rock.rows != field.rows()) {
@@ -240,10 +252,11 @@ bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& ch
     kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
     const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<sand::Ground> ground;
+    std::optional<EsriGrid> survey;
     scene.statements.emplace();
     scene.terrain = kind < 2 ? madeUp(file, terrain, kind == 1, checks)
-                             : fromSource(file, terrain, kind - 2, scene, ground, checks);
-    readBedrock(terrain, scene.terrain, checks, ground, scene);
+                             : fromSource(file, terrain, kind - 2, scene, survey, ground, checks);
+    readBedrock(terrain, scene.terrain, checks, survey, ground, scene);
     const bool settle = terrain.flagOr("settle", false);
     terrain.finish();
     if (scene.tin == nullptr) {

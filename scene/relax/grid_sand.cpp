@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/input_error.hpp"
+#include "scene/import/rock_fit.hpp"
 
 namespace scene::relax {
 namespace {
@@ -44,19 +45,6 @@ void include(const EsriGrid& grid, const EsriGrid& surface, Extremes& extremes) 
             }
         }
     }
-}
-
-std::string shapeOf(const EsriGrid& grid) {
-    return fmt::format("{}: {} x {} cells of {} x {} from ({}, {})", grid.file, grid.columns, grid.rows, grid.cellSize,
-                       grid.cellDepth.value_or(grid.cellSize), grid.westEdge, grid.southEdge);
-}
-
-/// Returns whether two grids have the same cells. Other programs may have printed the same corner with other digits.
-bool sameShape(const EsriGrid& a, const EsriGrid& b) {
-    const auto near = [](double x, double y, double tolerance) { return std::abs(x - y) <= tolerance; };
-    return a.columns == b.columns && a.rows == b.rows && near(a.cellSize, b.cellSize, 1e-6 * a.cellSize) &&
-           near(a.aspect(), b.aspect(), 1e-6 * a.aspect()) && near(a.westEdge, b.westEdge, 1e-3 * a.cellSize) &&
-           near(a.southEdge, b.southEdge, 1e-3 * a.cellSize * a.aspect());
 }
 
 HeightScale scaleFor(const EsriGrid& surface, const Extremes& extremes) {
@@ -174,10 +162,7 @@ GridSand toSand(const EsriGrid& surface, const EsriGrid* bedrock, const TalusSet
         throw base::InputError(surface.file + ": every cell is a no-data cell; the grid holds no sand");
     }
     if (bedrock != nullptr) {
-        if (!sameShape(surface, *bedrock)) {
-            throw base::InputError(
-                fmt::format("{}, but {}: they must be the same", shapeOf(*bedrock), shapeOf(surface)));
-        }
+        requireSameCells(surface, *bedrock);
     }
     Extremes extremes;
     include(surface, surface, extremes);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 
 #include "host/memory.hpp"
 #include "host/print_line.hpp"
@@ -17,6 +18,7 @@
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_memory.hpp"
 #include "scene/import/raster_units.hpp"
+#include "scene/import/rock_fit.hpp"
 #include "scene/relax/options.hpp"
 #include "scene/relax/relaxation.hpp"
 #include "scene/relax/steepness.hpp"
@@ -93,8 +95,8 @@ ordered_json certificatePart(const GridSand& sand, const Relaxed& relaxed) {
             {"bound_rms", std::sqrt(relaxed.certificate->squaredDistance / cells) * sand.scale.unit}};
 }
 
-ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& options, std::int64_t volumeBefore,
-                    const Timed& timed) {
+ordered_json report(const GridSand& sand, const EsriGrid& grid, const std::optional<EsriGrid>& bedrock,
+                    const Options& options, std::int64_t volumeBefore, const Timed& timed) {
     const double steepest = steepestFace(sand.field, sand.rules, sand.ground ? &*sand.ground : nullptr);
     const bool swept = options.scheme == "settle" && !timed.relaxed.settled;
     ordered_json json;
@@ -103,6 +105,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const Options& o
         json["note"] = "settle supports neither walls nor bedrock; g swept the sand to rest instead";
     }
     json["units"] = jsonOf(statementOf(grid));
+    json["bedrock_units"] = bedrock ? jsonOf(statementOf(*bedrock)) : ordered_json(nullptr);
     json["talus_deg"] = options.talus;
     json["band"] = options.band;
     json["columns"] = grid.columns;
@@ -139,7 +142,7 @@ void relaxGrid(const Options& options) {
     std::optional<EsriGrid> bedrock;
     if (!options.bedrock.empty()) {
         bedrock = readRaster(options.bedrock, fitsSolver(options.bedrock, free));
-        requireSameUnits(grid, *bedrock);
+        requireFit(grid, *bedrock);
     }
     GridSand sand =
         toSand(grid, bedrock ? &*bedrock : nullptr, {options.talus, options.band, schemeOf(options.scheme)});
@@ -159,7 +162,7 @@ void relaxGrid(const Options& options) {
     const std::int64_t volumeBefore = sand.volume();
     const Timed timed = relaxTimed(sand, options);
     writeRaster(sand.toGrid(grid), options.out);
-    fmt::print("{}\n", report(sand, grid, options, volumeBefore, timed).dump());
+    fmt::print("{}\n", report(sand, grid, bedrock, options, volumeBefore, timed).dump());
 }
 
 }  // namespace scene::relax

@@ -55,7 +55,12 @@ TEST_F(SceneFile, BadRockIsNamed) {
               "s.toml:7: the layer of sand is -0.5 thick in column 2, row 1 (from the south-west); rock must lie at or "
               "below the sand");
     EXPECT_EQ(complaint(kFromGrid + "bedrock = \"small.asc\"\n"),
-              "s.toml:7: the rock has 1 x 1 cells, the terrain 3 x 2: they must be the same");
+              "small.asc: 1 x 1 cells of 1 x 1 from (0, 0), but " + (folder_ / "t.asc").string() +
+                  ": 3 x 2 cells of 1 x 1 from (0, 0): they must be the same; resample the rock: gdalwarp -te 0 0 3 2 "
+                  "-ts 3 2 -r bilinear");
+    EXPECT_EQ(
+        complaint("[field]\ncolumns = 3\nrows = 2\n[material]\n[terrain]\nkind = \"flat\"\nbedrock = \"small.asc\"\n"),
+        "s.toml:7: the rock has 1 x 1 cells, the terrain 3 x 2: they must be the same");
     EXPECT_EQ(complaint(kFromGrid + "layer = -1\n"), "s.toml:7: layer must be within [0, 1000000000], got -1");
     EXPECT_EQ(complaint(kFromGrid + "layer = 1\nbedrock = \"above.asc\"\n"),
               "s.toml:8: give 'layer' or 'bedrock', not both: each gives the height of the rock");

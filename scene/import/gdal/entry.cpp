@@ -195,12 +195,18 @@ public:
         }
         return text;
     }
+    [[nodiscard]] bool sameSystem(const std::string& one, const std::string& other,
+                                  const std::string& file) const override {
+        const GdalSession session;
+        const SpatialReference a = referenceOf(one, file), b = referenceOf(other, file);
+        return haveSamePlaces(a.get(), b.get());
+    }
 };
 
 }  // namespace
 }  // namespace scene
 
-extern "C" const scene::Importer* sandwallImport4() {
+extern "C" const scene::Importer* sandwallImport5() {
     static const scene::GdalImporter kImporter;
     return &kImporter;
 }

@@ -259,4 +259,19 @@ SpatialReference referenceOf(const std::string& crs, const std::string& file) {
 
 std::string esriTextOf(OGRSpatialReferenceH reference) { return textOf(reference, "FORMAT=WKT1_ESRI"); }
 
+bool haveSamePlaces(OGRSpatialReferenceH a, OGRSpatialReferenceH b) {
+    OSRStripVertical(a);
+    OSRStripVertical(b);
+    const std::array<const char*, 3> options = {"CRITERION=EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS",
+                                                "IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+    if (OSRIsSameEx(a, b, options.data()) != 0) {
+        return true;
+    }
+    // The order of the axes may be all that differs, but rasters have east first, whatever a definition says. ESRI's
+    // form has no order.
+    const std::string one = esriTextOf(a), other = esriTextOf(b);
+    return !one.empty() && !other.empty() &&
+           OSRIsSameEx(referenceOf(one, "").get(), referenceOf(other, "").get(), options.data()) != 0;
+}
+
 }  // namespace scene

@@ -18,4 +18,7 @@ namespace scene {
 /// Returns a system in the form of a .prj file, or an empty text if it cannot be said so.
 [[nodiscard]] std::string esriTextOf(OGRSpatialReferenceH reference);
 
+/// Returns whether the same coordinates mean the same place in both systems, which lose their vertical parts.
+[[nodiscard]] bool haveSamePlaces(OGRSpatialReferenceH a, OGRSpatialReferenceH b);
+
 }  // namespace scene

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "scene/import/importer.hpp"
 #include "scene/import/mesh_file.hpp"
 #include "scene/import/raster_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
@@ -66,6 +67,40 @@ protected:
         EXPECT_EQ(again.southEdge, grid.southEdge) << what;
         EXPECT_EQ(again.cellSize, grid.cellSize) << what;
         EXPECT_EQ(again.units.lengthMetres, grid.units.lengthMetres) << what;
+        EXPECT_EQ(again.units.crs.empty(), grid.units.crs.empty()) << what;
+        if (!grid.units.crs.empty()) {
+            EXPECT_TRUE(scene::loadImporter("a test").sameSystem(grid.units.crs, again.units.crs, what));
+        }
+    }
+    /// Returns the codes of the system that GDAL reads from a file, such as "EPSG:32633+6360"; empty without a system.
+    /// ESRI's form has no codes, so that GDAL looks for the code of the same system.
+    [[nodiscard]] std::string codesOf(const std::string& file) const {
+        GDALDatasetH dataset = GDALOpen(path(file).c_str(), GA_ReadOnly);
+        OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset);
+        std::string codes;
+        if (reference != nullptr) {
+            const char* const own = OSRGetAuthorityCode(reference, "PROJCS");
+            codes = "EPSG:" + (own != nullptr ? std::string(own) : likelyCode(reference));
+            if (const char* const vertical = OSRGetAuthorityCode(reference, "VERT_CS")) {
+                codes += std::string("+") + vertical;
+            }
+        }
+        GDALClose(dataset);
+        return codes;
+    }
+
+private:
+    static std::string likelyCode(OGRSpatialReferenceH reference) {
+        int count = 0;
+        int* confidence = nullptr;
+        OGRSpatialReferenceH* const found = OSRFindMatches(reference, nullptr, &count, &confidence);
+        std::string code = "none";
+        if (count > 0 && confidence[0] >= 90) {
+            code = OSRGetAuthorityCode(found[0], nullptr);
+        }
+        OSRFreeSRSArray(found);
+        CPLFree(confidence);
+        return code;
     }
 };
 
@@ -93,6 +128,8 @@ TEST_F(RoundTrip, ARasterComesBackWithItsUnits) {
                     << given.name << ", " << file << ": " << values->heights[i] << " instead of " << expected;
             }
             EXPECT_EQ(values->place, (std::array<double, 6>{1000, 10, 0, 2000, 0, -10})) << given.name << file;
+            const std::string system = given.system == nullptr ? "" : given.system;
+            EXPECT_EQ(codesOf(file), text ? system.substr(0, system.find('+')) : system) << given.name << file;
         }
     }
 }

@@ -4,47 +4,13 @@
 
 #include "scene/import/importer.hpp"
 #include "scene/import/prj_file.hpp"
-#include "scene/import/raster_file.hpp"
-#include "scene/import/raster_units.hpp"
 #include "tests/scene/import/classic_netcdf.hpp"
-#include "tests/scene/import/import_fixture.hpp"
-#include "tests/support/refusal.hpp"
+#include "tests/scene/import/units_fixture.hpp"
 #include "tests/support/text_forms.hpp"
 
 namespace {
 
 constexpr double kUsFoot = 1200.0 / 3937;  // [m]
-
-class Units : public Import {
-protected:
-    /// A raster of 3 x 2 whole heights, level enough to be lengths.
-    void writeText(const std::string& corner = "xllcorner 500000\nyllcorner 5200000") {
-        write("t.asc", "ncols 3\nnrows 2\n" + corner + "\ncellsize 10\n1 2 3\n4 5 6\n");
-    }
-    /// Returns a coordinate system as GDAL writes it: `form` is "WKT1_ESRI", "WKT2" and so on.
-    [[nodiscard]] static std::string wktOf(const std::string& system, const char* form) {
-        OGRSpatialReferenceH reference = OSRNewSpatialReference(nullptr);
-        OSRSetFromUserInput(reference, system.c_str());
-        char* text = nullptr;
-        const std::string option = std::string("FORMAT=") + form;
-        const std::array<const char*, 2> options{option.c_str(), nullptr};
-        OSRExportToWktEx(reference, &text, options.data());
-        std::string wkt = text;
-        CPLFree(text);
-        OSRDestroySpatialReference(reference);
-        return wkt;
-    }
-    [[nodiscard]] std::string statementOf(const std::string& file) const {
-        return scene::statementOf(scene::readRaster(path(file))).text();
-    }
-    [[nodiscard]] std::string refusedRaster(const std::string& file) const {
-        std::string line = test::refusalOf([&] { (void)scene::readRaster(path(file)); });
-        for (std::size_t at = 0; (at = line.find(folder_.string() + "/")) != std::string::npos;) {
-            line.erase(at, folder_.string().size() + 1);
-        }
-        return line;
-    }
-};
 
 TEST_F(Units, APrjFileIsReadInEveryFormAndEncoding) {
     writeText();
@@ -248,53 +214,6 @@ TEST_F(Units, ASceneDecidesAboutDegreesAsRelaxDoes) {
                 << "now they are lengths";
         }
     }
-}
-
-class Rock : public Units {
-protected:
-    /// Returns how relaxing sand on rock ends. Both files have the same heights.
-    [[nodiscard]] support::Ran relaxed() {
-        return support::runProgram("sandwall-relax",
-                                   path("t.asc") + " " + path("out.asc") + " --talus 1 --bedrock " + path("rock.asc"));
-    }
-};
-
-// Sand that is as high as its rock cannot move. If only one of them were converted, it would be 2.28 thick or below it.
-TEST_F(Rock, HasTheHeightsOfTheSameFile) {
-    writeText();
-    std::filesystem::copy_file(path("t.asc"), path("rock.asc"));
-    write("t.prj", wktOf("EPSG:2263+5703", "WKT1_ESRI"));
-    write("rock.prj", wktOf("EPSG:2263+5703", "WKT1_ESRI"));
-    const support::Ran ran = relaxed();
-    EXPECT_EQ(ran.status, 0) << ran.output;
-    EXPECT_NE(ran.output.find("\"volume_before\":0,"), std::string::npos) << ran.output;
-    const scene::Scene scene = load("[terrain]\nkind = \"dem\"\nfile = \"t.asc\"\nbedrock = \"rock.asc\"\n");
-    ASSERT_NE(scene.ground, nullptr);
-    for (int column = 0; column < 3; ++column) {
-        EXPECT_EQ(scene.ground->bedrock(column, 0), scene.terrain.height(column, 0));
-    }
-    ASSERT_EQ(scene.statements.value().size(), 2U);
-    EXPECT_EQ((*scene.statements)[0].up, "metres");
-    EXPECT_EQ((*scene.statements)[1].up, "metres");
-}
-
-TEST_F(Rock, InOtherUnitsIsRefusedByName) {
-    writeText();
-    std::filesystem::copy_file(path("t.asc"), path("rock.asc"));
-    const std::string scene = "[terrain]\nkind = \"dem\"\nfile = \"t.asc\"\nbedrock = \"rock.asc\"\n";
-    write("t.prj", wktOf("EPSG:2263+5703", "WKT1_ESRI"));
-    EXPECT_EQ(relaxed().status, 2);
-    EXPECT_NE(refusal(scene).find("the rock declares no units, and the sand has US survey feet across and metres up"),
-              std::string::npos)
-        << refusal(scene);
-    write("rock.prj", wktOf("EPSG:32633", "WKT1_ESRI"));
-    EXPECT_NE(refusal(scene).find("the rock has metres across, and the sand US survey feet"), std::string::npos);
-    EXPECT_EQ(relaxed().status, 2);
-    std::filesystem::remove(path("t.prj"));
-    write("rock.prj", wktOf("EPSG:2263+5703", "WKT1_ESRI"));
-    EXPECT_NE(refusal(scene).find("the sand declares no units, and the rock has US survey feet across and metres up"),
-              std::string::npos);
-    EXPECT_EQ(relaxed().status, 2);
 }
 
 TEST_F(Units, ATinSaysThemToo) {
