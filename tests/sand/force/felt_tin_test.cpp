@@ -66,7 +66,7 @@ struct Agreement {
 // A ring far outside the outline contains the same sand on both. Control points of an upright tool are in the side of
 // its cut. This side is a slope as wide as the distance of cells or points. A height there depends on the exact
 // position. A sphere has no such cut.
-constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.46, 16.42},
+constexpr std::array kAgreements{Agreement{sand::ForceLaw::repulse, "sphere", 16.59, 16.50, 16.45},
                                  Agreement{sand::ForceLaw::repulse, "circle", 20.23, 20.00, 19.01},
                                  Agreement{sand::ForceLaw::repulse, "ellipse", 16.16, 16.59, 17.07},
                                  Agreement{sand::ForceLaw::repulse, "footprint", 15.52, 15.72, 15.99},
