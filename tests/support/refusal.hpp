@@ -8,11 +8,12 @@
 
 namespace test {
 
-/// Returns the error line with which `act` refuses its input, or "nothing" if it accepts the input.
-inline std::string refusalOf(const std::function<void()>& act) {
+/// Returns the text of the Error with which `act` refuses its input, or "nothing" if it accepts the input.
+template <class Error = base::InputError>
+std::string refusalOf(const std::function<void()>& act) {
     try {
         act();
-    } catch (const base::InputError& error) {
+    } catch (const Error& error) {
         return error.what();
     }
     return "nothing";

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "base/fields.hpp"
+
+/// Forms in which a member of a described type can be written (fields.hpp). Each refers to the member, and lives only
+/// while it is visited.
+namespace base {
+
+/// Integer of 0 or more, with 7 bits in each byte.
+template <class Number>
+struct Varint {
+    Number& value;
+    void put(ByteWriter& writer) const { writer.putVarint(static_cast<std::uint64_t>(value)); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Number>) {
+        const std::uint64_t read = reader.getVarint();
+        if (read > static_cast<std::uint64_t>(std::numeric_limits<Number>::max())) {
+            throw FormatError("is " + std::to_string(read) + ", which is too large");
+        }
+        value = static_cast<Number>(read);
+    }
+};
+template <class Number>
+[[nodiscard]] Varint<Number> varint(Number& value) {
+    return {value};
+}
+
+/// Number of fixed size from `least` to `most`.
+template <class Number>
+struct Limited {
+    Number& value;
+    std::remove_const_t<Number> least, most;
+    void put(ByteWriter& writer) const { writer.put(value); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Number>) {
+        value = reader.get<Number>();
+        if (!(value >= least && value <= most)) {  // refuses NaN too
+            throw FormatError("is " + std::to_string(value) + ", not from " + std::to_string(least) + " to " +
+                              std::to_string(most));
+        }
+    }
+};
+template <class Number>
+[[nodiscard]] Limited<Number> limited(Number& value, std::type_identity_t<std::remove_const_t<Number>> least,
+                                      std::type_identity_t<std::remove_const_t<Number>> most) {
+    return {value, least, most};
+}
+
+/// Float of fixed size that need not be finite.
+template <class Float>
+struct AnyFloat {
+    Float& value;
+    void put(ByteWriter& writer) const { writer.put(value); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Float>) { value = reader.get<Float>(); }
+};
+template <class Float>
+[[nodiscard]] AnyFloat<Float> anyFloat(Float& value) {
+    return {value};
+}
+
+/// Number that is always the same, such as the first bytes of a file. `what` names it. It belongs to no member.
+template <class Number>
+struct Constant {
+    Number value;
+    std::string_view what;
+    void put(ByteWriter& writer) const { writer.put(value); }
+    void get(ByteReader& reader) const {
+        if (reader.get<Number>() != value) {
+            throw FormatError("is not " + std::string(what));
+        }
+    }
+};
+template <class Number>
+[[nodiscard]] Constant<Number> constant(Number value, std::string_view what) {
+    return {value, what};
+}
+
+/// Bools in one byte, the first in its lowest bit. The other bits are 0.
+template <class Bool, std::size_t kCount>
+struct Flags {
+    std::array<Bool*, kCount> values;
+    void put(ByteWriter& writer) const {
+        unsigned byte = 0;
+        for (std::size_t i = 0; i < kCount; ++i) {
+            byte |= static_cast<unsigned>(*values[i]) << i;
+        }
+        writer.put(static_cast<std::uint8_t>(byte));
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Bool>) {
+        const unsigned byte = reader.get<std::uint8_t>();
+        if (byte >> kCount != 0) {
+            throw FormatError("is " + std::to_string(byte) + ", with unknown bits");
+        }
+        for (std::size_t i = 0; i < kCount; ++i) {
+            *values[i] = (byte >> i & 1U) != 0;
+        }
+    }
+};
+template <class Bool, class... More>
+[[nodiscard]] Flags<Bool, 1 + sizeof...(More)> flags(Bool& first, More&... more) {
+    static_assert(sizeof...(more) < 8);
+    return {{&first, &more...}};
+}
+
+/// Elements behind their number, which is at most `most`. `Count` is the type of the number; void stands for a varint.
+template <class List, class Count>
+struct UpTo {
+    List& value;
+    std::size_t most;
+    void put(ByteWriter& writer) const {
+        if constexpr (std::is_void_v<Count>) {
+            writer.putVarint(value.size());
+        } else {
+            writer.put(static_cast<Count>(value.size()));
+        }
+        for (const auto& element : value) {
+            putMember(writer, element);
+        }
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<List>) {
+        std::uint64_t count = 0;
+        if constexpr (std::is_void_v<Count>) {
+            count = reader.getVarint();
+        } else {
+            count = reader.get<Count>();
+        }
+        if (count > most) {
+            throw FormatError("has " + std::to_string(count) + " elements; at most " + std::to_string(most) +
+                              " are allowed");
+        }
+        value.clear();
+        for (; count > 0; --count) {  // takes memory only for bytes that are there
+            getMember(reader, value.emplace_back());
+        }
+    }
+};
+template <class Count = void, class List>
+[[nodiscard]] UpTo<List, Count> upTo(List& value, std::size_t most) {
+    return {value, most};
+}
+
+/// Text of at most `most` bytes behind its length of 32 bits.
+template <class Text>
+struct TextUpTo {
+    Text& value;
+    std::size_t most;
+    void put(ByteWriter& writer) const { writer.putText(std::string_view(value).substr(0, most)); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Text>) {
+        const auto block = reader.getBlock();
+        if (block.size() > most) {
+            throw FormatError("has " + std::to_string(block.size()) + " bytes; at most " + std::to_string(most) +
+                              " are allowed");
+        }
+        value.assign(block.begin(), block.end());
+    }
+};
+template <class Text>
+[[nodiscard]] TextUpTo<Text> text(Text& value, std::size_t most) {
+    return {value, most};
+}
+
+/// Number behind a byte that is 0 or 1. The number's bytes are there in any case.
+template <class Optional>
+struct SpacedOptional {
+    Optional& value;
+    using Number = typename std::remove_const_t<Optional>::value_type;
+    void put(ByteWriter& writer) const {
+        writer.put(static_cast<std::uint8_t>(value.has_value()));
+        writer.put(value.value_or(Number{}));
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Optional>) {
+        const bool there = detail::getBool(reader);
+        Number number{};
+        getMember(reader, number);
+        value = there ? Optional(number) : std::nullopt;
+    }
+};
+template <class Optional>
+[[nodiscard]] SpacedOptional<Optional> spacedOptional(Optional& value) {
+    return {value};
+}
+
+/// Texts behind their number, each as TextUpTo. `most` limits their number, too.
+template <class Texts>
+struct TextsUpTo {
+    Texts& value;
+    std::size_t most;
+    void put(ByteWriter& writer) const {
+        writer.putVarint(value.size());
+        for (const auto& one : value) {
+            text(one, most).put(writer);
+        }
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Texts>) {
+        std::uint64_t count = reader.getVarint();
+        value.clear();
+        for (; count > 0; --count) {
+            text(value.emplace_back(), most).get(reader);
+        }
+    }
+};
+template <class Texts>
+[[nodiscard]] TextsUpTo<Texts> texts(Texts& value, std::size_t most) {
+    return {value, most};
+}
+
+/// Bytes behind their length of 32 bits.
+template <class AnyBytes>
+struct Block {
+    AnyBytes& value;
+    void put(ByteWriter& writer) const { writer.putBlock(value); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<AnyBytes>) {
+        const auto block = reader.getBlock();
+        value.assign(block.begin(), block.end());
+    }
+};
+template <class AnyBytes>
+[[nodiscard]] Block<AnyBytes> block(AnyBytes& value) {
+    return {value};
+}
+
+/// All bytes up to the end.
+template <class AnyBytes>
+struct Rest {
+    AnyBytes& value;
+    void put(ByteWriter& writer) const { writer.putBytes(value); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<AnyBytes>) {
+        const auto bytes = reader.getBytes(reader.rest().size());
+        value.assign(bytes.begin(), bytes.end());
+    }
+};
+template <class AnyBytes>
+[[nodiscard]] Rest<AnyBytes> rest(AnyBytes& value) {
+    return {value};
+}
+
+/// Bytes without a meaning up to the end. The member is their number; they are written as 0.
+template <class Number>
+struct Padding {
+    Number& count;
+    void put(ByteWriter& writer) const { writer.putBytes(Bytes(count, 0)); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Number>) {
+        count = static_cast<Number>(reader.rest().size());
+        reader.getBytes(count);
+    }
+};
+template <class Number>
+[[nodiscard]] Padding<Number> padding(Number& count) {
+    return {count};
+}
+
+}  // namespace base

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/fields.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "base/field_forms.hpp"
+#include "tests/support/refusal.hpp"
+
+namespace described {
+
+enum class Colour : std::uint8_t { red = 1, green = 4 };
+constexpr auto valuesOf(Colour) {
+    return std::array{base::Named{Colour::red, "red"}, base::Named{Colour::green, "green"}};
+}
+
+struct Place {
+    std::int32_t x = 0;
+    double y = 0;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("x", it.x);
+        visit("y", it.y);
+    }
+    friend bool operator==(const Place&, const Place&) = default;
+};
+
+struct All {
+    Place place;
+    Colour colour = Colour::red;
+    bool shown = false, small = false, round = false;
+    std::array<std::uint8_t, 2> key{};
+    std::array<std::uint16_t, 2> sides{};
+    std::optional<Place> other;
+    std::optional<double> width;
+    std::uint32_t count = 0;
+    double share = 0, any = 0;
+    std::vector<Place> path;
+    std::string name;
+    std::vector<std::string> lines;
+    base::Bytes block, rest;
+    [[nodiscard]] std::string refusal() const { return small && round ? "small and round at once" : ""; }
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("magic", base::constant(std::uint16_t{0x0102}, "the magic number"));
+        visit("place", it.place);
+        visit("colour", it.colour);
+        visit("shown", it.shown);
+        visit("form", base::flags(it.small, it.round));
+        visit("key", it.key);
+        visit("sides", it.sides);
+        visit("other", it.other);
+        visit("width", base::spacedOptional(it.width));
+        visit("count", base::varint(it.count));
+        visit("share", base::limited(it.share, 0, 1));
+        visit("any", base::anyFloat(it.any));
+        visit("path", base::upTo<std::uint8_t>(it.path, 3));
+        visit("name", base::text(it.name, 4));
+        visit("lines", base::texts(it.lines, 4));
+        visit("block", base::block(it.block));
+        visit("rest", base::rest(it.rest));
+    }
+    friend bool operator==(const All&, const All&) = default;
+};
+
+All full() {
+    All all;
+    all.place = {1, 0.5};
+    all.colour = Colour::green;
+    all.shown = all.round = true;
+    all.key = {7, 8};
+    all.sides = {0x0a0b, 12};
+    all.other = Place{-2, 4};
+    all.width = 0.25;
+    all.count = 300;
+    all.share = 1;
+    all.any = std::numeric_limits<double>::infinity();
+    all.path = {{3, 0}, {4, 0}};
+    all.name = "tool";
+    all.lines = {"a", ""};
+    all.block = {1};
+    all.rest = {9, 9};
+    return all;
+}
+
+struct Small {
+    std::uint8_t number = 0;
+    static void fields(auto& it, auto& visit) { visit("number", base::varint(it.number)); }
+};
+
+struct Long {
+    std::vector<std::uint8_t> numbers;
+    static void fields(auto& it, auto& visit) { visit("numbers", base::upTo(it.numbers, std::size_t{1} << 60)); }
+};
+
+struct Versioned {
+    std::uint8_t version = 1, value = 7;
+    static void fields(auto& it, auto& visit) {
+        visit("version", it.version);
+        if (visit.knows(it.version == 1)) {
+            visit("value", it.value);
+        }
+    }
+};
+
+void put(base::Bytes& bytes, double number) {
+    const std::size_t end = bytes.size();
+    bytes.resize(end + sizeof number);
+    std::memcpy(&bytes[end], &number, sizeof number);
+}
+
+void put(base::Bytes& bytes, std::initializer_list<std::uint8_t> more) { bytes.insert(bytes.end(), more); }
+
+}  // namespace described
+
+namespace {
+
+using described::All;
+using described::full;
+using described::Long;
+using described::Place;
+using described::Small;
+using described::Versioned;
+
+TEST(Fields, ComeBackAsTheyWent) {
+    EXPECT_EQ(base::decoded<All>(base::encoded(full())), full());
+    EXPECT_EQ(base::decoded<All>(base::encoded(All{})), All{});
+}
+
+TEST(Fields, HaveTheBytesOfTheirForms) {
+    base::Bytes expected{2, 1, 1, 0, 0, 0};
+    described::put(expected, 0.5);
+    described::put(expected,
+                   std::initializer_list<std::uint8_t>{4, 1, 2, 7, 8, 0x0b, 0x0a, 12, 0, 1, 0xfe, 0xff, 0xff, 0xff});
+    described::put(expected, 4);
+    expected.push_back(1);
+    described::put(expected, 0.25);
+    described::put(expected, std::initializer_list<std::uint8_t>{0xac, 0x02});
+    described::put(expected, 1);
+    described::put(expected, std::numeric_limits<double>::infinity());
+    described::put(expected, std::initializer_list<std::uint8_t>{2, 3, 0, 0, 0});
+    described::put(expected, 0);
+    described::put(expected, std::initializer_list<std::uint8_t>{4, 0, 0, 0});
+    described::put(expected, 0);
+    described::put(expected, std::initializer_list<std::uint8_t>{4,   0, 0, 0, 't', 'o', 'o', 'l', 2, 1, 0, 0, 0,
+                                                                 'a', 0, 0, 0, 0,   1,   0,   0,   0, 1, 9, 9});
+    EXPECT_EQ(base::encoded(full()), expected);
+}
+
+TEST(Fields, AreRefusedWhereverTheyAreCutShort) {
+    const base::Bytes whole = base::encoded(full());
+    for (std::size_t length = 0; length + full().rest.size() < whole.size(); ++length) {
+        EXPECT_THROW((void)base::decoded<All>(std::span(whole).first(length)), base::FormatError) << length;
+    }
+}
+
+std::string refusalOf(const All& all) {
+    return test::refusalOf<base::FormatError>([&] { (void)base::decoded<All>(base::encoded(all)); });
+}
+
+/// Returns why the bytes of full() are refused after one of them has changed.
+std::string refusalWith(std::size_t at, std::uint8_t byte) {
+    base::Bytes bytes = base::encoded(full());
+    bytes.at(at) = byte;
+    return test::refusalOf<base::FormatError>([&] { (void)base::decoded<All>(bytes); });
+}
+
+TEST(Fields, NameWhatIsWrong) {
+    EXPECT_EQ(refusalWith(0, 3), "magic: is not the magic number");
+    EXPECT_EQ(refusalWith(14, 2), "colour: is 2, which is unknown");
+    EXPECT_EQ(refusalWith(15, 2), "shown: is 2, neither 0 nor 1");
+    EXPECT_EQ(refusalWith(16, 4), "form: is 4, with unknown bits");
+    EXPECT_EQ(refusalWith(16, 3), "small and round at once");
+    EXPECT_EQ(refusalWith(23, 7), "other: is 7, neither 0 nor 1");
+    EXPECT_EQ(refusalWith(63, 4), "path: has 4 elements; at most 3 are allowed");
+    EXPECT_EQ(refusalWith(88, 5), "name: has 5 bytes; at most 4 are allowed");
+}
+
+TEST(Fields, RefuseNumbersThatAreNotFiniteOrOutOfRange) {
+    All all = full();
+    for (const double number : {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+        all.place.y = number;
+        EXPECT_EQ(refusalOf(all), "place: y: is not finite");
+    }
+    all = full();
+    for (const double share : {-0.5, 2.0}) {
+        all.share = share;
+        EXPECT_EQ(refusalOf(all), fmt::format("share: is {:f}, not from 0.000000 to 1.000000", share));
+    }
+    all.share = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_NE(refusalOf(all), "nothing");
+}
+
+TEST(Fields, RefuseANumberThatDoesNotFitItsMember) {
+    EXPECT_EQ(base::decoded<Small>(base::Bytes{0xff, 0x01}).number, 255);
+    EXPECT_EQ(test::refusalOf<base::FormatError>([] {
+                  (void)base::decoded<Small>(base::Bytes{0x80, 0x02});
+              }),
+              "number: is 256, which is too large");
+}
+
+TEST(Fields, RefuseBytesBehindTheEnd) {
+    base::Bytes bytes = base::encoded(Place{1, 2});
+    EXPECT_EQ(base::decoded<Place>(bytes), (Place{1, 2}));
+    bytes.push_back(0);
+    EXPECT_EQ(test::refusalOf<base::FormatError>([&] { (void)base::decoded<Place>(bytes); }),
+              "bytes behind its end: 1");
+}
+
+// A list of a hostile peer takes no memory for elements that are not there.
+TEST(Fields, AListTakesMemoryOnlyForItsBytes) {
+    base::ByteWriter writer;
+    writer.putVarint(std::uint64_t{1} << 60);
+    writer.putBytes(base::Bytes(10, 1));
+    EXPECT_NE(test::refusalOf<base::FormatError>([&] {
+                  (void)base::decoded<Long>(writer.bytes());
+              }).find("numbers: cut short"),
+              std::string::npos);
+}
+
+// A newer version of a message begins as the others do, and may be any bytes after that.
+TEST(Fields, OfAnUnknownLayoutAreSkippedByTheReaderAlone) {
+    EXPECT_EQ(base::encoded(Versioned{2, 5}), (base::Bytes{2, 5}));
+    const auto other = base::decoded<Versioned>(base::Bytes{2, 5, 6, 7});
+    EXPECT_EQ(other.version, 2);
+    EXPECT_EQ(other.value, 7);
+    EXPECT_THROW((void)base::decoded<Versioned>(base::Bytes{1, 5, 6}), base::FormatError);
+}
+
+TEST(Names, AreFoundBothWays) {
+    EXPECT_EQ(base::nameOf(described::Colour::green), "green");
+    EXPECT_EQ(base::nameOf(static_cast<described::Colour>(2)), "");
+    EXPECT_EQ(base::valueNamed<described::Colour>("red"), described::Colour::red);
+    EXPECT_EQ(base::valueNamed<described::Colour>("Red"), std::nullopt);
+}
+
+}  // namespace
