@@ -64,16 +64,8 @@ Cluster::Cluster(int* argc, char*** argv) : rank_(rankOfJob()), phase_(kInit) {
     MPI_Comm_create_keyval(MPI_COMM_NULL_COPY_FN, farewell, &key, nullptr);
     MPI_Comm_set_attr(MPI_COMM_SELF, key, this);
     bells_ = std::make_unique<HostBells>();
-    base::ByteWriter here;
-    here.putText(hostName());
-    here.put(host::freeMemory());
-    here.putText(machineId());
-    for (const base::Bytes& one : gather(here.take())) {
-        base::ByteReader reader(one);
-        RankHost& host = hosts_.emplace_back();
-        host.name = reader.getText();
-        host.freeBytes = reader.get<std::int64_t>();
-        host.machine = reader.getText();
+    for (const base::Bytes& one : gather(base::encoded(RankHost{hostName(), host::freeMemory(), machineId()}))) {
+        hosts_.push_back(base::decoded<RankHost>(one));
     }
 }
 

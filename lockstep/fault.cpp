@@ -9,32 +9,6 @@
 
 namespace lockstep {
 
-void Fault::encode(base::ByteWriter& writer) const {
-    writer.put(static_cast<std::uint8_t>(kind));
-    writer.put(rank);
-    writer.put(frame);
-    writer.put(frames);
-    writer.put(milliseconds);
-    writer.put(signal);
-    writer.put(column);
-    writer.put(row);
-    writer.put(bit);
-}
-
-Fault Fault::decode(base::ByteReader& reader) {
-    Fault fault;
-    fault.kind = static_cast<Kind>(reader.get<std::uint8_t>());
-    fault.rank = reader.get<int>();
-    fault.frame = reader.get<std::uint64_t>();
-    fault.frames = reader.get<std::uint64_t>();
-    fault.milliseconds = reader.get<std::uint32_t>();
-    fault.signal = reader.get<int>();
-    fault.column = reader.get<int>();
-    fault.row = reader.get<int>();
-    fault.bit = reader.get<int>();
-    return fault;
-}
-
 FaultsOfRank::FaultsOfRank(const std::vector<Fault>& all, int rank) {
     std::copy_if(all.begin(), all.end(), std::back_inserter(faults_),
                  [rank](const Fault& fault) { return fault.rank == rank; });

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/fields.hpp"
 #include "sand/replica.hpp"
 
 namespace lockstep {
@@ -24,6 +24,13 @@ struct Fault {
         view,       // one frame is drawn from another place
         shader      // one shader does not compile, before the first frame
     };
+    friend constexpr auto valuesOf(Kind) {
+        using enum Kind;
+        return std::array{base::Named{slow, "slow"},       base::Named{diverge, "diverge"},
+                          base::Named{die, "die"},         base::Named{hang, "hang"},
+                          base::Named{garbage, "garbage"}, base::Named{partition, "partition"},
+                          base::Named{view, "view"},       base::Named{shader, "shader"}};
+    }
     static constexpr int kLink = -1;  // instead of a rank: the link to the haptic server
 
     Kind kind = Kind::slow;
@@ -35,14 +42,20 @@ struct Fault {
     int signal = 9;                    // for `die`
     int column = 0, row = 0, bit = 0;  // for `diverge`: the cell, and the bit of its height; bit 0 is the lowest
 
-    void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError if the bytes end too early.
-    static Fault decode(base::ByteReader& reader);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("kind", it.kind);
+        visit("rank", it.rank);
+        visit("frame", it.frame);
+        visit("frames", it.frames);
+        visit("milliseconds", it.milliseconds);
+        visit("signal", it.signal);
+        visit("column", it.column);
+        visit("row", it.row);
+        visit("bit", it.bit);
+    }
     friend bool operator==(const Fault&, const Fault&) = default;
 };
-
-inline constexpr std::array<std::string_view, 8> kFaultNames{"slow",    "diverge",   "die",  "hang",
-                                                             "garbage", "partition", "view", "shader"};
 
 /// The faults of one rank. Injects them when their frame comes.
 class FaultsOfRank {

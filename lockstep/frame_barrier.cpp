@@ -163,7 +163,7 @@ FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
     std::uint32_t length = 0;
     if (cluster_.isMaster()) {
         frame_ = fromMaster.frame;
-        message = fromMaster.encode();
+        message = base::encoded(fromMaster);
         length = static_cast<std::uint32_t>(message.size());
         std::memcpy(packet.data(), &length, sizeof length);
         const std::size_t first = std::min(message.size(), kRoom);
@@ -184,7 +184,7 @@ FrameMessage FrameBarrier::begin(FrameMessage fromMaster, std::size_t& bytes) {
         receiveFromMaster(message.data() + kRoom, length - kRoom, kRestTag);
     }
     bytes = length;
-    return FrameMessage::decode(message);
+    return base::decoded<FrameMessage>(message);
 }
 
 void FrameBarrier::carryPointers() {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "lockstep/overlays.hpp"
 #include "lockstep/wall_figures.hpp"
 #include "sand/model/step.hpp"
@@ -27,11 +27,20 @@ struct ViewState {
     Overlays layers{};         // overlays that are shown with the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
 
-    void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError if the bytes end too early.
-    static ViewState decode(base::ByteReader& reader);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("head", it.head);
+        visit("right", it.right);
+        visit("eye_separation", it.eyeSeparation);
+        visit("scene_to_room", it.sceneToRoom);
+        visit("pattern", it.pattern);
+        visit("layers", it.layers);
+        visit("stereo", it.stereo);
+    }
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
+
+inline constexpr std::size_t kMostSteps = 1 << 20;  // most steps of one frame
 
 /// Message that begins a frame: the master sends it to every rank once per frame.
 struct FrameMessage {
@@ -43,9 +52,15 @@ struct FrameMessage {
     std::vector<sand::Step> steps;       // to be applied before the frame is drawn
     std::optional<WallFigures> figures;  // only while Overlay::statistics is shown; the barrier does not compare them
 
-    [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError if the bytes end too early or hold an invalid step.
-    static FrameMessage decode(std::span<const std::uint8_t> bytes);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame", base::varint(it.frame));
+        visit("view", it.view);
+        visit("audit_tiles", base::varint(it.auditTiles));
+        visit("flags", base::flags(it.capture, it.stop));
+        visit("steps", base::upTo(it.steps, kMostSteps));
+        visit("figures", it.figures);
+    }
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;
 };
 

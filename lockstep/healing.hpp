@@ -15,9 +15,12 @@ struct Remedy {
     int source = kMaster;  // rank whose state is right
     std::vector<int> odd;  // ranks that take this state
 
-    [[nodiscard]] base::Bytes encode() const;
-    /// Throws base::FormatError if the bytes end too early.
-    static Remedy decode(std::span<const std::uint8_t> bytes);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("go_on", it.goOn);
+        visit("source", it.source);
+        visit("odd", base::upTo(it.odd, kMostRanks));
+    }
     friend bool operator==(const Remedy&, const Remedy&) = default;
 };
 

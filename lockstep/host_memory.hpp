@@ -6,13 +6,23 @@
 #include <string>
 #include <vector>
 
+#include "base/field_forms.hpp"
+
 namespace lockstep {
+
+inline constexpr std::size_t kMostText = 1 << 16;  // [byte] of a text of a rank, and texts in a list
 
 /// Host of one rank, with its free memory.
 struct RankHost {
     std::string name;
     std::int64_t freeBytes = 0;  // free memory for all ranks of this host together
     std::string machine{};       // as machineId() returns it
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("name", base::text(it.name, kMostText));
+        visit("free_bytes", it.freeBytes);
+        visit("machine", base::text(it.machine, kMostText));
+    }
 };
 
 /// Returns the text of a message about the host that lacks most memory; nullopt if all ranks fit their hosts. A render

@@ -33,6 +33,10 @@ public:
         bits_ = static_cast<std::uint8_t>(shown ? bits_ | bit(layer) : bits_ & ~bit(layer));
     }
     [[nodiscard]] constexpr std::uint8_t bits() const { return bits_; }
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("bits", it.bits_);
+    }
     friend constexpr bool operator==(Overlays, Overlays) = default;
 
 private:

@@ -14,6 +14,8 @@ namespace lockstep {
 
 class FrameBarrier;
 
+inline constexpr std::size_t kMostFaults = 1 << 16;
+
 /// Message that every rank gets before the first frame. Render ranks read no file: the scene and the wall come from the
 /// master.
 struct SessionMessage {
@@ -24,8 +26,15 @@ struct SessionMessage {
     bool pointer = false;         // whether the hand is the pointer of the ranks' windows
     base::Bytes state{};          // sand::Replica::encodeState() of a resumed session; empty for a new one
 
-    [[nodiscard]] base::Bytes encode() const;
-    static SessionMessage decode(std::span<const std::uint8_t> bytes);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("scene", base::block(it.scene));
+        visit("wall", base::block(it.wall));
+        visit("frame_timeout_s", it.frameTimeout);
+        visit("faults", base::upTo(it.faults, kMostFaults));
+        visit("pointer", it.pointer);
+        visit("state", base::block(it.state));
+    }
 };
 
 /// Returns the master's argument `fromMaster` on all ranks. With nullopt the master refuses the session. Collective.
@@ -46,6 +55,17 @@ struct Readiness {
     // one. The rank has set it back. Empty if nothing was changed.
     std::string otherFloats{};
     std::string tile{};  // name of the tile that the rank draws; empty at the master
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("host", base::text(it.host, kMostText));
+        visit("build", base::text(it.buildId, kMostText));
+        visit("error", base::text(it.error, kMostText));
+        visit("renderer", base::text(it.renderer, kMostText));
+        visit("other_floats", base::text(it.otherFloats, kMostText));
+        visit("tile", base::text(it.tile, kMostText));
+        visit("shortcomings", base::texts(it.shortcomings, kMostText));
+        visit("frames_to_ignore", it.framesToIgnore);
+    }
 };
 
 /// Returns the readiness of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
@@ -66,6 +86,23 @@ struct RankReport {
     // Numbers of views that were not drawn, drawn in part, and drawn whole. A view is one eye in one frame.
     std::int64_t viewsSkipped = 0, viewsInPart = 0, viewsWhole = 0;
     double pixelShare = 0;  // share of all views' pixels that were drawn
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("host", base::text(it.host, kMostText));
+        visit("renderer", base::text(it.renderer, kMostText));
+        visit("swap_lock", base::text(it.swapLock, kMostText));
+        visit("draw_p50_ms", it.drawP50);
+        visit("draw_p99_ms", it.drawP99);
+        visit("draw_max_ms", it.drawMax);
+        visit("wait_p50_ms", it.waitP50);
+        visit("wait_p99_ms", it.waitP99);
+        visit("resident_bytes", it.residentBytes);
+        visit("frame_buffer_bytes", it.frameBufferBytes);
+        visit("views_skipped", it.viewsSkipped);
+        visit("views_in_part", it.viewsInPart);
+        visit("views_whole", it.viewsWhole);
+        visit("pixel_share", it.pixelShare);
+    }
 };
 
 /// Returns the reports of the render ranks at the master, in order of rank from 1; an empty list on other ranks. The

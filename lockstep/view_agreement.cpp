@@ -9,9 +9,8 @@ namespace lockstep {
 ViewProof::ViewProof(std::span<const std::uint8_t> wall) : wall_(XXH3_64bits(wall.data(), wall.size())) {}
 
 std::uint64_t ViewProof::hash(const ViewState& view) const {
-    base::ByteWriter writer;
-    view.encode(writer);
-    return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), wall_);
+    const base::Bytes bytes = base::encoded(view);
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), wall_);
 }
 
 std::vector<std::string> describeOtherViews(const std::vector<Arrival>& arrivals,

@@ -5,15 +5,23 @@
 #include <optional>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace lockstep {
+
+inline constexpr std::size_t kMostRanks = 1 << 16;  // most ranks that a message may list
 
 /// A rank for which the wall waits far more often than for any other.
 struct Drag {
     int rank = 0;       // 0: the master
     double share = 0;   // share of the frames in which the wall waited for it
     double keptMs = 0;  // [ms], mean wait in these frames
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("rank", base::varint(it.rank));
+        visit("share", it.share);
+        visit("kept_ms", it.keptMs);
+    }
     friend bool operator==(const Drag&, const Drag&) = default;
 };
 
@@ -26,9 +34,15 @@ struct WallFigures {
     std::uint64_t healed = 0;          // times that a rank was healed
     std::vector<std::uint32_t> swaps;  // [us] after a frame's first swap, by rank from 1; empty if unknown
 
-    void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError if the bytes end too early.
-    static WallFigures decode(base::ByteReader& reader);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame_ms", it.frameMs);
+        visit("slowest", it.slowest);
+        visit("agreed", base::varint(it.agreed));
+        visit("divergences", base::varint(it.divergences));
+        visit("healed", base::varint(it.healed));
+        visit("swaps_us", base::upTo(it.swaps, kMostRanks));
+    }
     friend bool operator==(const WallFigures&, const WallFigures&) = default;
 };
 

@@ -33,8 +33,8 @@ ordered_json jsonOf(const Incidents& incidents) {
                       {"stands", incidents.stands},
                       {"steps_left_out", incidents.stepsLeftOut},
                       {"first_difference", incidents.firstDifference}};
-    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
-        const std::string kind(haptic_bridge::kRefusalNames[i]);
+    for (std::size_t i = 0; i < valuesOf(haptic_bridge::RefusalCode{}).size(); ++i) {
+        const std::string kind(valuesOf(haptic_bridge::RefusalCode{})[i].name);
         json["refused_by_server"][kind] = incidents.refusedHere[i];
         json["refused"][kind] = incidents.refused[i];
     }
@@ -60,8 +60,8 @@ Incidents incidentsOf(const std::filesystem::path& file) {
                         .stands = count("stands"),
                         .stepsLeftOut = count("steps_left_out"),
                         .firstDifference = count("first_difference")};
-    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
-        const std::string kind(haptic_bridge::kRefusalNames[i]);
+    for (std::size_t i = 0; i < valuesOf(haptic_bridge::RefusalCode{}).size(); ++i) {
+        const std::string kind(valuesOf(haptic_bridge::RefusalCode{})[i].name);
         incidents.refusedHere[i] = count("refused_by_server/" + kind);
         incidents.refused[i] = count("refused/" + kind);
     }

@@ -30,15 +30,14 @@ constexpr std::uint64_t kMostFrames = std::numeric_limits<std::uint64_t>::max();
 using Kind = lockstep::Fault::Kind;
 
 /// Form of each kind of fault, in the order of Kind.
-constexpr std::array<std::string_view, lockstep::kFaultNames.size()> kUsage{
-    "slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
-    "diverge:rank=R,frame=F[,column=C,row=W,bit=B]",
-    "die:rank=R,frame=F[,signal=S]",
-    "hang:rank=R,frame=F",
-    "garbage:frame=F[,rank=R]",
-    "partition:ms=MS,frame=F[,rank=R]",
-    "view:rank=R,frame=F",
-    "shader:rank=R"};
+constexpr std::array<std::string_view, valuesOf(Kind{}).size()> kUsage{"slow:rank=R,ms=MS[,frame=FIRST][,frames=COUNT]",
+                                                                       "diverge:rank=R,frame=F[,column=C,row=W,bit=B]",
+                                                                       "die:rank=R,frame=F[,signal=S]",
+                                                                       "hang:rank=R,frame=F",
+                                                                       "garbage:frame=F[,rank=R]",
+                                                                       "partition:ms=MS,frame=F[,rank=R]",
+                                                                       "view:rank=R,frame=F",
+                                                                       "shader:rank=R"};
 
 /// A number that a kind of fault takes, with its range and the variable for it.
 struct Key {
@@ -85,12 +84,11 @@ void readNumbers(std::string_view pairs, std::span<Key> keys, const std::string&
 
 Kind kindOf(const std::string& text) {
     const std::size_t colon = text.find(':');
-    const auto* const name =
-        std::find(lockstep::kFaultNames.begin(), lockstep::kFaultNames.end(), std::string_view(text).substr(0, colon));
-    if (name == lockstep::kFaultNames.end() || colon == std::string::npos) {
+    const std::optional<Kind> kind = base::valueNamed<Kind>(std::string_view(text).substr(0, colon));
+    if (!kind || colon == std::string::npos) {
         throw base::InputError(fmt::format("--inject {}: no such fault; write {}", text, fmt::join(kUsage, ", or ")));
     }
-    return static_cast<Kind>(name - lockstep::kFaultNames.begin());
+    return *kind;
 }
 
 }  // namespace

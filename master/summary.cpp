@@ -17,7 +17,7 @@ std::string timesOf(const haptic_bridge::RefusalCounts& counts) {
     std::string kinds;
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] > 0) {
-            kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", haptic_bridge::kRefusalNames[i]);
+            kinds += fmt::format("{}{}", kinds.empty() ? "" : ", ", valuesOf(haptic_bridge::RefusalCode{})[i].name);
             kinds += counts[i] < all ? fmt::format(" {}", counts[i]) : "";
         }
     }

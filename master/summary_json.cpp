@@ -34,8 +34,8 @@ ordered_json hapticPart(const Summary& summary) {
     ordered_json part = ordered_json::object();
     part["reconnects"] = summary.link.reconnects;
     part["hand_overs"] = {{"by_steps", summary.link.catchUps}, {"by_state", summary.link.snapshots}};
-    for (std::size_t i = 0; i < haptic_bridge::kRefusalNames.size(); ++i) {
-        const std::string kind(haptic_bridge::kRefusalNames[i]);
+    for (std::size_t i = 0; i < valuesOf(haptic_bridge::RefusalCode{}).size(); ++i) {
+        const std::string kind(valuesOf(haptic_bridge::RefusalCode{})[i].name);
         part["refused_by_server"][kind] = summary.link.refusedHere[i];
         part["refused"]["servers"][kind] = summary.link.refused[i];
         part["refused"]["guests"][kind] = summary.haptic ? summary.haptic->refused[i] : 0;
@@ -46,8 +46,9 @@ ordered_json hapticPart(const Summary& summary) {
         part["half_round_trip_to_master_ms"] = halfRoundTrip(report->toMaster);
         part["step_message_bytes"] = report->stepBytesMean;
         part["steps_withheld"] = haptic_bridge::inAll(report->stepsWithheld);
-        for (std::size_t i = 0; i < haptic_bridge::kWithheldNames.size(); ++i) {
-            part["steps_withheld_by"][std::string(haptic_bridge::kWithheldNames[i])] = report->stepsWithheld[i];
+        for (std::size_t i = 0; i < valuesOf(haptic_bridge::Withheld{}).size(); ++i) {
+            part["steps_withheld_by"][std::string(valuesOf(haptic_bridge::Withheld{})[i].name)] =
+                report->stepsWithheld[i];
         }
         part["samples_dropped"] = report->samplesDropped;
         part["ticks"] = report->ticks;

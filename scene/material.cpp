@@ -41,7 +41,7 @@ std::int32_t sweepsFor(sand::Scheme scheme, double radius /* [cell] */, double s
 
 /// Returns why the tool's shape is invalid, or nullopt if it is valid.
 std::optional<MaterialFault> toolFaultOf(const Material& material, const MaterialGrid& grid) {
-    const std::string_view name = sand::toolName(material.toolKind);
+    const std::string_view name = base::nameOf(material.toolKind);
     if (material.toolWidth && sand::isRound(material.toolKind)) {
         return MaterialFault{"width", fmt::format("a {} is as wide as it is long; leave width out", name)};
     }

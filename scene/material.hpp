@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/field_forms.hpp"
 #include "sand/model/tuning.hpp"
 
 namespace sand {
@@ -33,6 +34,21 @@ struct Material {
     /// at most w · cohesionLength. Both grow with w; w = 0 is dry sand.
     [[nodiscard]] double talus() const;                                                                      // [deg]
     [[nodiscard]] double wetTalusNow() const { return wetTalus.value_or(dryTalus > 45 ? dryTalus : 45.0); }  // [deg]
+    /// The order in a journal. The two optional numbers have their eight bytes in any case.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("talus_deg", it.dryTalus);
+        visit("humidity", it.humidity);
+        visit("cohesion_length", it.cohesionLength);
+        visit("band", it.band);
+        visit("settling_time", it.settlingSeconds);
+        visit("radius", it.toolRadius);
+        visit("heading_deg", it.toolHeading);
+        visit("wet_talus_deg", base::spacedOptional(it.wetTalus));
+        visit("width", base::spacedOptional(it.toolWidth));
+        visit("kind", it.toolKind);
+        visit("left_foot", it.leftFoot);
+    }
     friend bool operator==(const Material&, const Material&) = default;
 };
 

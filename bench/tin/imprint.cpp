@@ -93,7 +93,7 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         }
     }
     for (const auto& [what, seconds] : {std::pair{"imprint", &imprints}, {"drag", &steps}}) {
-        csv.row(what, sand::toolName(kind), refines ? "yes" : "no", side, vertices, near, 1e3 * quantile(*seconds, 0.5),
+        csv.row(what, base::nameOf(kind), refines ? "yes" : "no", side, vertices, near, 1e3 * quantile(*seconds, 0.5),
                 1e3 * quantile(*seconds, 0.99), 1e3 * quantile(*seconds, 1));
     }
 }
@@ -116,7 +116,7 @@ void imprint(const Settings& settings, Csv& csv) {
                 if (side < 6 * kToolRadius) {
                     continue;
                 }
-                progress("N = {}, {}", side, sand::toolName(kind));
+                progress("N = {}, {}", side, base::nameOf(kind));
                 measure(side, kind, refines, settings, csv);
             }
         }

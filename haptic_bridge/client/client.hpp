@@ -72,7 +72,7 @@ struct LinkCounters {
     std::uint64_t stepsForeign = 0;           // steps of another epoch, left out
     std::uint64_t catchUps = 0;               // NeedStates answered with the steps that the server lacked
     std::uint64_t snapshots = 0;              // NeedStates answered with the whole sand
-    RefusalCounts refusedHere{};              // servers that refused this master, in the order of kRefusalNames
+    RefusalCounts refusedHere{};              // servers that refused this master, in the order of valuesOf(RefusalCode)
     RefusalCounts refused{};                  // servers that this master refused; `limit`: a server that never greeted
     /// Adds every counter of `other`.
     void add(const LinkCounters& other);

@@ -100,8 +100,8 @@ bool MasterHandshake::accepts(const Welcome& welcome) {
         return false;
     }
     return welcome.role == transcript_.hello.role ||
-           refuse(RefusalCode::role, "it grants role " + std::string(nameOf(welcome.role)) + ", but role " +
-                                         std::string(nameOf(transcript_.hello.role)) + " was requested");
+           refuse(RefusalCode::role, "it grants role " + std::string(base::nameOf(welcome.role)) + ", but role " +
+                                         std::string(base::nameOf(transcript_.hello.role)) + " was requested");
 }
 
 bool MasterHandshake::accepts(const PositionGreeting& greeting) {
@@ -121,7 +121,7 @@ std::optional<Refusal> ServerHandshake::refusalFor(const Hello& hello, bool over
                        "this server has no secret to prove; start it with --secret-file, or start your side without"};
     }
     if (security_.proves() && !security_.secrets.of(hello.role)) {
-        return Refusal{RefusalCode::role, "this server has no secret of role " + std::string(nameOf(hello.role)) +
+        return Refusal{RefusalCode::role, "this server has no secret of role " + std::string(base::nameOf(hello.role)) +
                                               "; add a line to its --secret-file"};
     }
     return std::nullopt;

@@ -68,7 +68,7 @@ LinkSecurity LinkOptions::forServer() const {
 LinkSecurity LinkOptions::forClient(Role role) const {
     LinkSecurity security = withSecrets(*this);
     if (security.proves() && !security.secrets.of(role)) {
-        throw base::InputError(secretFile + ": holds no secret of role " + std::string(nameOf(role)) +
+        throw base::InputError(secretFile + ": holds no secret of role " + std::string(base::nameOf(role)) +
                                ", which this program needs");
     }
     security.tls = tls ? security.functions->tlsClient() : nullptr;

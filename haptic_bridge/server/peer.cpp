@@ -125,7 +125,7 @@ void Peer::take(const Proof& proof) {
     } else if (!handshake_.accepts(proof)) {
         refuse(
             {RefusalCode::secret,
-             fmt::format("the secret of role {} differs here; give both sides the same --secret-file", nameOf(role_))});
+             fmt::format("the secret of role {} differs here; give both sides the same --secret-file", base::nameOf(role_))});
     } else {
         welcome();
     }

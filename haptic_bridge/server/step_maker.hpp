@@ -105,7 +105,7 @@ private:
     std::uint64_t shown_ = 0;   // number of the step that the wall shows
     bool liftFirst_ = false;    // the first step of an epoch lifts a tool that was left in the sand
     std::optional<Held> held_;  // of the last Shown; nullopt before the first of this epoch
-    std::array<std::atomic<std::uint64_t>, kWithheldNames.size()> withheld_{};
+    std::array<std::atomic<std::uint64_t>, valuesOf(Withheld{}).size()> withheld_{};
     std::atomic<std::uint64_t> dropped_{0};
 };
 

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "master/journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 #include "scene/material.hpp"
@@ -20,17 +20,31 @@ namespace master {
 
 inline constexpr std::uint32_t kJournalVersion = 8;
 
+inline constexpr std::size_t kMostSteps = 1 << 20;    // most steps of one frame
+inline constexpr std::size_t kMostFailure = 1 << 20;  // [byte]
+
 /// The steps of one frame, as the journal holds them.
 struct JournalFrame {
     std::uint64_t frame = 0;
     std::uint64_t hashBefore = 0;  // state hash before the first of the steps
     std::vector<sand::Step> steps;
     bool doubted = false;  // only when read: the hash does not count, because it follows a JournalDoubt
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame", base::varint(it.frame));
+        visit("hash_before", it.hashBefore);
+        visit("steps", base::upTo(it.steps, kMostSteps));
+    }
 };
 
 /// Hash of the sand after a step. The last record of a whole session and the header of a later part contain one.
 struct JournalEnd {
     std::uint64_t step = 0, hash = 0;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("step", it.step);
+        visit("hash", it.hash);
+    }
 };
 
 /// Marks the place where a session was resumed.
@@ -39,11 +53,22 @@ struct JournalResumed {
     JournalEnd sand;
     std::int64_t cutBytes = 0;  // [byte], length of the torn record that was cut off before this one
     std::string failure;        // text that says what had failed; empty if unknown
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame", base::varint(it.frame));
+        visit("sand", it.sand);
+        visit("cut_bytes", it.cutBytes);
+        visit("failure", base::text(it.failure, kMostFailure));
+    }
 };
 
 /// A piece of the haptic server's tick track.
 struct JournalTicks {
     base::Bytes piece;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("piece", base::rest(it.piece));
+    }
 };
 
 /// The ranks differed, and their majority decided which sand is right. The hashes of later frames do not count until a
@@ -51,6 +76,11 @@ struct JournalTicks {
 struct JournalDoubt {
     std::uint64_t frame = 0;
     JournalEnd sand;  // of the majority
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame", base::varint(it.frame));
+        visit("sand", it.sand);
+    }
 };
 
 /// The majority's sand has been compared with the replay of this journal.
@@ -58,18 +88,33 @@ struct JournalChecked {
     std::uint64_t frame = 0;
     JournalEnd sand;        // that the ranks now have
     bool outvoted = false;  // the majority was wrong, and all ranks took the sand of the replay
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("frame", base::varint(it.frame));
+        visit("sand", it.sand);
+        visit("outvoted", it.outvoted);
+    }
 };
 
 /// Last record of a part. The session continues in the next part.
 struct JournalContinued {
     std::uint32_t part = 0;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("part", it.part);
+    }
 };
 
 /// Share of its force that the hand feels from here on, as an operator set it. Sand and hashes do not depend on it.
 struct JournalForce {
     double share = 1;  // 0 to 1
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("share", base::limited(it.share, 0, 1));
+    }
 };
 
+/// A record. Its type byte is the type's place in this list, counted from 1.
 using JournalRecord = std::variant<JournalFrame, JournalEnd, JournalTicks, JournalResumed, scene::Material,
                                    JournalContinued, JournalDoubt, JournalChecked, JournalForce>;
 

@@ -41,7 +41,7 @@ public:
         }
     }
     [[nodiscard]] std::string text() const {
-        return fmt::format("{},{},{:.6g}", sand::toolName(rules_.toolKind), rules_.toolRadius * unit_,
+        return fmt::format("{},{},{:.6g}", base::nameOf(rules_.toolKind), rules_.toolRadius * unit_,
                            sand::degreesOf(heading_));
     }
     [[nodiscard]] double unit() const { return unit_; }

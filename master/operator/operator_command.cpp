@@ -90,14 +90,14 @@ scene::ToolChange parseTool(std::string_view text) {
             number = parseNumber(fmt::format("a tool's {}", key), value);
         } else if (key == "foot" && (value == "left" || value == "right")) {
             change.leftFoot = value == "left";
-        } else if (const auto kind = sand::toolNamed(word)) {
+        } else if (const auto kind = base::valueNamed<sand::ToolKind>(word)) {
             change.kind = kind;
         } else if (const auto radius = numberIn(word)) {
             change.radius = radius;
         } else if (!word.empty()) {
             std::string shapes;
             for (int i = 0; i < sand::kToolKinds; ++i) {
-                shapes += fmt::format("{}, ", sand::toolName(static_cast<sand::ToolKind>(i)));
+                shapes += fmt::format("{}, ", base::nameOf(static_cast<sand::ToolKind>(i)));
             }
             throw base::InputError(
                 fmt::format("a tool is one of {}or has radius=, width=, heading=, foot=left or right, got '{}'", shapes,

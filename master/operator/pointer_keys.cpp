@@ -26,7 +26,7 @@ constexpr std::array<std::pair<char, Overlay>, 5> kLayers{{{'g', Overlay::wirefr
 
 std::string commandOf(char key, const scene::Material& material, lockstep::Overlays layers) {
     if (key >= '1' && key < '1' + sand::kToolKinds) {
-        return fmt::format("tool {}", sand::toolName(static_cast<sand::ToolKind>(key - '1')));
+        return fmt::format("tool {}", base::nameOf(static_cast<sand::ToolKind>(key - '1')));
     }
     if (const auto* layer = std::ranges::find(kLayers, key, [](const auto& entry) { return entry.first; });
         layer != kLayers.end()) {

@@ -59,22 +59,22 @@ Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
     return kind;
 }
 
-void encode(const Step& step, base::ByteWriter& writer) {
-    writer.putVarint(step.epoch);
-    writer.putVarint(step.number);
-    writer.put(static_cast<std::uint8_t>(flagsOf(step)));
-    writer.put(static_cast<std::uint8_t>(step.path.size()));
+void Step::put(base::ByteWriter& writer) const {
+    writer.putVarint(epoch);
+    writer.putVarint(number);
+    writer.put(static_cast<std::uint8_t>(flagsOf(*this)));
+    writer.put(static_cast<std::uint8_t>(path.size()));
     ProbePoint last;
-    for (const ProbePoint& point : step.path) {
+    for (const ProbePoint& point : path) {
         writer.putSigned(std::int64_t{point.x} - last.x);
         writer.putSigned(std::int64_t{point.y} - last.y);
         writer.putSigned(std::int64_t{point.z} - last.z);
         last = point;
     }
-    if (step.heading) {
-        step.heading->encode(writer);
+    if (heading) {
+        heading->encode(writer);
     }
-    encodeDetails(step.edit, writer);
+    encodeDetails(edit, writer);
 }
 
 namespace {
@@ -88,35 +88,35 @@ std::int32_t addChecked(std::int32_t base, std::int64_t difference) {
 
 }  // namespace
 
-Step decodeStep(base::ByteReader& reader) {
-    Step step;
-    const std::uint64_t epoch = reader.getVarint();
-    if (epoch > UINT32_MAX) {
+void Step::get(base::ByteReader& reader) {
+    const std::uint64_t readEpoch = reader.getVarint();
+    if (readEpoch > UINT32_MAX) {
         throw base::FormatError("a step's epoch is out of range");
     }
-    step.epoch = static_cast<std::uint32_t>(epoch);
-    step.number = reader.getVarint();
+    epoch = static_cast<std::uint32_t>(readEpoch);
+    number = reader.getVarint();
     const auto flags = reader.get<std::uint8_t>();
     const auto count = reader.get<std::uint8_t>();
-    const int edit = flags % kTurned / 2;
+    const int kind = flags % kTurned / 2;
     const bool turned = (flags & kTurned) != 0, mirrored = (flags & kMirrored) != 0;
-    if (edit >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
+    if (kind >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
         throw base::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
-    step.engaged = (flags & kEngaged) != 0;
-    step.path.reserve(count);
+    engaged = (flags & kEngaged) != 0;
+    path.clear();
+    path.reserve(count);
     ProbePoint last;
     for (int i = 0; i < count; ++i) {
         last.x = addChecked(last.x, reader.getSigned());
         last.y = addChecked(last.y, reader.getSigned());
         last.z = addChecked(last.z, reader.getSigned());
-        step.path.push_back(last);
+        path.push_back(last);
     }
+    heading.reset();
     if (turned) {
-        step.heading = Heading::decode(reader, mirrored);
+        heading = Heading::decode(reader, mirrored);
     }
-    step.edit = decodeDetails(static_cast<Edit::Kind>(edit), reader);
-    return step;
+    edit = decodeDetails(static_cast<Edit::Kind>(kind), reader);
 }
 
 }  // namespace sand

@@ -74,14 +74,14 @@ struct Step {
     std::vector<ProbePoint> path;
     Edit edit = Edit::none;                         // done after the tool's displacement and before the sweeps
     std::optional<Heading> heading = std::nullopt;  // of the tool from this step on; nullopt: unchanged
+
+    /// Writes the one format that link, frame message and journal share. A point is written as the difference from the
+    /// point before, in integers of variable length: about 60 bytes for a step of 17 samples.
+    void put(base::ByteWriter& writer) const;
+    /// Reads what put() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points, and for
+    /// a coordinate beyond kMaxProbe.
+    void get(base::ByteReader& reader);
     friend bool operator==(const Step&, const Step&) = default;
 };
-
-/// Writes a step in the one format that link, frame message and journal share. A point is encoded as the difference
-/// from the point before, in integers of variable length: about 60 bytes for a step of 17 samples.
-void encode(const Step& step, base::ByteWriter& writer);
-/// Reads a step that encode() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points,
-/// and for a coordinate beyond kMaxProbe.
-[[nodiscard]] Step decodeStep(base::ByteReader& reader);
 
 }  // namespace sand

@@ -9,9 +9,6 @@
 namespace sand {
 namespace {
 
-constexpr std::array<std::string_view, kToolKinds> kNames{"sphere",  "circle",    "rectangle",
-                                                          "ellipse", "ellipsoid", "footprint"};
-
 constexpr double kBeside = 4;  // level of a place beside a piece; larger than any level within the piece's rectangle
 
 constexpr std::array<SolePiece, 1> kPlate{{{0, 0, 1, 1, 0, 0}}};
@@ -28,13 +25,6 @@ constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
                                           {0.575, -0.75, 0.08, 0.13, 0.03, 0.06}}};
 
 }  // namespace
-
-std::string_view toolName(ToolKind kind) { return kNames.at(static_cast<std::size_t>(kind)); }
-
-std::optional<ToolKind> toolNamed(std::string_view name) {
-    const auto* const found = std::find(kNames.begin(), kNames.end(), name);
-    return found == kNames.end() ? std::nullopt : std::optional(static_cast<ToolKind>(found - kNames.begin()));
-}
 
 std::span<const SolePiece> solePieces() { return kSole; }
 

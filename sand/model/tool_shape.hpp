@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/code_path.hpp"
+#include "base/names.hpp"
 #include "sand/model/heading.hpp"
 #include "sand/model/height_field.hpp"
 
@@ -24,12 +25,15 @@ enum class ToolKind : std::uint8_t {
     ellipsoid,
     footprint  // sole of a bare right foot
 };
-inline constexpr int kToolKinds = 6;  // number of kinds
+/// The names are those of scene files and operator commands.
+constexpr auto valuesOf(ToolKind) {
+    using enum ToolKind;
+    return std::array{base::Named{sphere, "sphere"},       base::Named{circle, "circle"},
+                      base::Named{rectangle, "rectangle"}, base::Named{ellipse, "ellipse"},
+                      base::Named{ellipsoid, "ellipsoid"}, base::Named{footprint, "footprint"}};
+}
+inline constexpr int kToolKinds = static_cast<int>(valuesOf(ToolKind{}).size());
 
-/// Returns the name of `kind` in scene files and operator commands.
-[[nodiscard]] std::string_view toolName(ToolKind kind);
-/// Returns the kind with this name, or nullopt if `name` is unknown.
-[[nodiscard]] std::optional<ToolKind> toolNamed(std::string_view name);
 /// Returns whether the tool is a sphere or a circle. A round tool ignores width and heading.
 [[nodiscard]] constexpr bool isRound(ToolKind kind) { return kind == ToolKind::sphere || kind == ToolKind::circle; }
 /// Returns the default ratio of width to length.

@@ -61,7 +61,7 @@ std::vector<std::string_view> toolNames() {
     std::vector<std::string_view> names;
     names.reserve(sand::kToolKinds);
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        names.push_back(sand::toolName(static_cast<sand::ToolKind>(kind)));
+        names.push_back(base::nameOf(static_cast<sand::ToolKind>(kind)));
     }
     return names;
 }

@@ -78,7 +78,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     nlohmann::json incidents{
         {"divergences", 3}, {"healed", 2}, {"outvoted", 1},       {"server_divergences", 0}, {"links", 5},
         {"reconnects", 4},  {"stands", 1}, {"steps_left_out", 8}, {"first_difference", 17}};
-    for (const std::string_view kind : haptic_bridge::kRefusalNames) {
+    for (const auto& [code, kind] : valuesOf(haptic_bridge::RefusalCode{})) {
         incidents["refused_by_server"][std::string(kind)] = 6;
         incidents["refused"][std::string(kind)] = 7;
     }

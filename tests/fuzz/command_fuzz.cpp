@@ -33,11 +33,11 @@ void change(scene::Material& material, const scene::Material& wanted, const scen
     sand::Step step;
     step.edit = sand::Edit::tuned(scene::tuningOf(wanted, grid));
     base::ByteWriter writer;
-    encode(step, writer);
+    step.put(writer);
     base::ByteReader reader(writer.bytes());
     bool same = false;
     try {
-        same = sand::decodeStep(reader) == step;
+        same = base::read<sand::Step>(reader) == step;
     } catch (const base::FormatError&) {
     }
     fuzz::require(same, "a command makes a step that cannot be sent");

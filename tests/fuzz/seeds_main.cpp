@@ -120,8 +120,8 @@ void writeJournal(Folder folder, const fs::path& scratch) {
     frame.putVarint(1);
     frame.put(std::uint64_t{17});
     frame.putVarint(2);
-    sand::encode(step(1), frame);
-    sand::encode(step(2), frame);
+    step(1).put(frame);
+    step(2).put(frame);
     base::ByteWriter end;
     end.put(std::uint8_t{2});
     end.put(std::uint64_t{2});

@@ -85,7 +85,7 @@ SANDWALL_FUZZER(steps) {
         bool read = false;
         fuzz::takeOrRefuse([&] {
             base::ByteReader reader(pieces[i]);
-            step = sand::decodeStep(reader);
+            step = base::read<sand::Step>(reader);
             shorten(step);
             pack(step, scene);
             read = true;

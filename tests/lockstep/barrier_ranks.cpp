@@ -35,7 +35,7 @@ lockstep::FrameMessage messageOf(std::uint64_t frame, std::size_t bytes) {
     lockstep::FrameMessage message;
     message.frame = frame;
     message.steps.push_back({1, frame, true, {}, sand::Edit::loaded(base::Bytes(bytes, 7))});
-    for (std::size_t sand = bytes; message.encode().size() > bytes && sand > 0;) {
+    for (std::size_t sand = bytes; base::encoded(message).size() > bytes && sand > 0;) {
         message.steps.front().edit = sand::Edit::loaded(base::Bytes(--sand, 7));
     }
     return message;
@@ -71,7 +71,7 @@ public:
         const lockstep::FrameMessage message =
             barrier_.begin(master ? messageOf(frame, bytes) : lockstep::FrameMessage{}, got);
         // The message's hash stands for the sand. A rank that has received another message therefore differs.
-        Arrival mine{message.frame, 1, 2, 100 + cluster_.rank(), hashOf(message.encode()), 5, 'q'};
+        Arrival mine{message.frame, 1, 2, 100 + cluster_.rank(), hashOf(base::encoded(message)), 5, 'q'};
         for (const Deed& deed : kDeeds) {
             if (deed.frame == frame && deed.rank == cluster_.rank()) {
                 act(deed.kind, mine);

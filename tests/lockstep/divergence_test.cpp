@@ -34,8 +34,8 @@ TEST(Vote, IsATieWhereNoneHasMoreThanHalf) {
 
 TEST(Remedy, SurvivesItsEncoding) {
     const lockstep::Remedy remedy{true, 3, {0, 2}};
-    EXPECT_EQ(lockstep::Remedy::decode(remedy.encode()), remedy);
-    EXPECT_EQ(lockstep::Remedy::decode(lockstep::Remedy{}.encode()), lockstep::Remedy{});
+    EXPECT_EQ(base::decoded<lockstep::Remedy>(base::encoded(remedy)), remedy);
+    EXPECT_EQ(base::decoded<lockstep::Remedy>(base::encoded(lockstep::Remedy{})), lockstep::Remedy{});
 }
 
 }  // namespace

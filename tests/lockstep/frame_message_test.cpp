@@ -29,7 +29,7 @@ lockstep::FrameMessage digging() {
 
 TEST(FrameMessage, SurvivesItsEncoding) {
     const lockstep::FrameMessage message = digging();
-    EXPECT_EQ(lockstep::FrameMessage::decode(message.encode()), message);
+    EXPECT_EQ(base::decoded<lockstep::FrameMessage>(base::encoded(message)), message);
 }
 
 // All numbers are different, so that the test finds two that are exchanged.
@@ -44,11 +44,7 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
     for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
         view.sceneToRoom.at(i) = 11 + static_cast<double>(i);
     }
-    base::ByteWriter writer;
-    view.encode(writer);
-    base::ByteReader reader(writer.bytes());
-    EXPECT_EQ(lockstep::ViewState::decode(reader), view);
-    EXPECT_TRUE(reader.atEnd());
+    EXPECT_EQ(base::decoded<lockstep::ViewState>(base::encoded(view)), view);
 }
 
 TEST(FrameMessage, TellsAStopFromACapture) {
@@ -56,7 +52,7 @@ TEST(FrameMessage, TellsAStopFromACapture) {
         lockstep::FrameMessage message = digging();
         message.stop = stop;
         message.capture = !stop;
-        const lockstep::FrameMessage copy = lockstep::FrameMessage::decode(message.encode());
+        const lockstep::FrameMessage copy = base::decoded<lockstep::FrameMessage>(base::encoded(message));
         EXPECT_EQ(copy.stop, stop);
         EXPECT_EQ(copy.capture, !stop);
     }
@@ -69,33 +65,32 @@ lockstep::FrameMessage observed() {
 }
 
 TEST(FrameMessage, CarriesWhatTheWallKnowsOfItself) {
-    EXPECT_EQ(lockstep::FrameMessage::decode(observed().encode()), observed());
+    EXPECT_EQ(base::decoded<lockstep::FrameMessage>(base::encoded(observed())), observed());
     lockstep::FrameMessage nobodySlow = observed();
     nobodySlow.figures->slowest.reset();
-    EXPECT_EQ(lockstep::FrameMessage::decode(nobodySlow.encode()), nobodySlow);
+    EXPECT_EQ(base::decoded<lockstep::FrameMessage>(base::encoded(nobodySlow)), nobodySlow);
 }
 
 // A wall is still for most of the day, and its frame messages must be short. Absent figures take no byte of their own.
 TEST(FrameMessage, TakesNoByteForFiguresThatNobodyAskedFor) {
     lockstep::FrameMessage message = digging();
-    const std::size_t unobserved = message.encode().size();
+    const std::size_t unobserved = base::encoded(message).size();
     message.figures.emplace();
-    EXPECT_GT(message.encode().size(), unobserved);
+    EXPECT_GT(base::encoded(message).size(), unobserved);
     lockstep::FrameMessage still;
     still.frame = 1;
-    base::ByteWriter view;
-    still.view.encode(view);
-    EXPECT_EQ(still.encode().size(), view.bytes().size() + 4) << "frame, hash tiles, flags, steps: a byte each";
+    EXPECT_EQ(base::encoded(still).size(), base::encoded(still.view).size() + 5)
+        << "frame, hash tiles, flags, steps, figures: a byte each";
 }
 
 TEST(FrameMessage, EightStepsOfDiggingTravelInOneMessage) {
-    EXPECT_LE(digging().encode().size(), lockstep::FrameBarrier::kOneMessage - sizeof(std::uint32_t));
+    EXPECT_LE(base::encoded(digging()).size(), lockstep::FrameBarrier::kOneMessage - sizeof(std::uint32_t));
 }
 
 TEST(FrameMessage, RefusesEveryTruncation) {
-    const base::Bytes bytes = observed().encode();
+    const base::Bytes bytes = base::encoded(observed());
     for (std::size_t length = 0; length < bytes.size(); ++length) {
-        EXPECT_THROW((void)lockstep::FrameMessage::decode(std::span(bytes).first(length)), base::FormatError);
+        EXPECT_THROW((void)base::decoded<lockstep::FrameMessage>(std::span(bytes).first(length)), base::FormatError);
     }
 }
 
@@ -111,7 +106,7 @@ TEST(SessionMessage, SurvivesItsEncoding) {
          {.kind = Fault::Kind::partition, .rank = Fault::kLink, .frame = 3, .milliseconds = 1}},
         true,
         {6, 7, 8}};
-    const lockstep::SessionMessage copy = lockstep::SessionMessage::decode(message.encode());
+    const lockstep::SessionMessage copy = base::decoded<lockstep::SessionMessage>(base::encoded(message));
     EXPECT_EQ(copy.scene, message.scene);
     EXPECT_EQ(copy.wall, message.wall);
     EXPECT_EQ(copy.frameTimeout, 12.5);

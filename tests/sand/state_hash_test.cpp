@@ -110,7 +110,7 @@ TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
     hashes.add("ellipse", tuned(ellipse));
     for (const sand::ToolKind kind :
          {sand::ToolKind::rectangle, sand::ToolKind::ellipsoid, sand::ToolKind::footprint}) {
-        hashes.add(std::string(sand::toolName(kind)), tuned([&](Tuning& tuning) {
+        hashes.add(std::string(base::nameOf(kind)), tuned([&](Tuning& tuning) {
                        ellipse(tuning);
                        tuning.toolKind = kind;
                    }));

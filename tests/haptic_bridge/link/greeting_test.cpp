@@ -52,9 +52,9 @@ TEST_F(Greeting, ComparesEveryBitOfAMacOfBothRoles) {
         EXPECT_TRUE(server.accepts(*proof));
         EXPECT_TRUE(master.accepts(Welcome{identity_, 60, role, server.mac()}));
         for (std::size_t bit = 0; bit < 8 * proof->mac.size(); ++bit) {
-            EXPECT_FALSE(server.accepts(Proof{flipped(proof->mac, bit)})) << nameOf(role) << ", bit " << bit;
+            EXPECT_FALSE(server.accepts(Proof{flipped(proof->mac, bit)})) << base::nameOf(role) << ", bit " << bit;
             EXPECT_FALSE(master.accepts(Welcome{identity_, 60, role, flipped(server.mac(), bit)}))
-                << nameOf(role) << ", bit " << bit;
+                << base::nameOf(role) << ", bit " << bit;
         }
     }
 }

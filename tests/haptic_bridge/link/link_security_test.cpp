@@ -153,7 +153,7 @@ TEST_F(LinkSecurityTest, UnderTlsACaptureShowsNoProbePosition) {
         int positions = 0, found = 0;
         for (const sand::Step& step : steps) {
             base::ByteWriter writer;
-            sand::encode(step, writer);
+            step.put(writer);
             if (!step.path.empty()) {
                 ++positions;
                 found += capture.holds(writer.bytes()) ? 1 : 0;

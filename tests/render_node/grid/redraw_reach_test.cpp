@@ -174,7 +174,7 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
         const PixelRect drawn = view.drawIfChanged(slanted, inParts, memory);
         inPart += !drawn.empty() && drawn.area() < 200 * 150 ? 1 : 0;
         ASSERT_TRUE(inParts.read() == sample::draw(view, slanted, whole))
-            << sand::toolName(terrain.toolShape().kind) << " in step " << i;
+            << base::nameOf(terrain.toolShape().kind) << " in step " << i;
     }
     EXPECT_GT(inPart, 60);
 }

@@ -73,9 +73,9 @@ TEST(Border, ABankOfATinThatSlidesStopsAtTheTalusInHoweverManySteps) {
 
 TEST(Border, NoToolPushesSandThroughAWallOrOverHigherRock) {
     for (const sand::ToolKind kind : kTools) {
-        EXPECT_EQ(borders::throughWalls(kGrid, kSide, kind), 0) << sand::toolName(kind);
-        EXPECT_EQ(borders::throughWalls(kTin, kSide, kind), 0) << sand::toolName(kind);
-        EXPECT_EQ(borders::overRidge(kSide, kind), 0) << sand::toolName(kind);
+        EXPECT_EQ(borders::throughWalls(kGrid, kSide, kind), 0) << base::nameOf(kind);
+        EXPECT_EQ(borders::throughWalls(kTin, kSide, kind), 0) << base::nameOf(kind);
+        EXPECT_EQ(borders::overRidge(kSide, kind), 0) << base::nameOf(kind);
     }
 }
 
@@ -84,7 +84,7 @@ TEST(Border, NoToolCarriesSandAcrossAThinWallAtAnyAngle) {
         for (const double degrees : {0.0, 20.0, 45.0, 80.0}) {
             for (const borders::Ground& ground : {kGrid, kTin, kCoarse}) {
                 EXPECT_EQ(borders::acrossWall(ground, kSide, kind, degrees), 0)
-                    << sand::toolName(kind) << ' ' << degrees << ' ' << nameOf(ground) << ground.widest;
+                    << base::nameOf(kind) << ' ' << degrees << ' ' << nameOf(ground) << ground.widest;
             }
         }
     }
@@ -111,11 +111,11 @@ TEST(Border, NoSandStandsAboveTheUndersideOfATool) {
     for (const borders::Where where : {middle, rim, hole}) {
         for (const sand::ToolKind kind : {sphere, ellipsoid}) {
             EXPECT_LE(borders::underTool(kTin, kSide, kind, where), 0.4)
-                << sand::toolName(kind) << static_cast<int>(where);
+                << base::nameOf(kind) << static_cast<int>(where);
         }
         for (const sand::ToolKind kind : {circle, rectangle, ellipse}) {
             EXPECT_LE(borders::underTool(kTin, kSide, kind, where), 1e-3)
-                << sand::toolName(kind) << static_cast<int>(where);
+                << base::nameOf(kind) << static_cast<int>(where);
         }
     }
 }
@@ -274,7 +274,7 @@ TEST(Border, AToolThatAPocketCannotHoldPassesThroughItsSand) {
                 hand.press(30 + inside / 2.0, 30 + inside / 2.0, 8);
                 hand.drag(30, 30, 40, 33, 7);
                 hand.hover();
-                EXPECT_EQ(borders::exchanged(before, sand), 0) << nameOf(ground) << inside << sand::toolName(kind);
+                EXPECT_EQ(borders::exchanged(before, sand), 0) << nameOf(ground) << inside << base::nameOf(kind);
                 EXPECT_EQ(sand.volume(), before.volume());
             }
         }

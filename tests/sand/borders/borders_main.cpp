@@ -110,7 +110,7 @@ bool measure(int n) {
         table.row("the same, share more than 2 % too steep", bank.tooSteep, 0.01, "");
     }
     for (const sand::ToolKind kind : {sphere, circle, rectangle, ellipse, ellipsoid, footprint}) {
-        const auto name = [&](const char* what) { return fmt::format("{}, {}", what, sand::toolName(kind)); };
+        const auto name = [&](const char* what) { return fmt::format("{}, {}", what, base::nameOf(kind)); };
         table.row(name("through walls, grid").c_str(), borders::throughWalls(kGrid, n, kind), 0, "cell3");
         table.row(name("through walls, TIN").c_str(), borders::throughWalls(kTin, n, kind), 0, "cell3");
         table.row(name("over a ridge of rock, grid").c_str(), borders::overRidge(n, kind), 0, "cell3");
@@ -118,7 +118,7 @@ bool measure(int n) {
     for (const auto& [where, place] : {std::pair{middle, "in the middle"}, {rim, "at a rim"}, {hole, "at a hole"}}) {
         for (const sand::ToolKind kind : {sphere, ellipsoid, circle, rectangle, ellipse}) {
             const bool bowl = kind == sphere || kind == ellipsoid;
-            table.row(fmt::format("sand over the underside {}, TIN, {}", place, sand::toolName(kind)).c_str(),
+            table.row(fmt::format("sand over the underside {}, TIN, {}", place, base::nameOf(kind)).c_str(),
                       borders::underTool(kTin, n, kind, where), bowl ? 0.4 : 1e-3, "cell");
         }
     }

@@ -14,7 +14,7 @@ using enum sand::ToolKind;
 
 void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt place, double most) {
     const borders::HeldSettle held = borders::settleAround(ground, kSide, kind, place);
-    const std::string name = std::string(sand::toolName(kind)) + ", " + borders::nameOf(place);
+    const std::string name = std::string(base::nameOf(kind)) + ", " + borders::nameOf(place);
     EXPECT_LE(held.largest, most) << name;
     EXPECT_EQ(held.changed, 0) << name;
     EXPECT_EQ(held.exchanged, 0) << name;

@@ -139,7 +139,7 @@ std::vector<Tool> tools(std::initializer_list<ToolKind> kinds) {
 }
 
 std::string nameOf(const Tool& tool) {
-    return std::string(sand::toolName(tool.shape.kind)) + " towards " + std::to_string(sand::degreesOf(tool.heading)) +
+    return std::string(base::nameOf(tool.shape.kind)) + " towards " + std::to_string(sand::degreesOf(tool.heading)) +
            (tool.heading.mirrored ? ", mirrored" : "");
 }
 

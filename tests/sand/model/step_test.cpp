@@ -13,7 +13,7 @@ namespace {
 
 base::Bytes bytesOf(const sand::Step& step) {
     base::ByteWriter writer;
-    encode(step, writer);
+    step.put(writer);
     return writer.take();
 }
 
@@ -24,7 +24,7 @@ TEST(Step, SurvivesItsEncoding) {
         step.epoch = static_cast<std::uint32_t>(random());
         const base::Bytes bytes = bytesOf(step);
         base::ByteReader reader(bytes);
-        ASSERT_EQ(sand::decodeStep(reader), step);
+        ASSERT_EQ(base::read<sand::Step>(reader), step);
         ASSERT_TRUE(reader.atEnd());
     }
 }
@@ -41,12 +41,12 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
             const sand::Step step{1, 2, engaged, {{5, 6, 7}}, edit};
             const base::Bytes bytes = bytesOf(step);
             base::ByteReader reader(bytes);
-            EXPECT_EQ(sand::decodeStep(reader), step);
+            EXPECT_EQ(base::read<sand::Step>(reader), step);
         }
     }
     const base::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
     base::ByteReader reader(bytes);
-    EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+    EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
 }
 
 // Journals and messages have exactly these bytes. A sphere is encoded as its radius alone.
@@ -55,7 +55,7 @@ TEST(Step, OfASphereTakesTheseBytes) {
     const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
     EXPECT_EQ(bytesOf(step), expected);
     base::ByteReader reader(expected);
-    EXPECT_EQ(sand::decodeStep(reader), step);
+    EXPECT_EQ(base::read<sand::Step>(reader), step);
     step.heading = *sand::headingOf(30, true);
     EXPECT_EQ(bytesOf(step).size(), expected.size() + 4) << "only a step that turns the tool says how";
 }
@@ -71,17 +71,17 @@ TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
             step.heading = *sand::headingOf(-123, !mirrored);
             const base::Bytes bytes = bytesOf(step);
             base::ByteReader reader(bytes);
-            EXPECT_EQ(sand::decodeStep(reader), step);
+            EXPECT_EQ(base::read<sand::Step>(reader), step);
             for (std::size_t length = 0; length < bytes.size(); ++length) {
                 base::ByteReader cut{std::span(bytes).first(length)};
-                EXPECT_THROW((void)sand::decodeStep(cut), base::FormatError) << length;
+                EXPECT_THROW((void)base::read<sand::Step>(cut), base::FormatError) << length;
             }
         }
     }
     const auto refused = [](const sand::Step& step) {
         const base::Bytes bytes = bytesOf(step);
         base::ByteReader reader(bytes);
-        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+        EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
     };
     sand::Step crooked{1, 2, true, {}};
     crooked.heading = sand::Heading{100, 100};
@@ -105,7 +105,7 @@ TEST(Step, RefusesEveryTruncation) {
     const base::Bytes bytes = bytesOf({1, 2, true, {{1000, 2000, 3000}, {-5, 7, 9}}});
     for (std::size_t length = 0; length < bytes.size(); ++length) {
         base::ByteReader reader{std::span(bytes).first(length)};
-        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
+        EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError) << length;
     }
 }
 
@@ -114,7 +114,7 @@ TEST(Step, RefusesEveryTruncationOfAnEdit) {
         const base::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
         for (std::size_t length = 0; length < bytes.size(); ++length) {
             base::ByteReader reader{std::span(bytes).first(length)};
-            EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError) << length;
+            EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError) << length;
         }
     }
 }
@@ -124,7 +124,7 @@ TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
     const auto refused = [](const sand::Tuning& tuning) {
         const base::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
         base::ByteReader reader(bytes);
-        EXPECT_THROW((void)sand::decodeStep(reader), base::FormatError);
+        EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
     };
     for (std::int32_t sand::Tuning::*number : {&sand::Tuning::threshold, &sand::Tuning::startThreshold,
                                                &sand::Tuning::sweepsPerStep, &sand::Tuning::toolRadius}) {
@@ -141,10 +141,10 @@ TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
     base::Bytes bytes = bytesOf({1, 2, true, {}});
     bytes.back() = sand::kMaxPathPoints + 1;
     base::ByteReader tooLong(bytes);
-    EXPECT_THROW((void)sand::decodeStep(tooLong), base::FormatError);
+    EXPECT_THROW((void)base::read<sand::Step>(tooLong), base::FormatError);
     const base::Bytes far = bytesOf({1, 2, true, {{sand::kMaxProbe + 1, 0, 0}}});
     base::ByteReader outOfReach(far);
-    EXPECT_THROW((void)sand::decodeStep(outOfReach), base::FormatError);
+    EXPECT_THROW((void)base::read<sand::Step>(outOfReach), base::FormatError);
 }
 
 }  // namespace

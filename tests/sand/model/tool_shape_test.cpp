@@ -86,21 +86,21 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
                                       y = (row + 0.5L) * kProbePerCell - at.y;
                     const auto depth = depthAt(shape, turn, x, y);
                     if (!depth) {
-                        EXPECT_GE(field.height(column, row), 0) << sand::toolName(kind) << " beside";
+                        EXPECT_GE(field.height(column, row), 0) << base::nameOf(kind) << " beside";
                         continue;
                     }
                     const long double underside = (at.z - *depth * shape.radius) * kUnitsPerCell / kProbePerCell;
                     const long double expected = std::min(0.0L, underside);
                     ASSERT_NEAR(static_cast<double>(field.height(column, row) - expected), 0, 1)
-                        << sand::toolName(kind) << " at " << column << ", " << row;
+                        << base::nameOf(kind) << " at " << column << ", " << row;
                     below += underside < 0 ? 1 : 0;
                 }
             }
-            EXPECT_GT(below, 250) << sand::toolName(kind);
+            EXPECT_GT(below, 250) << base::nameOf(kind);
             // A tool's lowest point is one radius below its centre. Few cells below a round tool are that low.
             const std::int32_t lowest = samples::extremesOf(field).lowest;
-            EXPECT_GE(lowest, -4 * kUnitsPerCell) << sand::toolName(kind);
-            EXPECT_LE(lowest, -4 * kUnitsPerCell + kUnitsPerCell / 20) << sand::toolName(kind);
+            EXPECT_GE(lowest, -4 * kUnitsPerCell) << base::nameOf(kind);
+            EXPECT_LE(lowest, -4 * kUnitsPerCell + kUnitsPerCell / 20) << base::nameOf(kind);
         }
     }
 }
@@ -180,7 +180,7 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
                 image.rules.columns = image.terrain.columns();
                 image.rules.rows = image.terrain.rows();
                 ASSERT_TRUE(sameHeights(way.of(first), dug(image, path, degrees, way)))
-                    << sand::toolName(kind) << " by " << degrees << " degrees, way " << bits;
+                    << base::nameOf(kind) << " by " << degrees << " degrees, way " << bits;
             }
         }
     }
@@ -224,7 +224,7 @@ TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
         const std::int64_t ahead = raisedWhere(field, [](double x, double) { return x > 50; });
         const std::int64_t all = raisedWhere(field, [](double, double) { return true; });
         EXPECT_GT(static_cast<double>(ahead), 0.65 * static_cast<double>(all - imprint))
-            << sand::toolName(kind) << ": the rest of a foot goes out at heel and toes";
+            << base::nameOf(kind) << ": the rest of a foot goes out at heel and toes";
         EXPECT_GT(all, 2 * imprint);
     }
     // Along its length, the same blade cuts a furrow that is no wider than the blade.
@@ -262,7 +262,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                                  {probes(x + 5), probes(y - 3), probes(radius)}};
                     terrain.apply(step);
                     ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before)
-                        << sand::toolName(kind) << " of " << radius << " at " << x << ", " << y;
+                        << base::nameOf(kind) << " of " << radius << " at " << x << ", " << y;
                 }
             }
         }
@@ -275,7 +275,7 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
         scene.rules.toolKind = kind;
         sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
-        EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << sand::toolName(kind);
+        EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << base::nameOf(kind);
     }
 }
 
@@ -315,13 +315,13 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
                 ASSERT_LE(samples::fieldOf(terrain).height(column, row), under.row(row)[column - under.cells.x0])
-                    << sand::toolName(kind);
+                    << base::nameOf(kind);
             }
         }
         for (int i = 0; i < 3000 && !terrain.settled(); ++i) {
             terrain.apply({1, terrain.stepNumber() + 1, true, {}});
         }
-        EXPECT_TRUE(terrain.settled()) << sand::toolName(kind);
+        EXPECT_TRUE(terrain.settled()) << base::nameOf(kind);
         EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
     }
 }
@@ -361,7 +361,7 @@ TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
             tool.undersides(z, first, row);
             for (std::int64_t x = 0; x < std::ssize(row); ++x) {
                 ASSERT_EQ(row[static_cast<std::size_t>(x)], tool.underside(z, {first.x + x * kProbePerCell, first.y}))
-                    << sand::toolName(kind) << " of radius " << radius << ", cell " << x;
+                    << base::nameOf(kind) << " of radius " << radius << ", cell " << x;
             }
         }
     }

@@ -165,7 +165,7 @@ TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
         EXPECT_TRUE(layer.mesh().constraints().empty());
         EXPECT_EQ(imprint, Imprint{});
         EXPECT_TRUE(layer.volume() == before);
-        EXPECT_NEAR(lowest(layer), deep, 0.2 * kCell) << sand::toolName(static_cast<ToolKind>(kind));
+        EXPECT_NEAR(lowest(layer), deep, 0.2 * kCell) << base::nameOf(static_cast<ToolKind>(kind));
     }
 }
 

@@ -22,8 +22,7 @@ ToolShape shapeOf(int kind, std::int32_t radius) {
 }
 
 std::string nameOf(const ToolShape& shape, const Heading& heading) {
-    return fmt::format("{} of radius {}, heading {} {}", sand::toolName(shape.kind), shape.radius, heading.x,
-                       heading.y);
+    return fmt::format("{} of radius {}, heading {} {}", base::nameOf(shape.kind), shape.radius, heading.x, heading.y);
 }
 
 template <class Check>

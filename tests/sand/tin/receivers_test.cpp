@@ -89,7 +89,7 @@ TEST(TinReceivers, TheRemainderGoesToTheVerticesWithTheSmallestNumbersOneUnitEac
     int remainders = 0;
     for (const ToolKind kind : {ToolKind::sphere, ToolKind::circle, ToolKind::ellipse, ToolKind::footprint}) {
         const Pressed pressed(shapeOf(kind, 12), *sand::headingOf(30), {});
-        SCOPED_TRACE(std::string(sand::toolName(kind)));
+        SCOPED_TRACE(std::string(base::nameOf(kind)));
         expectShares(pressed);
         remainders += pressed.remainder > 1 ? 1 : 0;
     }
