@@ -98,7 +98,8 @@ inside() {
 
 install() { inside "$work" sh -c 'apt-get update -qq && apt-get install -y -qq --no-install-recommends "$@" >/dev/null' sh "$@"; }
 
-# Copies the sources as they are now, also those that are not committed. Keeps what was built. Some tests ask git for the files.
+# Copies the sources as they are now, also those that are not committed. Keeps what was built. A changed file gets the present
+# time, because its own may be older than what was built. Some tests ask git for the files.
 copy_sources() {
     local sources=$work/root/sandwall
     (cd "$root" && git ls-files --cached --others --exclude-standard -z | xargs -0 ls -d 2>/dev/null) >"$work/root/files"
@@ -106,7 +107,8 @@ copy_sources() {
         [[ -e $root/$file ]] || rm -f "$sources/$file"
     done
     (cd "$root" && tar --create --files-from "$work/root/files") | tar --extract --directory "$sources" --no-same-owner
-    inside "$work" sh -c 'git init -q . 2>/dev/null; git add --all && git -c user.name=test -c user.email=test@localhost commit -q --allow-empty -m "the sources"'
+    inside "$work" sh -c 'git init -q . 2>/dev/null; git add --all && git -c user.name=test -c user.email=test@localhost commit -q --allow-empty -m "the sources"
+        if git rev-parse -q --verify HEAD~1 >/dev/null; then git diff --name-only -z HEAD~1 HEAD | xargs -0 --no-run-if-empty touch -c; fi'
 }
 
 enter "$work"

@@ -14,8 +14,8 @@ void writeTimings(const std::string& file,
         host::WholeFile whole(file);
         whole.stream() << "what,from_us,count\n";
         for (const auto& [what, histogram] : histograms) {
-            histogram->eachBucket([&stream = whole.stream(), &what = what](double lowestNs, std::uint64_t count) {
-                stream << fmt::format("{},{},{}\n", what, lowestNs * 1e-3, count);
+            histogram->eachBucket([&stream = whole.stream(), &name = what](double lowestNs, std::uint64_t count) {
+                stream << fmt::format("{},{},{}\n", name, lowestNs * 1e-3, count);
             });
         }
         whole.keep();

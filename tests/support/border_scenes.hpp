@@ -194,8 +194,9 @@ inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Rep
         const auto columns = static_cast<std::size_t>(field.columns()), rows = static_cast<std::size_t>(field.rows());
         up.resize(columns * rows);
         std::iota(up.begin(), up.end(), std::size_t{0});
-        const auto isWall = [&, ground = ground](std::size_t at) {
-            return ground != nullptr && ground->isWall(static_cast<int>(at % columns), static_cast<int>(at / columns));
+        const auto isWall = [&, rockAndWalls = ground](std::size_t at) {
+            return rockAndWalls != nullptr &&
+                   rockAndWalls->isWall(static_cast<int>(at % columns), static_cast<int>(at / columns));
         };
         for (std::size_t at = 0; at < up.size(); ++at) {
             for (const auto& [there, beside] : {std::pair{at % columns > 0, at - 1}, {at >= columns, at - columns}}) {

@@ -137,7 +137,7 @@ TEST(Settle, BandHoldsOrLetsGoOfEverything) {
     Rules rules = settlingRules(HeightField(40, 30, 1.0));
     rules.startThreshold = rules.threshold * 5 / 4;
     for (const auto& [slope, moves] : {std::pair{1.2, false}, {1.3, true}}) {
-        HeightField field = oracles::fieldOf(40, 30, [slope = slope](double x, double) { return slope * x; });
+        HeightField field = oracles::fieldOf(40, 30, [steep = slope](double x, double) { return steep * x; });
         const HeightField start = field;
         settleAndCheck(field, rules);
         EXPECT_EQ(sameHeights(field, start), !moves);

@@ -96,8 +96,8 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         const Heading heading = *sand::headingOf(degrees);
         const double depth = (at.z - shape.radius) * 256.0;
         int inside = 0;
-        forEachVertex(layer, [&, at = at](Vertex vertex, const Place& place, double height) {
-            if (sand::TurnedShape(shape, heading).covers({place.x - at.x, place.y - at.y})) {
+        forEachVertex(layer, [&, tool = at](Vertex vertex, const Place& place, double height) {
+            if (sand::TurnedShape(shape, heading).covers({place.x - tool.x, place.y - tool.y})) {
                 EXPECT_EQ(height, depth) << "vertex " << vertex;
                 ++inside;
             }
