@@ -32,8 +32,7 @@ inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind,
     const bool walls = place == HeldAt::overWall || place == HeldAt::overPocket;
     Case given = walls ? walled(ground, n, kind) : caseOf(ground, n);
     given.tool = kind;
-    // A larger tool would fill the pocket, so that its sand would rise to the largest height and stay under the tool.
-    given.radius = (place == HeldAt::overPocket ? 4 : 6) * scale;
+    given.radius = 6 * scale;
     given.sweeps = 4;
     given.maxError = 0;  // because a vertex that is removed moves the surface beside it
     given.rim = place == HeldAt::outsideOpenRim ? sand::Rim::open : sand::Rim::closed;
