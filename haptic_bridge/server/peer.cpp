@@ -123,9 +123,9 @@ void Peer::take(const Proof& proof) {
     if (phase_ != Phase::proving) {
         outOfTurn();
     } else if (!handshake_.accepts(proof)) {
-        refuse(
-            {RefusalCode::secret,
-             fmt::format("the secret of role {} differs here; give both sides the same --secret-file", base::nameOf(role_))});
+        refuse({RefusalCode::secret,
+                fmt::format("the secret of role {} differs here; give both sides the same --secret-file",
+                            base::nameOf(role_))});
     } else {
         welcome();
     }
