@@ -18,6 +18,9 @@ struct Named {
 };
 
 template <class Enum>
+Named(Enum, std::string_view) -> Named<Enum>;  // clang 14 does not deduce it
+
+template <class Enum>
 concept NamedEnum = std::is_enum_v<Enum> && requires {
     valuesOf(Enum{});
 };
