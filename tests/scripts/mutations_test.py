@@ -71,6 +71,14 @@ class Mutations(unittest.TestCase):
         found = [fault for name in names for fault in faults(name, (ROOT / name).read_text(), PROJECT.all_tests(), applies)]
         self.assertEqual(found, [])
 
+    def test_name_the_program_in_whose_folder_the_tests_are(self):
+        for name in tracked("tests/mutations/*.patch"):
+            header = HEADER.match((ROOT / name).read_text())
+            if header["program"]:
+                here = set().union(*(tests for file, tests in PROJECT.tests.items()
+                                     if str(file).startswith(f"tests/{PROGRAMS[header['program']]}/")))
+                self.assertEqual(list(faults(name, header[0] + "--- a/", here, lambda _: True)), [])
+
     def test_that_do_not_are_named(self):
         good = "# Sand falls up.\n# tests: sand_tests Law.*:x/Law.Holds/*\ndiff --git a/a b/a\n"
         self.assertEqual(list(faults("a", good, {"Law.Holds"}, lambda _: True)), [])
