@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -30,17 +29,8 @@ class ByteWriter {
 public:
     template <class Number>
     requires std::is_arithmetic_v<Number>
-    void put(Number value) {
-        const std::size_t end = bytes_.size();
-        bytes_.resize(end + sizeof value);
-        std::memcpy(bytes_.data() + end, &value, sizeof value);
-    }
-    void putBytes(std::span<const std::uint8_t> bytes) {
-        // resize and copy, because g++ 12 warns of an overflow in vector::insert.
-        const std::size_t end = bytes_.size();
-        bytes_.resize(end + bytes.size());
-        std::copy(bytes.begin(), bytes.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(end));
-    }
+    void put(Number value) { append(&value, sizeof value); }
+    void putBytes(std::span<const std::uint8_t> bytes) { append(bytes.data(), bytes.size()); }
     /// Appends the length, then the bytes.
     void putBlock(std::span<const std::uint8_t> bytes) {
         put(static_cast<std::uint32_t>(bytes.size()));
@@ -63,6 +53,15 @@ public:
     [[nodiscard]] Bytes take() { return std::move(bytes_); }
 
 private:
+    // Not inlined: g++ 12 warns of an overflow in vector::insert, and g++ 14 of one in resize after several calls.
+    [[gnu::noinline]] void append(const void* from, std::size_t size) {
+        const std::size_t end = bytes_.size();
+        bytes_.resize(end + size);
+        if (size > 0) {
+            std::memcpy(bytes_.data() + end, from, size);
+        }
+    }
+
     Bytes bytes_;
 };
 

@@ -249,7 +249,7 @@ void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field,
 bool readTerrain(const host::TomlTable& file, Scene& scene, const SizeChecks& checks) {
     const host::TomlTable terrain = file.requiredTable("terrain");
     std::vector<std::string_view> kinds{"flat", "dunes"};
-    kinds.insert(kinds.end(), sourceKinds().begin(), sourceKinds().end());
+    std::copy(sourceKinds().begin(), sourceKinds().end(), std::back_inserter(kinds));
     const int kind = terrain.choiceOr("kind", kinds, 0);
     std::shared_ptr<sand::Ground> ground;
     std::optional<EsriGrid> survey;
