@@ -222,7 +222,7 @@ void writeSteps(Folder folder) {
             sand::Step next = step(1);
             next.edit = edit;
             base::ByteWriter bytes;
-            encode(next, bytes);
+            next.put(bytes);
             input.putBytes(piece(bytes.take()));
         }
         folder.add(input.take(), {static_cast<std::uint8_t>(kind)});
