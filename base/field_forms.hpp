@@ -199,6 +199,10 @@ struct TextsUpTo {
     }
     void get(ByteReader& reader) const requires(!std::is_const_v<Texts>) {
         std::uint64_t count = reader.getVarint();
+        if (count > most) {
+            throw FormatError("has " + std::to_string(count) + " texts; at most " + std::to_string(most) +
+                              " are allowed");
+        }
         value.clear();
         for (; count > 0; --count) {
             text(value.emplace_back(), most).get(reader);

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <variant>
 
 #include "base/byte_stream.hpp"
 #include "base/names.hpp"
@@ -228,6 +229,24 @@ template <Described T>
     T value = read<T>(reader);
     requireEnd(reader);
     return value;
+}
+
+/// Returns alternative `index` of a variant of described types, whose bytes are all that are left in `reader`. Throws
+/// FormatError, which begins with its name in `names`, if they are not. Requires that `index` is an alternative.
+template <class Variant, std::size_t kIndex = 0>
+[[nodiscard]] Variant readAlternative(std::size_t index, ByteReader& reader, std::span<const std::string_view> names) {
+    if constexpr (kIndex + 1 < std::variant_size_v<Variant>) {
+        if (index != kIndex) {
+            return readAlternative<Variant, kIndex + 1>(index, reader, names);
+        }
+    }
+    try {
+        auto value = read<std::variant_alternative_t<kIndex, Variant>>(reader);
+        requireEnd(reader);
+        return value;
+    } catch (const FormatError& error) {
+        throw FormatError(std::string(names[kIndex]) + ": " + error.what());
+    }
 }
 
 }  // namespace base

@@ -36,7 +36,7 @@ template <NamedEnum Enum>
     return {};
 }
 
-/// Returns the value that valuesOf() lists with this name, or nullopt if there is none.
+/// Returns the value that valuesOf() lists with this name, or nullopt if no value has it.
 template <NamedEnum Enum>
 [[nodiscard]] constexpr std::optional<Enum> valueNamed(std::string_view name) {
     for (const Named<Enum>& known : valuesOf(Enum{})) {

@@ -40,8 +40,6 @@ struct ViewState {
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 
-inline constexpr std::size_t kMostSteps = 1 << 20;  // most steps of one frame
-
 /// Message that begins a frame: the master sends it to every rank once per frame.
 struct FrameMessage {
     std::uint64_t frame = 0;
@@ -58,7 +56,7 @@ struct FrameMessage {
         visit("view", it.view);
         visit("audit_tiles", base::varint(it.auditTiles));
         visit("flags", base::flags(it.capture, it.stop));
-        visit("steps", base::upTo(it.steps, kMostSteps));
+        visit("steps", base::upTo(it.steps, sand::kMostStepsOfAFrame));
         visit("figures", it.figures);
     }
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;

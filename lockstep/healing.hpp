@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/field_forms.hpp"
 #include "lockstep/frame_barrier.hpp"
+#include "lockstep/message_limits.hpp"
 #include "sand/replica.hpp"
 
 namespace lockstep {

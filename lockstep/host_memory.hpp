@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "lockstep/message_limits.hpp"
 
 namespace lockstep {
-
-inline constexpr std::size_t kMostText = 1 << 16;  // [byte] of a text of a rank, and texts in a list
 
 /// Host of one rank, with its free memory.
 struct RankHost {

@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "base/field_forms.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/fault.hpp"
+#include "lockstep/message_limits.hpp"
 #include "scene/scene.hpp"
 
 namespace lockstep {
 
 class FrameBarrier;
-
-inline constexpr std::size_t kMostFaults = 1 << 16;
 
 /// Message that every rank gets before the first frame. Render ranks read no file: the scene and the wall come from the
 /// master.

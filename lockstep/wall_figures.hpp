@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "lockstep/message_limits.hpp"
 
 namespace lockstep {
-
-inline constexpr std::size_t kMostRanks = 1 << 16;  // most ranks that a message may list
 
 /// A rank for which the wall waits far more often than for any other.
 struct Drag {

@@ -16,23 +16,6 @@ constexpr std::array<std::string_view, std::variant_size_v<Message>> kMessages{
     "TimingTest", "Shown",     "TimingEcho",       "Ping",     "Pong",      "Report",    "Bye",    "EditRequest",
     "ForceShare", "TickPiece", "PositionGreeting", "Position", "Challenge", "Proof",     "CatchUp"};
 
-template <std::size_t index = 0>
-Message decodeType(std::uint8_t type, base::ByteReader& reader) {
-    if constexpr (index == std::variant_size_v<Message>) {
-        throw base::FormatError(fmt::format("a message of type {}", type));
-    } else if (type == index + 1) {
-        try {
-            auto message = base::read<std::variant_alternative_t<index, Message>>(reader);
-            base::requireEnd(reader);
-            return message;
-        } catch (const base::FormatError& error) {
-            throw base::FormatError(fmt::format("{}: {}", kMessages[index], error.what()));
-        }
-    } else {
-        return decodeType<index + 1>(type, reader);
-    }
-}
-
 }  // namespace
 
 std::string getLine(base::ByteReader& reader) {
@@ -85,7 +68,11 @@ base::Bytes encode(const Message& message) {
 
 Message decode(std::span<const std::uint8_t> typeAndPayload) {
     base::ByteReader reader(typeAndPayload);
-    return decodeType(reader.get<std::uint8_t>(), reader);
+    const auto type = reader.get<std::uint8_t>();
+    if (type < 1 || type > kMessages.size()) {
+        throw base::FormatError(fmt::format("a message of type {}", type));
+    }
+    return base::readAlternative<Message>(type - 1U, reader, kMessages);
 }
 
 }  // namespace haptic_bridge

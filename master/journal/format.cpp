@@ -20,24 +20,9 @@ std::uint64_t chainedSum(std::span<const std::uint8_t> bytes, std::uint64_t seed
 
 /// Names of the records, in the order of JournalRecord.
 constexpr std::array<std::string_view, std::variant_size_v<JournalRecord>> kRecords{
-    "frame", "end", "ticks", "resumption", "material", "continuation", "doubt", "check", "force"};
-
-template <std::size_t index = 0>
-JournalRecord decodeType(std::uint8_t type, base::ByteReader& payload) {
-    if constexpr (index == std::variant_size_v<JournalRecord>) {
-        throw base::FormatError(fmt::format("a record of unknown type {}", type));
-    } else if (type == index + 1) {
-        try {
-            auto record = base::read<std::variant_alternative_t<index, JournalRecord>>(payload);
-            base::requireEnd(payload);
-            return record;
-        } catch (const base::FormatError& error) {
-            throw base::FormatError(fmt::format("a record of a {}: {}", kRecords[index], error.what()));
-        }
-    } else {
-        return decodeType<index + 1>(type, payload);
-    }
-}
+    "a record of a frame",      "a record of an end",     "a record of ticks",
+    "a record of a resumption", "a record of a material", "a record of a continuation",
+    "a record of a doubt",      "a record of a check",    "a record of a force"};
 
 }  // namespace
 
@@ -119,7 +104,11 @@ JournalRecord decodeRecord(std::span<const std::uint8_t> body) {
     if ((body[0] & kBeginsWrite) != 0) {
         (void)payload.get<std::uint64_t>();
     }
-    return decodeType(static_cast<std::uint8_t>(body[0] & ~kBeginsWrite), payload);
+    const auto type = static_cast<std::uint8_t>(body[0] & ~kBeginsWrite);
+    if (type < 1 || type > kRecords.size()) {
+        throw base::FormatError(fmt::format("a record of unknown type {}", type));
+    }
+    return base::readAlternative<JournalRecord>(type - 1U, payload, kRecords);
 }
 
 std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain) {

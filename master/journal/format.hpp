@@ -20,7 +20,6 @@ namespace master {
 
 inline constexpr std::uint32_t kJournalVersion = 8;
 
-inline constexpr std::size_t kMostSteps = 1 << 20;    // most steps of one frame
 inline constexpr std::size_t kMostFailure = 1 << 20;  // [byte]
 
 /// The steps of one frame, as the journal holds them.
@@ -33,7 +32,7 @@ struct JournalFrame {
     static void fields(Self& it, Visit& visit) {
         visit("frame", base::varint(it.frame));
         visit("hash_before", it.hashBefore);
-        visit("steps", base::upTo(it.steps, kMostSteps));
+        visit("steps", base::upTo(it.steps, sand::kMostStepsOfAFrame));
     }
 };
 

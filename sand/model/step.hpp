@@ -11,7 +11,8 @@
 
 namespace sand {
 
-inline constexpr std::size_t kMaxPathPoints = 64;  // most points in one step
+inline constexpr std::size_t kMaxPathPoints = 64;           // most points in one step
+inline constexpr std::size_t kMostStepsOfAFrame = 1 << 20;  // in a frame message, and in a record of the journal
 
 /// Position of the tool's centre in whole probe units [probe unit = cellSize / 256].
 ///
