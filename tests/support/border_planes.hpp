@@ -65,7 +65,8 @@ inline double movedOfPlane(const Ground& ground, int n, Face face, const Sand& s
     Case given = caseOf(ground, n, sand);
     putFace(given, face);
     const double slope = share * given.start, angle = degrees / 57.29577951;
-    given.height = [=](double x, double y) { return slope * (x * std::cos(angle) + y * std::sin(angle)); };
+    const double lowest = std::min(n * std::cos(angle), 0.0);  // so that no part of the plane is below the rock
+    given.height = [=](double x, double y) { return slope * (x * std::cos(angle) + y * std::sin(angle) - lowest); };
     if (corners) {
         given.wall = [n](int x, int y) { return x == kFaceCells - 1 || (x > n / 2 && 2 * y / 3 == x / 2); };
     }
