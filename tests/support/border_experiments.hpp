@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "tests/support/border_scenes.hpp"
 #include "tests/support/oracles.hpp"
 
@@ -44,15 +46,31 @@ inline double rimPile(const Ground& ground, int n, bool whole, bool settles) {
            scale / scale;
 }
 
-/// Obstacle that a pile leans against.
+/// Obstacle that sand leans against.
 enum class Face { rim, corner, wall, rock };
+inline std::string nameOf(Face face) {
+    constexpr std::array kNames{"rim", "corner", "wall", "rock"};
+    return kNames[static_cast<std::size_t>(face)];
+}
+
+constexpr int kFaceCells = 4;  // cells west of the sand that leans against a wall or a rock face
+
+/// Puts a face west of the sand. Returns the place of the face [cell from the west].
+inline double putFace(Case& given, Face face) {
+    if (face == Face::wall) {
+        given.wall = [](int x, int) { return x == kFaceCells - 1; };
+    } else if (face == Face::rock) {
+        given.rock = [](double x, double) { return x > kFaceCells - 1 && x < kFaceCells ? 1000.0 : 0.0; };
+    }
+    return face == Face::wall || face == Face::rock ? kFaceCells : 0;
+}
 
 /// Released sand that leans against a face in the west: half a cylinder (O1), a quarter of one in a corner, or half a
 /// prism (O2). Returns the misplaced volume as a share of the pile. `band` is the share by which the slope that starts
 /// a slide exceeds the talus.
 inline double leaningPile(const Ground& ground, int n, Face face, bool prism, double band = 0) {
     Case given = caseOf(ground, n);
-    const double scale = n / 64.0, west = face == Face::wall || face == Face::rock ? 4 : 0;
+    const double scale = n / 64.0, west = putFace(given, face);
     const double south = face == Face::corner ? 0 : n / 2.0;
     const oracles::Cylinder cylinder(12 * scale, 8 * scale, kTalus);
     const oracles::Prism wide(12 * scale, 8 * scale, kTalus);
@@ -62,11 +80,6 @@ inline double leaningPile(const Ground& ground, int n, Face face, bool prism, do
         const double r = distance(x, y);
         return x < west ? 0 : prism ? wide.start(r) : cylinder.start(r);
     };
-    if (face == Face::wall) {
-        given.wall = [](int x, int) { return x == 3; };
-    } else if (face == Face::rock) {
-        given.rock = [](double x, double) { return x > 3 && x < 4 ? 60.0 : 0.0; };
-    }
     sand::Replica sand(sceneOf(given));
     Hand(sand).rest();
     double whole = 0;

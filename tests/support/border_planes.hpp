@@ -33,23 +33,6 @@ inline std::array<Sand, 4> sands() {
     return all;
 }
 
-inline std::string nameOf(Face face) {
-    constexpr std::array kNames{"rim", "corner", "wall", "rock"};
-    return kNames[static_cast<std::size_t>(face)];
-}
-
-constexpr int kFaceCells = 4;  // cells west of the sand that leans against a wall or a rock face
-
-/// Puts a face west of the sand. Returns the place of the face [cell from the west].
-inline double putFace(Case& given, Face face) {
-    if (face == Face::wall) {
-        given.wall = [](int x, int) { return x == kFaceCells - 1; };
-    } else if (face == Face::rock) {
-        given.rock = [](double x, double) { return x > kFaceCells - 1 && x < kFaceCells ? 1000.0 : 0.0; };
-    }
-    return face == Face::wall || face == Face::rock ? kFaceCells : 0;
-}
-
 inline Case caseOf(const Ground& ground, int n, const Sand& sand) {
     Case given = caseOf(ground, n);
     std::tie(given.talus, given.start) = sand.slopes();

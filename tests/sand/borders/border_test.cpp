@@ -44,7 +44,7 @@ TEST(Border, PilesLeanAgainstRimsCornersWallsAndRockAsInAMirror) {
                 }
                 for (const double band : {0.0, 0.3}) {
                     EXPECT_LE(borders::leaningPile(ground, kSide, face, prism, band), 0.016)
-                        << nameOf(ground) << ", face " << static_cast<int>(face) << ", prism " << prism << ", band "
+                        << nameOf(ground) << ", " << borders::nameOf(face) << ", prism " << prism << ", band "
                         << band;
                 }
             }
