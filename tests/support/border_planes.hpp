@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "scene/material.hpp"
@@ -84,7 +85,7 @@ inline double errorOfSlidPlane(const Ground& ground, int n, Face face, const San
 /// face holds the same sand in its eastern half, and its mirror image in the west. The two are compared.
 struct Image {
     double moving = 0;       // the largest difference after a step [cell³ at n = 64]
-    double atRest = 0;       // the difference at rest
+    double atRest = 0;       // the difference at rest; infinite if the sand does not come to rest
     double mirrorError = 0;  // the difference at rest between the western and the eastern half of the whole field
     double moved = 0;        // the volume that has moved in the half
 };
@@ -118,9 +119,8 @@ inline Image mirrored(const Ground& ground, int n, Face face, const Sand& sand) 
         Hand(whole).hover();
         result.moving = std::max(result.moving, apart(image));
     }
-    Hand(half).rest();
-    Hand(whole).rest();
-    result.atRest = apart(image);
+    const bool rests = Hand(half).rest() && Hand(whole).rest();
+    result.atRest = rests ? apart(image) : std::numeric_limits<double>::infinity();
     result.moved = apart([&](double x, double y) { return heightAt(before, x, y); }) / 2;
     const auto isWest = [=](double x, double) { return x < width; };
     const auto opposite = [&](double x, double y) { return heightAt(whole, 2 * width - x, y); };

@@ -74,6 +74,7 @@ TEST(BorderPlane, AndPilesMoveAtAFaceAsBesideTheirMirrorImage) {
             EXPECT_LE(image.moving, image.mirrorError) << name;
         } else if (face == Face::rim) {
             EXPECT_LE(image.moving, 0.015 * image.moved) << name;
+            EXPECT_LE(image.atRest, 0.015 * image.moved) << name;
         } else {
             EXPECT_EQ(image.moving, 0) << name;
             EXPECT_EQ(image.atRest, 0) << name;
