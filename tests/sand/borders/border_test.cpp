@@ -33,7 +33,8 @@ TEST(Border, HalfAPileAtAClosedRimIsHalfOfTheWhole) {
 }
 
 // The piles start from heights at the middles of cells. At this size, up to 1.2 % of the cylinder's sand is missing or
-// too much. Without vertices at a border of a TIN, 9 % is misplaced.
+// too much, and nothing of the prism's. A TIN takes a slope of up to 1.001 of the talus for the talus. Without vertices
+// at a border of a TIN, 9 % is misplaced.
 TEST(Border, PilesLeanAgainstRimsCornersWallsAndRockAsInAMirror) {
     using enum borders::Face;
     for (const borders::Ground& ground : kGrounds) {
@@ -42,10 +43,10 @@ TEST(Border, PilesLeanAgainstRimsCornersWallsAndRockAsInAMirror) {
                 if ((ground.tin && face == rock) || (prism && face == corner)) {
                     continue;  // a TIN has no rock, and a prism no corner
                 }
+                const double most = !prism ? 0.012 : ground.tin ? 1e-3 : 1e-4;
                 for (const double band : {0.0, 0.3}) {
-                    EXPECT_LE(borders::leaningPile(ground, kSide, face, prism, band), 0.016)
-                        << nameOf(ground) << ", " << borders::nameOf(face) << ", prism " << prism << ", band "
-                        << band;
+                    EXPECT_LE(borders::leaningPile(ground, kSide, face, prism, band), most)
+                        << nameOf(ground) << ", " << borders::nameOf(face) << ", prism " << prism << ", band " << band;
                 }
             }
         }
@@ -58,16 +59,18 @@ TEST(Border, ADragAlongAClosedRimLeavesHalfOfItsMirror) {
     for (const borders::Ground& ground : {kTin, kCoarse}) {
         const borders::Drag drag = borders::rimDrag(ground, kSide);
         EXPECT_LE(drag.misplaced, borders::mirrorError(ground, kSide)) << ground.widest;
-        EXPECT_LE(drag.largest, ground.widest == 1 ? 0.5 : 2.5) << ground.widest;
+        EXPECT_LE(drag.largest, ground.widest == 1 ? 0.25 : 1) << ground.widest;
     }
-    EXPECT_LE(borders::rimDrag(kGrid, kSide).misplaced, 10);
+    // The ground beyond a grid's closed rim continues with the same slope.
+    EXPECT_LE(borders::rimDrag(kGrid, kSide).misplaced, 5);
 }
 
+// A TIN takes a slope of up to 1.001 of the talus for the talus.
 TEST(Border, ABankOfATinThatSlidesStopsAtTheTalusInHoweverManySteps) {
     for (const double start : {0.81 * 1.2, 1.62}) {
         const borders::Steepness bank = borders::wetBank(kSide, start);
-        EXPECT_LE(bank.largest, 1.02) << start;
-        EXPECT_GE(bank.largest, 0.98) << start;
+        EXPECT_LE(bank.largest, 1.002) << start;
+        EXPECT_GE(bank.largest, 0.999) << start;
     }
 }
 
