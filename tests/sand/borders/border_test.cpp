@@ -198,8 +198,8 @@ TEST(Settle, RunsAtMostAsManySweepsInAStepAsTheFieldAllows) {
     EXPECT_EQ(sweepsOf(128, true), (1 << 28) / (16 * (128 * 128 + 4 * 127 + 4)));
 }
 
-// The state of a TIN records which sand moves. Another replica that loads the state continues alike. A load, a reset
-// and a settle forget it.
+// The state of a TIN records which sand moves. Another replica that loads the state continues alike. A load and a reset
+// forget it.
 TEST(MovingSand, OfATinIsPartOfTheState) {
     Case given = borders::caseOf(kTin, 32);
     given.talus = 0.81;
