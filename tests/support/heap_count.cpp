@@ -12,7 +12,8 @@ thread_local long requests = 0;
 
 long test::heapRequests() { return requests; }
 
-// Each form of new is replaced, because the sanitizers' forms do not call the others, as those of the library do.
+// Both forms of new for one object are replaced, because the sanitizers' forms do not call each other, as those of the
+// library do. So memory of new[] is counted only without a sanitizer.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++requests;
     return std::malloc(size == 0 ? 1 : size);
