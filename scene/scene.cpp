@@ -59,7 +59,7 @@ void decodePart(base::ByteReader& reader, Scene& scene) {
 
 }  // namespace
 
-base::Bytes Scene::encode() const {
+base::ByteWriter Scene::encodeWithoutStatements() const {
     base::ByteWriter writer;
     writer.putText(name);
     rules.encode(writer);
@@ -87,20 +87,19 @@ base::Bytes Scene::encode() const {
         georeference.encode(part);
         encodePart(Part::georeference, part, writer);
     }
-    // The last part, so that isEncodedAs() can leave it out.
-    if (statements) {
+    return writer;
+}
+
+base::Bytes Scene::encode() const {
+    base::ByteWriter writer = encodeWithoutStatements();
+    if (statements) {  // the last part, so that isEncodedAs() can leave it out
         encodeStatements(*statements, writer);
     }
     return writer.take();
 }
 
 bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
-    base::Bytes own = encode();
-    if (statements) {
-        base::ByteWriter part;
-        encodeStatements(*statements, part);
-        own.resize(own.size() - part.bytes().size());
-    }
+    const base::Bytes own = encodeWithoutStatements().take();
     if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
         return false;
     }
