@@ -11,7 +11,7 @@ namespace {
 /// Parts that may follow a scene, each with its length in bytes.
 enum class Part : std::uint8_t { georeference = 1, statements = 2 };
 
-constexpr std::uint32_t kMostStatements = 16;  // a terrain has two files at most
+constexpr std::size_t kMostStatements = 16;  // a terrain has two files at most
 
 void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(part));
@@ -20,22 +20,13 @@ void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writ
 
 void encodeStatements(const std::vector<RasterStatement>& statements, base::ByteWriter& writer) {
     base::ByteWriter part;
-    part.put(static_cast<std::uint32_t>(statements.size()));
-    for (const RasterStatement& statement : statements) {
-        statement.encode(part);
-    }
+    base::upTo<std::uint32_t>(statements, kMostStatements).put(part);
     encodePart(Part::statements, part, writer);
 }
 
 std::vector<RasterStatement> decodeStatements(base::ByteReader& reader) {
-    const auto count = reader.get<std::uint32_t>();
-    if (count > kMostStatements) {
-        throw base::FormatError("a scene with too many files of terrain");
-    }
     std::vector<RasterStatement> statements;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        statements.push_back(RasterStatement::decode(reader));
-    }
+    base::upTo<std::uint32_t>(statements, kMostStatements).get(reader);
     return statements;
 }
 
