@@ -186,6 +186,29 @@ template <class Optional>
     return {value};
 }
 
+/// Text as TextUpTo behind a 1, or a 0 alone.
+template <class Optional>
+struct OptionalText {
+    Optional& value;
+    std::size_t most;
+    void put(ByteWriter& writer) const {
+        writer.put(static_cast<std::uint8_t>(value.has_value()));
+        if (value) {
+            text(*value, most).put(writer);
+        }
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Optional>) {
+        value.reset();
+        if (detail::getBool(reader)) {
+            text(value.emplace(), most).get(reader);
+        }
+    }
+};
+template <class Optional>
+[[nodiscard]] OptionalText<Optional> optionalText(Optional& value, std::size_t most) {
+    return {value, most};
+}
+
 /// Texts behind their number, each as TextUpTo. `most` limits their number, too.
 template <class Texts>
 struct TextsUpTo {

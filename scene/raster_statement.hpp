@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace scene {
 
@@ -20,9 +20,18 @@ struct RasterStatement {
     /// Returns "metres across (EPSG:32633), feet up (vertical datum), no data -9999 in 72 % of cells".
     [[nodiscard]] std::string text() const;
 
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for a share outside [0, 1], and for a text that is too long.
-    static RasterStatement decode(base::ByteReader& reader);
+    /// The order in an encoded scene.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::size_t kLongest = 1 << 16;  // [byte] of one text; a path takes less
+        visit("file", base::text(it.file, kLongest));
+        visit("across", base::text(it.across, kLongest));
+        visit("across_from", base::text(it.acrossFrom, kLongest));
+        visit("up", base::text(it.up, kLongest));
+        visit("up_from", base::text(it.upFrom, kLongest));
+        visit("no_data", base::optionalText(it.noData, kLongest));
+        visit("no_data_share", base::limited(it.noDataShare, 0, 1));
+    }
     friend bool operator==(const RasterStatement&, const RasterStatement&) = default;
 };
 

@@ -11,7 +11,7 @@ namespace {
 /// Parts that may follow a scene, each with its length in bytes.
 enum class Part : std::uint8_t { georeference = 1, statements = 2 };
 
-constexpr std::uint32_t kMostStatements = 16;  // a terrain has two files at most
+constexpr std::size_t kMostStatements = 16;  // a terrain has two files at most
 
 void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writer) {
     writer.put(static_cast<std::uint8_t>(part));
@@ -20,22 +20,13 @@ void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writ
 
 void encodeStatements(const std::vector<RasterStatement>& statements, base::ByteWriter& writer) {
     base::ByteWriter part;
-    part.put(static_cast<std::uint32_t>(statements.size()));
-    for (const RasterStatement& statement : statements) {
-        statement.encode(part);
-    }
+    base::upTo<std::uint32_t>(statements, kMostStatements).put(part);
     encodePart(Part::statements, part, writer);
 }
 
 std::vector<RasterStatement> decodeStatements(base::ByteReader& reader) {
-    const auto count = reader.get<std::uint32_t>();
-    if (count > kMostStatements) {
-        throw base::FormatError("a scene with too many files of terrain");
-    }
     std::vector<RasterStatement> statements;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        statements.push_back(RasterStatement::decode(reader));
-    }
+    base::upTo<std::uint32_t>(statements, kMostStatements).get(reader);
     return statements;
 }
 
@@ -59,7 +50,7 @@ void decodePart(base::ByteReader& reader, Scene& scene) {
 
 }  // namespace
 
-base::Bytes Scene::encode() const {
+base::ByteWriter Scene::encodeWithoutStatements() const {
     base::ByteWriter writer;
     writer.putText(name);
     rules.encode(writer);
@@ -87,20 +78,19 @@ base::Bytes Scene::encode() const {
         georeference.encode(part);
         encodePart(Part::georeference, part, writer);
     }
-    // The last part, so that isEncodedAs() can leave it out.
-    if (statements) {
+    return writer;
+}
+
+base::Bytes Scene::encode() const {
+    base::ByteWriter writer = encodeWithoutStatements();
+    if (statements) {  // the last part, so that isEncodedAs() can leave it out
         encodeStatements(*statements, writer);
     }
     return writer.take();
 }
 
 bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
-    base::Bytes own = encode();
-    if (statements) {
-        base::ByteWriter part;
-        encodeStatements(*statements, part);
-        own.resize(own.size() - part.bytes().size());
-    }
+    const base::Bytes own = encodeWithoutStatements().take();
     if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
         return false;
     }

@@ -53,6 +53,10 @@ struct Scene : sand::Start {
     static Scene decode(std::span<const std::uint8_t> bytes);
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
+
+private:
+    /// Writes all but the statements, which are the last part.
+    [[nodiscard]] base::ByteWriter encodeWithoutStatements() const;
 };
 
 }  // namespace scene

@@ -99,7 +99,7 @@ private:
 };
 
 /// Returns the field of a source. Cells without data become walls. They are drawn as flats at the lowest height of the
-/// terrain. Sets `survey` to the raster without heights if it has a place.
+/// terrain. Sets `survey` to the raster without heights if it is on a map.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                              std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,
                              const SizeChecks& checks) {
@@ -117,7 +117,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
         }
         return layOutPoints(file, terrain, source.points, scene);
     }
-    if (source.mayBeDegrees && !terrain.flagOr("lengths", false)) {
+    if (source.onMap && !terrain.flagOr("lengths", false)) {
         requireLengths(source.raster, "; or insist on lengths with lengths = true");
     }
     requireSquareCells(terrain, sourceKinds().at(static_cast<std::size_t>(kind)), source.raster);
@@ -125,7 +125,7 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     const EsriGrid grid = terrain.has("bedrock") ? source.raster : withoutEmptyEdges(source.raster);
     scene.georeference = source.referenceAt(grid);
     const double datum = scene.georeference.datum;
-    if (source.mayBeDegrees) {
+    if (source.onMap) {
         survey = withoutHeights(grid);
     }
     asked.askOfField(grid.columns, grid.rows);
@@ -199,7 +199,7 @@ void layRock(const host::TomlTable& terrain, const std::string& key, const sand:
     }
 }
 
-/// Reads `layer` or `bedrock`. `survey` is the raster of the terrain, without heights, if it has a place. Rock must
+/// Reads `layer` or `bedrock`. `survey` is the raster of the terrain, without heights, if it is on a map. Rock must
 /// then have the same place. Under other terrain only the number of cells must be the same.
 void readBedrock(const host::TomlTable& terrain, const sand::HeightField& field, const SizeChecks& checks,
                  const std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground, Scene& scene) {

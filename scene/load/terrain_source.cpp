@@ -162,8 +162,8 @@ TerrainSource readSource(const host::TomlTable& file, const host::TomlTable& ter
     }
     TerrainSource source = readKind(file, terrain, kind, check);
     source.georeference.units = source.raster.units;
-    source.mayBeDegrees = kind == kDem || kind == kEsriAscii;
-    if (source.mayBeDegrees || kind == kGsf) {
+    source.onMap = kind == kDem || kind == kEsriAscii;
+    if (source.onMap || kind == kGsf) {
         source.statement = statementOf(source.raster);
     } else if (kind == kPoints) {
         source.statement = statementOf(source.points, fileOf(terrain).string());

@@ -22,7 +22,7 @@ struct TerrainSource {
     Points points{};              // in scene units, before the datum is subtracted; empty for a raster
     Georeference georeference{};  // without the corner, which referenceAt() sets
     std::optional<RasterStatement> statement{};  // nullopt unless the heights are from a file
-    bool mayBeDegrees = false;            // the lengths are those of a map, and nothing says that they are lengths
+    bool onMap = false;                   // cells and corner are those of a map, so that the lengths may be degrees
     std::vector<std::string> warnings{};  // one line each
 
     /// Returns the georeference of a field whose south-west corner is that of `part`, a part of the raster.

@@ -97,6 +97,11 @@ struct Long {
     static void fields(auto& it, auto& visit) { visit("numbers", base::upTo(it.numbers, std::size_t{1} << 60)); }
 };
 
+struct Noted {
+    std::optional<std::string> note;
+    static void fields(auto& it, auto& visit) { visit("note", base::optionalText(it.note, 4)); }
+};
+
 struct Versioned {
     std::uint8_t version = 1, value = 7;
     static void fields(auto& it, auto& visit) {
@@ -122,6 +127,7 @@ namespace {
 using described::All;
 using described::full;
 using described::Long;
+using described::Noted;
 using described::Place;
 using described::Small;
 using described::Versioned;
@@ -220,6 +226,21 @@ TEST(Fields, AListTakesMemoryOnlyForItsBytes) {
                   (void)base::decoded<Long>(writer.bytes());
               }).find("numbers: cut short"),
               std::string::npos);
+}
+
+TEST(Fields, ATextThatIsMissingHasOneByte) {
+    const base::Bytes missing{0}, empty{1, 0, 0, 0, 0}, whole{1, 4, 0, 0, 0, 't', 'o', 'o', 'l'};
+    EXPECT_EQ(base::encoded(Noted{}), missing);
+    EXPECT_EQ(base::encoded(Noted{""}), empty);
+    EXPECT_EQ(base::encoded(Noted{"tool"}), whole);
+    EXPECT_EQ(base::decoded<Noted>(missing).note, std::nullopt);
+    EXPECT_EQ(base::decoded<Noted>(empty).note, "");
+    EXPECT_EQ(base::decoded<Noted>(whole).note, "tool");
+    const auto refusal = [](const base::Bytes& bytes) {
+        return test::refusalOf<base::FormatError>([&] { (void)base::decoded<Noted>(bytes); });
+    };
+    EXPECT_EQ(refusal({2}), "note: is 2, neither 0 nor 1");
+    EXPECT_EQ(refusal({1, 5, 0, 0, 0, 't', 'o', 'o', 'l', 's'}), "note: has 5 bytes; at most 4 are allowed");
 }
 
 // A newer version of a message begins as the others do, and may be any bytes after that.

@@ -254,6 +254,15 @@ TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
     EXPECT_FALSE(placed.isEncodedAs(bytes));
 }
 
+// Five texts behind their lengths, a 1 and a text, and the double 0.5.
+TEST_F(SceneFile, WhatAFileMeansHasTheBytesOfAJournal) {
+    const base::Bytes expected{1, 0, 0, 0, 'f', 1,   0, 0, 0, 'a', 2, 0,   0,   0, 'a', 'b', 1, 0, 0, 0,    'u',
+                               2, 0, 0, 0, 'u', 'v', 1, 2, 0, 0,   0, '-', '1', 0, 0,   0,   0, 0, 0, 0xe0, 0x3f};
+    const scene::RasterStatement statement{"f", "a", "ab", "u", "uv", "-1", 0.5};
+    EXPECT_EQ(base::encoded(statement), expected);
+    EXPECT_EQ(base::decoded<scene::RasterStatement>(expected), statement);
+}
+
 TEST_F(SceneFile, EverySceneOfTheProjectLoadsAndSurvivesItsEncoding) {
     std::set<std::string> scenes;
     for (const auto& entry : std::filesystem::directory_iterator(SANDWALL_SOURCE_DIR "/scenes")) {

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Functions that sandwall-import.so exports.
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 
 #include "base/input_error.hpp"
-#include "base/text.hpp"
-#include "base/text_reader.hpp"
 #include "scene/import/gdal/function_text.hpp"
 #include "scene/import/gdal/gdal_geotiff.hpp"
 #include "scene/import/gdal/gdal_reference.hpp"
+#include "scene/import/gdal/header_in_memory.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {
@@ -92,43 +88,6 @@ double whiteOf(const GdalRaster& raster) {
                             GDALGetDataTypeName(GDALGetRasterDataType(raster.band()))));
     }
 }
-
-/// Header and first row of a text grid in ASCII, in GDAL's memory. GDAL reads neither byte order marks, nor UTF-16, nor
-/// ends of lines of old Macs. Other texts stay where they are.
-class HeaderInMemory {
-public:
-    explicit HeaderInMemory(const std::filesystem::path& file) {
-        std::ifstream stream(file, std::ios::binary);
-        std::string begin(4096, '\0');
-        stream.read(begin.data(), static_cast<std::streamsize>(begin.size()));
-        begin.resize(static_cast<std::size_t>(stream.gcount()));
-        const bool marked = begin.starts_with("\xEF\xBB\xBF");
-        if (!marked && begin.find('\0') == std::string::npos && begin.find('\n') != std::string::npos) {
-            return;
-        }
-        stream.clear();
-        stream.seekg(0);
-        base::TextReader lines(stream, file.string());
-        for (std::string_view line; lines.nextLine(line);) {
-            text_.append(line).push_back('\n');
-            const std::string_view words = base::trimmed(line);
-            if (!words.empty() && std::isalpha(static_cast<unsigned char>(words.front())) == 0) {
-                break;  // behind the header
-            }
-        }
-        VSIFCloseL(VSIFileFromMemBuffer(kPath, reinterpret_cast<GByte*>(text_.data()), text_.size(), FALSE));
-    }
-    ~HeaderInMemory() { VSIUnlink(kPath); }
-    HeaderInMemory(const HeaderInMemory&) = delete;
-    HeaderInMemory& operator=(const HeaderInMemory&) = delete;
-
-    /// Returns an empty path for a text that GDAL reads as it is.
-    [[nodiscard]] std::filesystem::path path() const { return text_.empty() ? "" : kPath; }
-
-private:
-    static constexpr const char* kPath = "/vsimem/sandwall_header.asc";
-    std::string text_;
-};
 
 void ask(const RasterCheck& check, const GdalRaster& raster) {
     if (check) {

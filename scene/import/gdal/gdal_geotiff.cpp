@@ -28,7 +28,7 @@ struct Unlink {
 bool writesLengths(const RasterUnits& units) { return units.crs.empty() && units.heightsPerLength != 1; }
 
 /// Returns the unit of heights as the file is to name it; empty without a name.
-std::string unitName(const RasterUnits& units) {
+std::string heightUnitName(const RasterUnits& units) {
     if (!writesLengths(units)) {
         return units.heightName;
     }
@@ -49,7 +49,7 @@ bool describe(GDALDatasetH dataset, GDALRasterBandH band, const EsriGrid& grid, 
         const SpatialReference reference = referenceOf(grid.units.crs, file);
         good = good && GDALSetSpatialRef(dataset, reference.get()) == CE_None;
     }
-    if (const std::string unit = unitName(grid.units); !unit.empty()) {
+    if (const std::string unit = heightUnitName(grid.units); !unit.empty()) {
         good = good && GDALSetRasterUnitType(band, unit.c_str()) == CE_None;
     }
     // NaN is no-data, because it cannot be a height.

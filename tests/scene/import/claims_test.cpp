@@ -180,18 +180,11 @@ TEST_F(Claims, ASurferTextHasAllItsNumbersAndNoOthers) {
     EXPECT_NE(refusedRaster("t.grd").find("but there are 7"), std::string::npos);
 }
 
-// GDAL 3.6 has no type for bytes with a sign, and takes those of other signs for them.
-#if GDAL_VERSION_NUM >= GDAL_COMPUTE_VERSION(3, 7, 0)
-constexpr int kNegative = 0;
-#else
-constexpr int kNegative = 256;
-#endif
-
 TEST_F(Claims, SignedBytesHaveTheirSign) {
     const auto heights = [&](std::optional<double> noData) {
         writeRaster("t.tif", {.columns = 3,
                               .rows = 1,
-                              .heights = {kNegative - 3, 127, kNegative - 128},
+                              .heights = {kNegativeByte - 3, 127, kNegativeByte - 128},
                               .type = GDT_Byte,
                               .noData = noData,
                               .options = {"PIXELTYPE=SIGNEDBYTE"}});

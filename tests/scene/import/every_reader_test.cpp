@@ -215,7 +215,7 @@ TEST_F(EveryReader, ComparesClaimsWithContents) {
 TEST_F(EveryReader, TakesGdalsOwnValues) {
     writeRaster("t.tif", {.columns = 3,
                           .rows = 2,
-                          .heights = {253, 2, 3, 4, 5, 6},
+                          .heights = {kNegativeByte - 3, 2, 3, 4, 5, 6},
                           .type = GDT_Byte,
                           .options = {"PIXELTYPE=SIGNEDBYTE"}});
     expectHeights("signed bytes", "t.tif", {-3, 2, 3, 4, 5, 6});

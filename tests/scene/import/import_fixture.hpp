@@ -16,6 +16,14 @@
 #include "tests/scene/scene_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
+/// Number that writeRaster() adds to a negative byte with a sign. GDAL 3.6 has no type for such bytes, and takes bytes
+/// without a sign for them.
+#if GDAL_VERSION_NUM >= GDAL_COMPUTE_VERSION(3, 7, 0)
+inline constexpr int kNegativeByte = 0;
+#else
+inline constexpr int kNegativeByte = 256;
+#endif
+
 /// Raster file to write; rows from the north.
 struct Raster {
     int columns = 1, rows = 1;

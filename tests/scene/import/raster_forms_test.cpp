@@ -7,7 +7,10 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "scene/import/importer.hpp"
 #include "tests/scene/import/import_fixture.hpp"
@@ -51,6 +54,20 @@ protected:
     }
 };
 
+/// Returns the names of GDAL's drivers that the program opens a raster with, from its source.
+std::set<std::string> driversOfTheProgram() {
+    std::ifstream stream(SANDWALL_SOURCE_DIR "/scene/import/gdal/gdal_raster.cpp");
+    const std::string source{std::istreambuf_iterator<char>(stream), {}};
+    const std::size_t begin = source.find("kDrivers[] = {"), end = source.find("nullptr", begin);
+    std::set<std::string> names;
+    for (std::size_t at = source.find('"', begin); at < end;) {
+        const std::size_t close = source.find('"', at + 1);
+        names.insert(source.substr(at + 1, close - at - 1));
+        at = source.find('"', close + 1);
+    }
+    return names;
+}
+
 TEST_F(RasterForms, AreReadAsGdalReadsThem) {
     const bool print = std::getenv("SANDWALL_PRINT_FORMS") != nullptr;
     std::map<std::string, int> read;  // forms by driver
@@ -79,15 +96,19 @@ TEST_F(RasterForms, AreReadAsGdalReadsThem) {
         }
     }
     // A driver that wrote nothing would not be tested. GDAL 3.6.2 cannot read the files of Leveller that it writes.
+    std::set<std::string> known;
     for (const auto& [driver, count] : read) {
         EXPECT_EQ(count > 0, driver != "Leveller") << driver;
+        known.insert(driver);
     }
     for (const std::string& name : test::formatsThatGdalCannotWrite()) {
+        known.insert(name);
         GDALDriverH driver = GDALGetDriverByName(name.c_str());
         ASSERT_NE(driver, nullptr) << name;
         EXPECT_EQ(GDALGetMetadataItem(driver, GDAL_DCAP_CREATE, nullptr), nullptr) << name;
         EXPECT_EQ(GDALGetMetadataItem(driver, GDAL_DCAP_CREATECOPY, nullptr), nullptr) << name;
     }
+    EXPECT_EQ(known, driversOfTheProgram());
 }
 
 }  // namespace

@@ -58,18 +58,25 @@ TEST_F(Rock, InOtherUnitsIsRefusedByName) {
 TEST_F(Rock, AtAnotherPlaceIsRefusedInOneLine) {
     writeText();
     const std::string scene = "[terrain]\nkind = \"{}\"\nfile = \"t.asc\"\nbedrock = \"rock.asc\"\n";
-    struct Odd {
-        const char *head, *rows, *found;
+    const auto writeRock = [&](int columns, const char* west, const char* south, const char* cells) {
+        const std::string row = columns == 3 ? "0 0 0\n" : "0 0\n";
+        write("rock.asc", fmt::format("ncols {}\nnrows 2\nxllcorner {}\nyllcorner {}\n{}\n{}{}", columns, west, south,
+                                      cells, row, row));
     };
-    for (const Odd& odd : {Odd{"ncols 3\nnrows 2\nxllcorner 500010\nyllcorner 5200000\ncellsize 10\n", "0 0 0\n0 0 0\n",
-                               "3 x 2 cells of 10 x 10 from (500010, 5200000)"},
-                           Odd{"ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 5200005\ncellsize 10\n", "0 0 0\n0 0 0\n",
-                               "3 x 2 cells of 10 x 10 from (500000, 5200005)"},
-                           Odd{"ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 5200000\ncellsize 5\n", "0 0 0\n0 0 0\n",
-                               "3 x 2 cells of 5 x 5 from (500000, 5200000)"},
-                           Odd{"ncols 2\nnrows 2\nxllcorner 500000\nyllcorner 5200000\ncellsize 10\n", "0 0\n0 0\n",
-                               "2 x 2 cells of 10 x 10 from (500000, 5200000)"}}) {
-        write("rock.asc", std::string(odd.head) + odd.rows);
+    struct Odd {
+        int columns;
+        const char *west, *south, *cells, *found;
+    };
+    for (const Odd& odd :
+         {Odd{3, "500010", "5200000", "cellsize 10", "3 x 2 cells of 10 x 10 from (500010, 5200000)"},
+          Odd{3, "500000.02", "5200000", "cellsize 10", "3 x 2 cells of 10 x 10 from (500000.02, 5200000)"},
+          Odd{3, "500000", "5200005", "cellsize 10", "3 x 2 cells of 10 x 10 from (500000, 5200005)"},
+          Odd{3, "500000", "5200000.02", "cellsize 10", "3 x 2 cells of 10 x 10 from (500000, 5200000.02)"},
+          Odd{3, "500000", "5200000", "cellsize 5", "3 x 2 cells of 5 x 5 from (500000, 5200000)"},
+          Odd{3, "500000", "5200000", "cellsize 10.0001", "3 x 2 cells of 10.0001 x 10.0001 from (500000, 5200000)"},
+          Odd{3, "500000", "5200000", "dx 10\ndy 10.0001", "3 x 2 cells of 10 x 10.0001 from (500000, 5200000)"},
+          Odd{2, "500000", "5200000", "cellsize 10", "2 x 2 cells of 10 x 10 from (500000, 5200000)"}}) {
+        writeRock(odd.columns, odd.west, odd.south, odd.cells);
         const std::string line = path("rock.asc") + ": " + odd.found + ", but " + path("t.asc") +
                                  ": 3 x 2 cells of 10 x 10 from (500000, 5200000): they must be the same; resample the "
                                  "rock: gdalwarp -te 500000 5200000 500030 5200020 -ts 3 2 -r bilinear";
@@ -81,8 +88,8 @@ TEST_F(Rock, AtAnotherPlaceIsRefusedInOneLine) {
             EXPECT_EQ(refused, line) << kind;
         }
     }
-    // A thousandth of a cell is a matter of printed digits.
-    write("rock.asc", "ncols 3\nnrows 2\nxllcorner 500000.001\nyllcorner 5200000\ncellsize 10.000001\n0 0 0\n0 0 0\n");
+    // Less than a thousandth of a cell, or a millionth of its side, is a matter of printed digits.
+    writeRock(3, "500000.009", "5200000.009", "cellsize 10.000009");
     EXPECT_EQ(relaxed().status, 0);
     EXPECT_NO_THROW((void)load(fmt::format(fmt::runtime(scene), "dem")));
 }
