@@ -77,17 +77,20 @@ TEST_F(Claims, ABilWithoutNbitsIsNotGuessed) {
 
 TEST_F(Claims, ARasterWithoutItsHeaderSaysWhatIsMissing) {
     for (const char* ending : {".flt", ".bil"}) {
-        const std::string name = std::string("t") + ending, begin = name + ": cannot be read as a raster: ";
+        // GDAL's words stand between ours, and differ from version to version.
+        const std::string name = std::string("t") + ending;
+        const auto expectRefused = [&](const std::string& end) {
+            const std::string line = refusedRaster(name);
+            EXPECT_TRUE(line.starts_with(name + ": cannot be read as a raster: not recognized as ")) << line;
+            EXPECT_TRUE(line.ends_with("supported file format; " + end)) << line;
+        };
         write(name, std::string(24, '\0'));
         std::filesystem::remove(path("t.hdr"));
-        EXPECT_EQ(refusedRaster(name),
-                  begin + "not recognized as a supported file format; it needs its header t.hdr beside it");
+        expectRefused("it needs its header t.hdr beside it");
         write("t.hdr", "ncols 3\nxllcorner 0\nyllcorner 0\ncellsize 10\nbyteorder LSBFIRST\n");
-        EXPECT_EQ(refusedRaster(name),
-                  begin + "not recognized as a supported file format; its header t.hdr has no nrows");
+        expectRefused("its header t.hdr has no nrows");
         write("t.hdr", "nrows 2\ncellsize 10\n");
-        EXPECT_EQ(refusedRaster(name),
-                  begin + "not recognized as a supported file format; its header t.hdr has no ncols");
+        expectRefused("its header t.hdr has no ncols");
     }
     write("t.tif", std::string("II*\0\0", 5));
     EXPECT_EQ(refusedRaster("t.tif"), "t.tif: cannot be read as a raster: Cannot read TIFF header");
