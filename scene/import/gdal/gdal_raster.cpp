@@ -38,11 +38,18 @@ fs::path checked(const fs::path& file) {
     return fs::absolute(file);
 }
 
-/// Returns GDAL's complaint without the path, with which some drivers begin it once or twice, and without a full stop.
-std::string withoutPath(std::string complaint, const std::string& path) {
-    for (const std::string& begin : {"`" + path + "' ", path + ": ", path + ":"}) {
-        while (complaint.starts_with(begin)) {
-            complaint.erase(0, begin.size());
+/// Returns GDAL's complaint without the path or the name of the file, with which some drivers begin it once or twice,
+/// and without a full stop.
+std::string withoutPath(std::string complaint, const fs::path& file) {
+    for (bool found = true; found;) {
+        found = false;
+        for (const std::string& name : {file.string(), file.filename().string()}) {
+            for (const std::string& begin : {"`" + name + "' ", name + ": ", name + ":"}) {
+                if (complaint.starts_with(begin)) {
+                    complaint.erase(0, begin.size());
+                    found = true;
+                }
+            }
         }
     }
     while (complaint.ends_with('.')) {
@@ -59,7 +66,7 @@ GdalRaster::GdalRaster(const fs::path& file, const fs::path& inMemory)
                           GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                           static_cast<const char* const*>(kDrivers), nullptr, nullptr)) {
     if (!dataset_) {
-        fail("cannot be read as a raster: " + withoutPath(session_.complaint(), fs::absolute(file).string()) +
+        fail("cannot be read as a raster: " + withoutPath(session_.complaint(), fs::absolute(file)) +
              missingHeader(file));
     }
     chooseBand();
