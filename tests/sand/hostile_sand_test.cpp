@@ -83,14 +83,15 @@ TEST(HostileGrid, IsNotDraggedAlongAPathThatTakesHours) {
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(HostileGrid, WithoutMemoryEndsTheProcessThatAppliesTheStep) {
     const std::string said = test::inTwoGiB([] {
-        Replica replica(samples::flatScene(4096, 4096));  // 64 MiB of heights, which the first stroke copies
-        // Room for everything except this copy. A replica that left out the step would need some, too.
+        Replica replica(samples::flatScene(4096, 4096));  // 64 MiB of heights
+        // Room for a copy of the heights and for putting it back, which a replica needs that leaves out the step.
+        // Settling needs more.
         rlim_t pages = 0;
         std::ifstream("/proc/self/statm") >> pages;
-        const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{32} << 20);
+        const rlim_t most = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{160} << 20);
         const rlimit limit{most, most};
         setrlimit(RLIMIT_AS, &limit);
-        replica.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 0}}});
+        replica.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = {sand::Edit::settle}});
     });
     EXPECT_EQ(said, std::bad_alloc().what());
 }
