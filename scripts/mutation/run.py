@@ -177,9 +177,10 @@ def main():
         print("\n".join(bug.title for bug in bugs))
         return 0
     cores = os.cpu_count() or 1
-    spaces = [Workspace(ROOT / "build" / "mutants" / str(i), 1) for i in range(cores)]
+    workers = cores + (cores + 1) // 2  # tests of processes and links wait a third of their time
+    spaces = [Workspace(ROOT / "build" / "mutants" / str(i), 1) for i in range(workers)]
     targets = sorted({target for bug in bugs for target in bug.targets()})
-    print(f"== building {len(targets)} programs, for {cores} bugs at a time", flush=True)
+    print(f"== building {len(targets)} programs, for {workers} bugs at a time", flush=True)
     for space in spaces:
         space.prepare()
     spaces[0].jobs = cores
@@ -191,8 +192,8 @@ def main():
     spaces[0].jobs = 1
     print("== testing without bugs", flush=True)
     tests = sorted({(bug.test, False) for bug in bugs if bug.test} | {(test, True) for bug in drawn for test in bug.tests})
-    with concurrent.futures.ThreadPoolExecutor(cores) as pool:
-        parts = list(pool.map(lambda i: test_without_bugs(spaces[i], tests[i::cores]), range(cores)))
+    with concurrent.futures.ThreadPoolExecutor(workers) as pool:
+        parts = list(pool.map(lambda i: test_without_bugs(spaces[i], tests[i::workers]), range(workers)))
     useless = set().union(*parts)
     seconds = {test: time_ for space in spaces for test, time_ in space.seconds.items()}
     for space in spaces:
