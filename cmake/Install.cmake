@@ -12,19 +12,33 @@ set(private lib/sandwall)
 set(shared share/sandwall)
 set(docs share/doc/sandwall)
 
+# The options of each program, beside it. The launcher offers them, so it runs no program for its help and completion
+# (scripts/program_options.py).
+set(option_lists)
+foreach(program ${programs})
+    set(list ${CMAKE_RUNTIME_OUTPUT_DIRECTORY}/${program}.json)
+    add_custom_command(OUTPUT ${list}
+        COMMAND ${program} --options-json > ${list}.part
+        COMMAND ${CMAKE_COMMAND} -E rename ${list}.part ${list}
+        DEPENDS ${program} VERBATIM)
+    list(APPEND option_lists ${list})
+endforeach()
+add_custom_target(option_lists ALL DEPENDS ${option_lists})
+
 # All that a session needs. scripts/demo.sh builds only this target.
 add_custom_target(sandwall)
-add_dependencies(sandwall ${programs} ${modules})
+add_dependencies(sandwall ${programs} ${modules} option_lists)
 
 install(SCRIPT cmake/check_prefix.cmake)
 install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DESTINATION ${private})
+install(FILES ${option_lists} DESTINATION ${private})
 install(PROGRAMS scripts/sandwall DESTINATION ${private}/python)
 install(FILES
-    scripts/checked_json.py scripts/command_line.py scripts/console.py scripts/doctor.py scripts/environment.py
+    scripts/checked_json.py scripts/command_line.py scripts/completion.py scripts/console.py scripts/doctor.py scripts/environment.py
     scripts/events.py scripts/failed_processes.py scripts/film.py scripts/first_frame.py scripts/job_log.py
     scripts/job_stream.py
     scripts/json_schema.py scripts/layout.py scripts/mpirun_end.py scripts/open_mpi.py scripts/pointer.py
-    scripts/process_failure.py scripts/processes.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py
+    scripts/process_failure.py scripts/processes.py scripts/program_options.py scripts/programs.py scripts/rank_hosts.py scripts/reachable.py
     scripts/screens.py scripts/server_watch.py scripts/session_control.py scripts/session_folder.py
     scripts/session_lines.py scripts/session_report.py scripts/session_results.py scripts/session_rules.py
     scripts/spare_hosts.py scripts/supervisor.py scripts/text_file.py scripts/this_machine.py

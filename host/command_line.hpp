@@ -7,8 +7,12 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "base/names.hpp"
+#include "host/option_list.hpp"
 
 namespace CLI {
 class App;
@@ -21,11 +25,13 @@ namespace host {
 /// Valid as long as its CommandLine.
 class Option {
 public:
-    explicit Option(CLI::Option* option) : option_(option) {}
+    Option(CLI::Option* option, ListedOption* listed) : option_(option), listed_(listed) {}
 
     Option required() const;
     /// Makes --help show the value that the variable has at this call.
     Option showDefault() const;
+    /// Makes --help show this text as the value without the option.
+    Option fallback(const std::string& text) const;
     /// Refuses a value of another type, or outside the range. Both ends are allowed.
     Option range(int lowest, int highest) const;
     Option range(double lowest, double highest) const;
@@ -40,10 +46,29 @@ public:
     Option commaSeparated() const;
     Option needs(const Option& other) const;
     Option excludes(const Option& other) const;
+    /// Sets the word that help prints for the value, such as "HOST:PORT".
+    Option metavar(const std::string& word) const;
+    /// Tells how a value may begin, such as "script:". For completion; other values are not refused here.
+    Option beginnings(const std::vector<std::string>& words) const;
+    /// Makes these commands of the launcher, such as "run", offer the option and pass it on to this program.
+    Option offeredBy(const std::vector<std::string>& commands) const;
 
 private:
     CLI::Option* option_;
+    ListedOption* listed_;
 };
+
+/// The enum of a variable that holds it, or that may hold it.
+template <class T>
+struct ValueIn {
+    using Type = T;
+};
+template <class T>
+struct ValueIn<std::optional<T>> {
+    using Type = T;
+};
+template <class T>
+using ValueOf = typename ValueIn<T>::Type;
 
 /// The options of a program. It wraps CLI11, whose headers take each source that includes them ten seconds to compile.
 /// Not thread-safe.
@@ -71,6 +96,20 @@ public:
         return chosen(
             name, names, [&value, choices](std::size_t index) { value = choices[index].second; }, help);
     }
+    /// Adds an option that sets `value` to the value that valuesOf() lists with the name that the user chooses. Help
+    /// shows the name of the value that the variable has at this call.
+    template <class T, base::NamedEnum Enum = ValueOf<T>>
+    Option choice(const std::string& name, T& value, const std::string& help) {
+        std::vector<std::pair<std::string, T>> choices;
+        for (const base::Named<Enum>& known : valuesOf(Enum{})) {
+            choices.emplace_back(known.name, known.value);
+        }
+        Option added = choice(name, value, choices, help);
+        if constexpr (std::is_same_v<T, Enum>) {
+            added.fallback(std::string(base::nameOf(value)));
+        }
+        return added;
+    }
     /// Returns an option that was added before.
     [[nodiscard]] Option named(const std::string& name) const;
 
@@ -83,8 +122,11 @@ public:
     /// Sets the last lines of --help.
     void footer(const std::string& text);
 
-    /// Prints the help text and returns true if the arguments contain --help or -h. For programs that start something
-    /// slow before parse(), which answers --help too.
+    /// Adds a list of words that is no option, such as the verbs of a session, to what --options-json prints.
+    void words(const std::string& list, std::vector<std::string> words);
+
+    /// Prints the help text and returns true if the arguments contain --help or -h, or prints OptionList::json() if
+    /// they contain --options-json. For programs that start something slow before parse(), which answers both too.
     [[nodiscard]] bool answersHelp(int argc, char** argv) const;
     /// Reads the arguments, and checks the environment variable SANDWALL_EVENTS. Returns nullopt if the program can
     /// start. After --help, or after a line on stderr that says what is wrong, returns the exit status with which the
@@ -92,16 +134,19 @@ public:
     [[nodiscard]] std::optional<int> parse(int argc, char** argv);
 
 private:
-    explicit CommandLine(CLI::App* command);
+    CommandLine(CLI::App* command, std::shared_ptr<OptionList> list);
     Option chosen(const std::string& name, const std::vector<std::string>& names, std::function<void(std::size_t)> take,
                   const std::string& help);
+    Option listed(CLI::Option* option, const std::string& name, const char* kind, bool several,
+                  const std::string& help) const;
 
     std::unique_ptr<CLI::App> owned_;  // null for a command, which the program's command line owns
     CLI::App* app_;
+    std::shared_ptr<OptionList> list_;  // of a command: part of the program's list
 };
 
 /// Adds --sand-threads, for programs that hold a replica of the sand.
-void addSandThreads(CommandLine& line, int& threads);
+Option addSandThreads(CommandLine& line, int& threads);
 
 /// Frame of every program's main. Parses the options, calls `run`, and prints one line on stderr for an error. The line
 /// begins with the program's name.

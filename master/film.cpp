@@ -33,16 +33,6 @@ bool isFrame(const std::string& name) {
 
 }  // namespace
 
-FilmEye filmEyeNamed(const std::string& name) {
-    for (const auto& [word, eye] :
-         {std::pair{"left", FilmEye::left}, {"right", FilmEye::right}, {"anaglyph", FilmEye::anaglyph}}) {
-        if (name == word) {
-            return eye;
-        }
-    }
-    throw base::InputError(fmt::format("--eye must be left, right or anaglyph, got '{}'", name));
-}
-
 Film::Film(const walls::Wall& wall, std::optional<FilmEye> eye, std::filesystem::path folder)
     : wall_(wall), eye_(eye), folder_(std::move(folder)) {
     if (eye && walls::eyesOf(wall.stereo).size() < 2) {

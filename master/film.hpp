@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 
+#include "base/names.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "walls/wall.hpp"
 
@@ -13,8 +15,10 @@ namespace master {
 
 /// Picture that a film shows of a wall that draws two eyes.
 enum class FilmEye : std::uint8_t { left, right, anaglyph };
-/// Returns the FilmEye with the name `name`. Throws base::InputError if it is not "left", "right" or "anaglyph".
-[[nodiscard]] FilmEye filmEyeNamed(const std::string& name);
+constexpr auto valuesOf(FilmEye) {
+    return std::array{base::Named{FilmEye::left, "left"}, base::Named{FilmEye::right, "right"},
+                      base::Named{FilmEye::anaglyph, "anaglyph"}};
+}
 
 /// Writes the pictures of a film of the whole wall: FOLDER/frame_000001.png and so on. Used by one thread.
 ///

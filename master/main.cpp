@@ -29,9 +29,8 @@
 namespace {
 
 struct Options {
-    std::string scene, replay, wall, haptic = "none", pace = "realtime", out;
-    int framesPerSecond = 30;  // of a replay
-    std::string filmEye;
+    std::string scene, replay, wall, haptic = "none", out;
+    int framesPerSecond = 30;   // of a replay
     std::string stereo, track;  // empty: as in the wall file
     std::string pattern = "none";
     std::vector<std::string> layers;
@@ -41,7 +40,6 @@ struct Options {
     bool noReport = false;
     master::SessionOptions session;
     bool resume = false;
-    std::string journal = "required";
     std::int64_t partMegabytes = master::kPartBytes >> 20;
     haptic_bridge::LinkOptions link;
     int sandThreads = 1;
@@ -87,7 +85,6 @@ void resume(const lockstep::Cluster& cluster, Options& options) {
 
 /// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
 scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
-    options.session.record.journal.policy = master::parseJournalPolicy(options.journal);
     options.session.record.journal.partBytes = options.partMegabytes << 20;
     if (options.resume) {
         resume(cluster, options);
@@ -152,9 +149,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.code().message()));
     }
     if (options.session.film) {
-        if (!options.filmEye.empty()) {
-            options.session.filmEye = master::filmEyeNamed(options.filmEye);
-        }
+        options.session.pace = master::Pace::fast;
         (void)master::Film(world.wall, options.session.filmEye, options.out);  // throws before anything is drawn
     }
     if (options.haptic != "none") {
@@ -165,7 +160,6 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
         options.session.security = options.link.forClient(haptic_bridge::Role::move);
         haptic_bridge::requireSecret(*options.session.server, options.session.security, "--haptic");
     }
-    options.session.pace = options.pace == "fast" || options.session.film ? master::Pace::fast : master::Pace::realtime;
     options.session.pictures = !options.noPictures;
     options.session.report = !options.noReport;
     options.session.out = options.out;
@@ -255,36 +249,66 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     }
 }
 
-void describeOptions(host::CommandLine& line, Options& options) {
+void describeSession(host::CommandLine& line, Options& options) {
     master::SessionOptions& session = options.session;
-    line.option("--scene", options.scene, "scene file");
-    line.option("--wall", options.wall, "wall file").required();
-    line.option("--out", options.out, "folder for journal, pictures and summary").required();
-    line.option("--haptic", options.haptic, "HOST:PORT of the haptic server, or none").showDefault();
+    line.option("--scene", options.scene, "scene file").metavar("FILE");
+    line.option("--wall", options.wall, "wall file").metavar("FILE").required();
+    line.option("--out", options.out, "folder for journal, pictures and summary").metavar("FOLDER").required();
+    line.option("--haptic", options.haptic, "address of the haptic server, or none").metavar("HOST:PORT").showDefault();
     options.link.addTo(line, false);
     line.flag("--pointer", session.pointer, "the hand is the pointer of the ranks' windows (docs/pointer.md)");
-    line.option("--pace", options.pace, "realtime: at the wall's refresh rate; fast: as fast as possible")
-        .oneOf({"realtime", "fast"});
-    line.option("--refresh", session.refreshHz, "frames per second, instead of the wall file's").range(1.0, 1000.0);
-    line.option("--stereo", options.stereo, "how the wall shows two eyes, instead of the wall file's mode");
-    line.option("--track", options.track,
-                "source of the head's pose, instead of the wall file's (docs/head_tracking.md)");
-    line.option("--pattern", options.pattern, "test pattern shown from the start (docs/test_patterns.md)");
-    line.option("--show", options.layers, "layer to show with the sand from the start (docs/operator.md)");
-    line.option("--steps", session.steps, "end when exactly this many steps have been shown").positive();
-    line.option("--frames", session.frames, "end after this many frames").positive();
+    line.choice(
+            "--pace", session.pace,
+            "fast: as fast as the machine can, and a recorded hand waits for the wall; not for driver: and spacenav")
+        .offeredBy({"run"});
+    const host::Option steps =
+        line.option("--steps", session.steps, "end after exactly this many shown steps").metavar("N").positive();
+    steps.offeredBy({"run"});
+    line.option("--frames", session.frames, "end after this many frames")
+        .metavar("N")
+        .positive()
+        .excludes(steps)
+        .offeredBy({"run"});
     line.option("--warm-up", session.settlingFrames, "number of first frames whose times do not count")
-        .range(0, 1000000);
+        .metavar("FRAMES")
+        .range(0, 1000000)
+        .offeredBy({"run"});
     line.option("--frame-timeout", session.frameTimeout, "seconds a frame may take before the job ends")
-        .range(2.0, 3600.0);
-    host::addSandThreads(line, options.sandThreads);
-    line.flag("--no-pictures", options.noPictures, "write no pictures at the end");
+        .metavar("SECONDS")
+        .range(2.0, 3600.0)
+        .showDefault()
+        .offeredBy({"run", "film"});
+    host::addSandThreads(line, options.sandThreads).offeredBy({"run", "film"});
+    line.flag("--no-pictures", options.noPictures, "write no pictures at the end").offeredBy({"run"});
     line.flag("--no-report", options.noReport, "print no figures at the end, because another program prints them");
     line.flag("--control-stdin", session.desk.readInput,
               "read commands from standard input (docs/operator.md); its end stops the session");
     line.option("--place", options.places,
                 "RANK,RANK=HOST=MACHINE: machine on which these ranks must run, from the launcher (docs/hosts.md)");
-    line.option("--inject", options.injections, "inject a fault, such as slow:rank=5,ms=30 (docs/operator.md)");
+    line.option("--inject", options.injections, "drill, such as slow:rank=5,ms=30; docs/operator.md")
+        .metavar("KIND:KEY=N,…")
+        .offeredBy({"run"});
+}
+
+void describeView(host::CommandLine& line, Options& options) {
+    line.option("--refresh", options.session.refreshHz, "frames per second, in place of the wall file's")
+        .metavar("HZ")
+        .range(1.0, 1000.0)
+        .offeredBy({"run"});
+    line.option("--stereo", options.stereo, "stereo mode, in place of the wall file's; docs/wall_files.md")
+        .metavar("MODE")
+        .offeredBy({"run", "film"});
+    line.option("--track", options.track,
+                "tracker of the head: trace:FILE.csv, opentrack:PORT, dtrack:PORT or none; docs/head_tracking.md")
+        .metavar("SOURCE")
+        .offeredBy({"run", "film"});
+    line.option("--pattern", options.pattern, "a test pattern instead of the sand; docs/test_patterns.md")
+        .metavar("NAME")
+        .offeredBy({"run"});
+    line.option("--show", options.layers,
+                "layer beside the sand: wireframe, hill-shade, force, statistics or help; docs/operator.md")
+        .metavar("LAYER")
+        .offeredBy({"run"});
 }
 
 void describeResume(host::CommandLine& line, Options& options) {
@@ -294,13 +318,14 @@ void describeResume(host::CommandLine& line, Options& options) {
     line.option("--failed-at", failure.noticed, "Unix time at which the failure of the session was noticed")
         .notNegative()
         .needs(resume);
-    line.option("--journal", options.journal,
-                "required: show only steps that are on disk; best-effort: continue without a journal; off "
-                "(docs/journal.md)")
-        .oneOf({"required", "best-effort", "off"});
+    line.choice("--journal", options.session.record.journal.policy,
+                "required: show only steps that are on disk; best-effort: continue without a journal; docs/journal.md")
+        .offeredBy({"run"});
     line.option("--checkpoint", options.session.record.journal.checkpointSeconds,
-                "seconds from one checkpoint to the next; 0: no checkpoints")
-        .range(0.0, 86400.0);
+                "time between two checkpoints, 0 for none; docs/journal.md")
+        .metavar("SECONDS")
+        .range(0.0, 86400.0)
+        .offeredBy({"run"});
     line.option("--journal-part", options.partMegabytes, "MiB after which the journal continues in another file")
         .range(1, 1 << 20);
     line.option("--force-share", options.session.forceShare,
@@ -320,11 +345,18 @@ void describeReplay(host::CommandLine& line, Options& options) {
     for (const char* other : {"--scene", "--haptic", "--pointer", "--refresh"}) {
         replay.excludes(line.named(other));
     }
-    line.option("--fps", options.framesPerSecond, "frames per second of a replay").range(1, 240).needs(replay);
+    line.option("--fps", options.framesPerSecond, "frames per second of the replay")
+        .metavar("N")
+        .range(1, 240)
+        .showDefault()
+        .needs(replay)
+        .offeredBy({"film"});
     const host::Option film =
         line.flag("--film", options.session.film, "write every frame of a replay as a picture of the whole wall");
     film.needs(replay);
-    line.option("--eye", options.filmEye, "eye that a film shows, of two: left, right or anaglyph").needs(film);
+    line.choice("--eye", options.session.filmEye, "the eye that the film shows, in any stereo mode")
+        .needs(film)
+        .offeredBy({"film"});
 }
 
 }  // namespace
@@ -340,9 +372,11 @@ int main(int argc, char** argv) {
     host::CommandLine line("Rank 0 of a wall: bridges the haptic server to all ranks, paces frames, keeps the journal.",
                            "sandwall-master");
     Options options;
-    describeOptions(line, options);
+    describeSession(line, options);
+    describeView(line, options);
     describeReplay(line, options);
     describeResume(line, options);
+    line.words("verbs", master::verbsOfSession());
     if (line.answersHelp(argc, argv)) {
         return 0;
     }

@@ -152,7 +152,7 @@ std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sa
 
 void SessionRecord::describe(nlohmann::json& status) const {
     status["journal"] = journal_ && journal_->written();
-    status["journal_policy"] = std::string(journalPolicyName(options_.journal.policy));
+    status["journal_policy"] = std::string(base::nameOf(options_.journal.policy));
     status["journal_state"] = std::string(journal_ ? journal_->state() : "off");
     status["checkpoints_failed"] = journal_ ? journal_->checkpointsFailed() : 0;
     status["restarts"] = recoveries_.count();
@@ -164,7 +164,7 @@ Summary::Journal SessionRecord::summary() const {
     if (!journal_) {
         return told;
     }
-    told.policy = journalPolicyName(journal_->policy());
+    told.policy = base::nameOf(journal_->policy());
     told.state = journal_->state();
     told.parts = journal_->parts();
     told.checkpointsFailed = journal_->checkpointsFailed();

@@ -19,24 +19,23 @@ namespace {
 
 struct Options {
     int rank = 0;
-    std::string gl = "auto";
+    Backend backend = Backend::automatic;
     bool json = false;
 };
 
 int probe(const Options& options) {
-    const Backend backend = backendNamed(options.gl);
     const int rank = options.rank;
     walls::Wall wall;
     std::unique_ptr<GlContext> context;
     if (rank == 0) {
-        context = makeOffscreenContext(backend);
+        context = makeOffscreenContext(options.backend);
     } else {
         wall = walls::parseWall(std::string{std::istreambuf_iterator<char>(std::cin), {}}, "standard input");
         if (rank > wall.ranks()) {
             throw base::InputError(
                 fmt::format("--probe: the wall on standard input has {} ranks, not {}", wall.ranks(), rank));
         }
-        context = makeContext(backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
+        context = makeContext(options.backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
     }
     if (options.json) {
         const nlohmann::ordered_json found{
@@ -59,7 +58,7 @@ int probeMain(int argc, char** argv) {
         "sandwall-render-node");
     Options options;
     line.option("--probe", options.rank, "rank of the wall; 0: off screen, without a wall").range(0, walls::kMaxTiles);
-    line.option("--gl", options.gl, "backend: auto, osmesa, egl, glfw").showDefault();
+    line.choice("--gl", options.backend, "backend; docs/backends.md");
     line.flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
     return host::runMain(line, argc, argv, [&] { return probe(options); });
 }

@@ -29,14 +29,13 @@ int main(int argc, char** argv) {
         "Draws one tile of a wall. mpirun starts it beside sandwall-master, which sends it everything it needs.",
         "sandwall-render-node");
     line.footer("Without mpirun: --probe RANK < WALL checks the backend and the windows of that rank.");
-    std::string gl = "auto";
-    line.option("--gl", gl,
+    auto backend = render_node::Backend::automatic;
+    line.choice("--gl", backend,
                 "backend: osmesa draws in memory, egl on a graphics card without a display, glfw in windows. auto "
                 "chooses glfw if the wall file names a display, a monitor or a window's place, else osmesa")
-        .oneOf({"auto", "osmesa", "egl", "glfw"})
-        .showDefault();
+        .offeredBy({"run", "film", "doctor"});
     int sandThreads = 1;
-    host::addSandThreads(line, sandThreads);
+    host::addSandThreads(line, sandThreads).offeredBy({"run", "film"});
     if (line.answersHelp(argc, argv)) {
         return 0;
     }
@@ -45,7 +44,7 @@ int main(int argc, char** argv) {
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);
-        return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});
+        return render_node::showTile(cluster, backend, {.executor = pool.lend()});
     });
     if (status != 0) {
         cluster.abort(status);

@@ -19,6 +19,17 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **options):
         super().__init__(**options)
         os.umask(os.umask(0o022) | 0o022)
+        self.later = None
+
+    def add_later(self, complete):
+        """Calls `complete` before the first parse. A command of many has options then only if it is the chosen one."""
+        self.later = complete
+
+    def parse_known_args(self, *args, **options):
+        if self.later is not None:
+            complete, self.later = self.later, None
+            complete()
+        return super().parse_known_args(*args, **options)
 
     def parse_args(self, *args, **options):
         parsed = super().parse_args(*args, **options)

@@ -12,20 +12,18 @@ _sandwall() {
     fi
     COMPREPLY=()
     if [[ $COMP_CWORD -eq 1 ]]; then
-        names="run try ctl film doctor list check relax replay compare track watch haptic-server --help --version"
-        files=
+        names=$(sandwall complete 2>/dev/null) files=
     elif [[ $before == --wall || ($command == @(check|doctor) && $COMP_CWORD -eq 2) ]]; then
         names=$(sandwall list walls 2>/dev/null)
     elif [[ $before == --scene ]]; then
         names=$(sandwall list scenes 2>/dev/null)
-    elif [[ $before == --gl ]]; then
-        names="auto osmesa egl glfw" files=
-    elif [[ $before == --pace ]]; then
-        names="realtime fast" files=
     elif [[ $before == --device ]]; then
-        names="$(sandwall list strokes 2>/dev/null | sed 's/^/script:/') trace: driver: sim: spacenav pointer none" files=
+        names="$(sandwall list strokes 2>/dev/null | sed 's/^/script:/') $(sandwall complete run --device 2>/dev/null)" files=
     elif [[ $word == -* ]]; then
-        names=$(sandwall "$command" --help 2>/dev/null | grep -oE -- '--[a-z][a-z-]+' | sort -u) files=
+        names=$(sandwall complete "$command" 2>/dev/null) files=
+    elif [[ $before == --* ]]; then
+        names=$(sandwall complete "$command" "$before" 2>/dev/null)
+        [[ -z $names ]] || files=
     fi
     mapfile -t COMPREPLY < <(compgen -W "$names" -- "$word"; [[ -z $files ]] || compgen -f -- "$word")
 }

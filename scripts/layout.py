@@ -11,7 +11,6 @@ An installed tree may be moved as a whole, because every path begins at this fil
 
 import os
 import pathlib
-import re
 import subprocess
 
 import checked_json
@@ -30,8 +29,6 @@ PROGRAM = "sandwall" if INSTALLED else "scripts/sandwall"  # how a user starts t
 MEND = "install Sandwall again" if INSTALLED else "run cmake --build build/release"
 ANSWER_SECONDS = 20
 JOURNAL = "session.journal"
-DEVICES = ("script:", "trace:", "driver:", "sim:", "spacenav", "pointer", "none")  # what a SPEC of --device begins with
-BUILT_IN_STROKES = "gis"  # in the haptic server itself
 
 
 def bin_folder():
@@ -73,24 +70,6 @@ def found(kind, named):
     if not shared.is_file():
         raise BadInput(f"{named}: no file and no known name; {kind} that come with Sandwall: {', '.join(known(kind))}")
     return str(shared)
-
-
-def device(spec):
-    """Returns a SPEC of --device with the path of strokes that come with Sandwall, if it names them.
-
-    Throws BadInput for an unknown kind of device, for an unknown name of strokes, and for the device `mouse` of earlier
-    versions.
-    """
-    kind, colon, name = spec.partition(":")
-    if spec == "mouse":
-        raise BadInput("--device mouse: is gone; give --device pointer, which is the mouse in the wall's windows")
-    if (kind + colon) not in DEVICES:
-        raise BadInput(f"--device {spec}: unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET, "
-                       "spacenav, pointer or none")
-    # A word without an ending is a name. The haptic server reports other files that it cannot read.
-    if kind == "script" and name != BUILT_IN_STROKES and re.fullmatch(r"[A-Za-z0-9_-]+", name):
-        return f"script:{found('strokes', name)}"
-    return spec
 
 
 def journal_at(named):

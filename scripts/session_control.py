@@ -7,6 +7,7 @@ import socket
 
 import checked_json
 import console
+import program_options
 import session_folder
 from rank_hosts import BadInput
 
@@ -15,9 +16,10 @@ PATIENCE_SECONDS = 120  # a capture of a large wall takes long
 LONGEST_ANSWER = 1 << 16
 RESTARTING = "restarting"  # file in OUT/log with the failure, from the failure to the first frame after it
 
-VERBS = ("capture", "eye-separation METRES", "force on|off|scale SHARE", "hide LAYER", "load NAME", "material KEY VALUE", "pattern NAME|none|next",
-         "pause", "reset", "resume", "save NAME", "settle", "show LAYER", "status", "stereo MODE", "stop",
-         "tool [SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right]", "undo")
+
+def verbs():
+    """Returns the commands of a session with their arguments, as the master of this build knows them."""
+    return program_options.listed(program_options.MASTER)["verbs"]
 
 
 def connect(session, patience=PATIENCE_SECONDS):
@@ -73,7 +75,7 @@ def ask(session, line, patience=PATIENCE_SECONDS):
 
 def ctl(args):
     if args.words in (["help"], ["--help"], ["-h"]):
-        console.OUT.line("\n".join(VERBS))
+        console.OUT.line("\n".join(verbs()))
         return 0
     line = " ".join(args.words)
     if "\n" in line:
@@ -97,7 +99,7 @@ def add_parser(commands, remainder):
     """Adds `ctl` to the launcher's commands, and returns its parser. `remainder` is argparse.REMAINDER."""
     parser = commands.add_parser("ctl", help="command a running session",
                                  description="Commands a session that runs on this machine; docs/operator.md. "
-                                             f"Commands: help, {', '.join(VERBS)}.")
+                                             "SESSION and the verb help list the commands.")
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the session's folder, or the journal in it")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="command and its arguments")

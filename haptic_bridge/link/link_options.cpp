@@ -39,8 +39,11 @@ void requireCertificate(const std::string& file) {
 }  // namespace
 
 void LinkOptions::addTo(host::CommandLine& line, bool server) {
-    line.option("--secret-file", secretFile, "file with lines ROLE SECRET, the same on both sides (docs/security.md)");
-    line.flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file");
+    line.option("--secret-file", secretFile,
+                "file of lines ROLE SECRET, the same for both ends of the haptic link; docs/security.md")
+        .metavar("FILE")
+        .offeredBy({"run"});
+    line.flag("--tls", tls, "TLS 1.3 on the haptic link; needs --secret-file").offeredBy({"run"});
     if (server) {
         line.option("--tls-cert", certificate,
                     "PEM file with a certificate; without it the server makes one at the start");

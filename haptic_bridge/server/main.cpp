@@ -255,21 +255,32 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--scene", options.scene, "scene file, the same as the wall's").required();
     line.option("--device", options.device,
                 "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET or spacenav")
+        .beginnings({"script:", "trace:", "driver:", "sim:", "spacenav"})
         .required();
-    line.option("--map", options.map, "KEY=VALUE, a setting of the mapping to the sand (docs/devices.md); repeatable")
-        .oneValueEach();
-    line.choice<Pace>("--pace", options.pace, {{"realtime", Pace::realtime}, {"fast", Pace::fast}},
-                      "realtime, or fast: a virtual clock that runs as fast as the wall; not for driver: and spacenav");
-    line.option("--record", options.record,
-                "a CSV file: one row per tick, and the same ticks go into the session's journal");
+    line.option("--map", options.map, "mapping from the device to the scene; docs/devices.md")
+        .metavar("KEY=VALUE")
+        .oneValueEach()
+        .offeredBy({"run"});
+    line.choice("--pace", options.pace,
+                "fast: a virtual clock that runs as fast as the wall; not for driver: and spacenav")
+        .offeredBy({"run"});
+    line.option("--record", options.record, "file to write with every tick of the device and its force; docs/forces.md")
+        .metavar("FILE.csv")
+        .offeredBy({"run"});
     line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
-                      "on or off: whether an arm feels forces, until an operator of the session sets a share");
+                      "whether an arm feels a force, until `ctl force` sets a share; with --resume it replaces the "
+                      "share that `ctl` had set")
+        .offeredBy({"run"});
     line.option("--force-scale", options.forceScale,
-                "0 to 1: the share of the force that an arm feels, until an operator of the session sets one")
-        .range(0.0, 1.0);
+                "0 to 1: the share of the force that an arm feels, in the same way as --force")
+        .metavar("SHARE")
+        .range(0.0, 1.0)
+        .offeredBy({"run"});
     line.choice<Guards::Mode>(
-        "--guards", options.guards, {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
-        "on, or literal: the paper's law without limits, for simulated arms only; not for driver: and spacenav");
+            "--guards", options.guards, {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
+            "literal: the law as its paper prints it, without force limits, for simulated arms only; not for driver: "
+            "and spacenav; docs/forces.md")
+        .offeredBy({"run"});
     line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
     line.option("--port-file", options.portFile, "file that gets the port's number when the server listens");
     line.option("--timings", options.timings,
@@ -282,7 +293,7 @@ void describe(host::CommandLine& line, Options& options) {
         .range(0.0, 3600.0);
     line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
-    host::addSandThreads(line, options.sandThreads);
+    host::addSandThreads(line, options.sandThreads).offeredBy({"run"});
     line.flag("--die-with-parent", options.dieWithParent, "end in order when the program that started this one ends");
 }
 

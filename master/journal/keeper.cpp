@@ -21,7 +21,6 @@
 namespace master {
 namespace {
 
-constexpr std::array<std::string_view, 3> kPolicies{"required", "best-effort", "off"};
 constexpr double kRetrySeconds = 1;
 constexpr const char* kBeyond = ".beyond";   // behind the name of a checkpoint that was set aside
 constexpr std::size_t kCheckpointsKept = 3;  // the newest two may be damaged
@@ -35,17 +34,6 @@ bool hasSetAside(const std::filesystem::path& checkpoints) {
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace
-
-JournalPolicy parseJournalPolicy(const std::string& word) {
-    for (std::size_t i = 0; i < kPolicies.size(); ++i) {
-        if (word == kPolicies.at(i)) {
-            return static_cast<JournalPolicy>(i);
-        }
-    }
-    throw base::InputError(fmt::format("--journal: '{}' is not required, best-effort or off", word));
-}
-
-std::string_view journalPolicyName(JournalPolicy policy) { return kPolicies.at(static_cast<std::size_t>(policy)); }
 
 JournalKeeper::JournalKeeper(const std::filesystem::path& out, const JournalOptions& options, const scene::Scene& scene,
                              const ResumedSession* resumed, const std::string& failure, std::string buildId)

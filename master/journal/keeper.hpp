@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <future>
@@ -10,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/names.hpp"
 #include "master/journal/resume.hpp"
 #include "master/journal/writer.hpp"
 #include "sand/replica.hpp"
@@ -23,9 +25,10 @@ enum class JournalPolicy : std::uint8_t {
     bestEffort,  // the session continues without a journal
     off          // the session has no journal
 };
-/// Returns the policy with the name `word`. Throws base::InputError if it is not required, best-effort or off.
-[[nodiscard]] JournalPolicy parseJournalPolicy(const std::string& word);
-[[nodiscard]] std::string_view journalPolicyName(JournalPolicy policy);
+constexpr auto valuesOf(JournalPolicy) {
+    return std::array{base::Named{JournalPolicy::required, "required"},
+                      base::Named{JournalPolicy::bestEffort, "best-effort"}, base::Named{JournalPolicy::off, "off"}};
+}
 
 struct JournalOptions {
     JournalPolicy policy = JournalPolicy::required;

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "base/input_error.hpp"
 #include "master/journal/saved_sand.hpp"
@@ -22,33 +23,25 @@ struct VerbName {
     Verb verb;
 };
 
-constexpr std::array<VerbName, 18> kVerbs{{{"status", "", Verb::status},
-                                           {"pause", "", Verb::pause},
-                                           {"resume", "", Verb::resume},
-                                           {"reset", "", Verb::reset},
-                                           {"undo", "", Verb::undo},
-                                           {"settle", "", Verb::settle},
-                                           {"pattern", "NAME", Verb::pattern},
-                                           {"show", "LAYER", Verb::show},
-                                           {"hide", "LAYER", Verb::hide},
-                                           {"eye-separation", "METRES", Verb::eyeSeparation},
-                                           {"stereo", "MODE", Verb::stereo},
-                                           {"tool", "[SHAPE] [KEY=VALUE]", Verb::tool},
-                                           {"material", "KEY VALUE", Verb::material},
-                                           {"save", "NAME", Verb::save},
-                                           {"load", "NAME", Verb::load},
-                                           {"capture", "", Verb::capture},
-                                           {"force", "on|off|scale SHARE", Verb::force},
-                                           {"stop", "", Verb::stop}}};
-
-std::string knownVerbs() {
-    std::string known;
-    for (const VerbName& verb : kVerbs) {
-        known += fmt::format("{}{}{}{}", known.empty() ? "" : ", ", verb.name, verb.argument.empty() ? "" : " ",
-                             verb.argument);
-    }
-    return known;
-}
+constexpr std::array<VerbName, 18> kVerbs{
+    {{"status", "", Verb::status},
+     {"pause", "", Verb::pause},
+     {"resume", "", Verb::resume},
+     {"reset", "", Verb::reset},
+     {"undo", "", Verb::undo},
+     {"settle", "", Verb::settle},
+     {"pattern", "NAME|none|next", Verb::pattern},
+     {"show", "LAYER", Verb::show},
+     {"hide", "LAYER", Verb::hide},
+     {"eye-separation", "METRES", Verb::eyeSeparation},
+     {"stereo", "MODE", Verb::stereo},
+     {"tool", "[SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right]", Verb::tool},
+     {"material", "KEY VALUE", Verb::material},
+     {"save", "NAME", Verb::save},
+     {"load", "NAME", Verb::load},
+     {"capture", "", Verb::capture},
+     {"force", "on|off|scale SHARE", Verb::force},
+     {"stop", "", Verb::stop}}};
 
 /// Returns the finite number that is the whole of `text`; nullopt for any other text.
 std::optional<double> numberIn(std::string_view text) {
@@ -173,6 +166,14 @@ void parseArgument(std::string_view argument, Command& command) {
 
 }  // namespace
 
+std::vector<std::string> verbsOfSession() {
+    std::vector<std::string> known;
+    for (const VerbName& verb : kVerbs) {
+        known.push_back(fmt::format("{}{}{}", verb.name, verb.argument.empty() ? "" : " ", verb.argument));
+    }
+    return known;
+}
+
 Command parseCommand(std::string_view line) {
     const std::size_t space = line.find(' ');
     const std::string_view word = line.substr(0, space);
@@ -191,8 +192,8 @@ Command parseCommand(std::string_view line) {
         parseArgument(argument, command);
         return command;
     }
-    throw base::InputError(
-        fmt::format("'{}' is not a command; the commands are: {}", line.substr(0, 80), knownVerbs()));
+    throw base::InputError(fmt::format("'{}' is not a command; the commands are: {}", line.substr(0, 80),
+                                       fmt::join(verbsOfSession(), ", ")));
 }
 
 }  // namespace master

@@ -47,6 +47,9 @@ struct Command {
     walls::Stereo stereo{};  // for Verb::stereo
 };
 
+/// Returns the commands with their arguments, such as "show LAYER".
+[[nodiscard]] std::vector<std::string> verbsOfSession();
+
 /// Parses a command. Throws base::InputError if `line` is not a valid command; the text lists all verbs if the verb is
 /// unknown.
 [[nodiscard]] Command parseCommand(std::string_view line);

@@ -15,8 +15,6 @@
 namespace render_node {
 namespace {
 
-constexpr std::array<std::string_view, 4> kNames{"auto", "osmesa", "egl", "glfw"};
-
 /// Context without windows: the pictures stay in their frame buffers.
 class OffscreenContext final : public GlContext {
 public:
@@ -30,7 +28,7 @@ public:
                  std::uint64_t /* frame */) override {
         finishFrame();
     }
-    [[nodiscard]] std::string name() const override { return std::string(backendName(backend_)); }
+    [[nodiscard]] std::string name() const override { return std::string(base::nameOf(backend_)); }
 
 private:
     Backend backend_;
@@ -57,16 +55,6 @@ bool isSoftware(Backend backend, const walls::Tile& tile) {
 }  // namespace
 
 const Backend kInMemory = SANDWALL_OSMESA != 0 ? Backend::osmesa : Backend::egl;
-
-std::string_view backendName(Backend backend) { return kNames.at(static_cast<std::size_t>(backend)); }
-
-Backend backendNamed(std::string_view name) {
-    const auto* const found = std::find(kNames.begin(), kNames.end(), name);
-    if (found == kNames.end()) {
-        throw base::InputError("--gl: '" + std::string(name) + "' is not a backend; choose auto, osmesa, egl or glfw");
-    }
-    return static_cast<Backend>(found - kNames.begin());
-}
 
 Backend backendFor(Backend backend, const walls::Tile& tile) {
     if (backend != Backend::automatic) {
@@ -126,7 +114,7 @@ std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall,
     PlatformRequest request = platformRequest(backend, wall, tile);
     request.pointer = pointer;
     if (pointer && request.windows.empty()) {
-        throw base::InputError("--gl " + std::string(backendName(backendFor(backend, tile))) +
+        throw base::InputError("--gl " + std::string(base::nameOf(backendFor(backend, tile))) +
                                ": draws without a window, but the pointer needs one; choose --gl glfw, or another "
                                "--device");
     }

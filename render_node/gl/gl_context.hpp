@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "render_node/gl/gl_platform.hpp"
+#include "base/names.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -23,13 +24,13 @@ enum class Backend : std::uint8_t {
     egl,        // draws off screen on a graphics card or in Mesa's software renderer
     glfw        // windows on an X display
 };
+constexpr auto valuesOf(Backend) {
+    return std::array{base::Named{Backend::automatic, "auto"}, base::Named{Backend::osmesa, "osmesa"},
+                      base::Named{Backend::egl, "egl"}, base::Named{Backend::glfw, "glfw"}};
+}
 /// Backend that draws in memory, which every machine can: osmesa, or egl on its software device in a build without
 /// OSMesa.
 extern const Backend kInMemory;
-/// Returns the backend's name for --gl: "auto", "osmesa", "egl" or "glfw".
-[[nodiscard]] std::string_view backendName(Backend backend);
-/// Returns the backend with this name. Throws base::InputError if there is no such backend.
-[[nodiscard]] Backend backendNamed(std::string_view name);
 /// Returns the backend that `automatic` chooses for `tile`. Returns every other backend unchanged.
 [[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
 

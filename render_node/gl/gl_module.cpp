@@ -28,7 +28,7 @@ Packages packagesOf(Backend backend) {
 
 std::unique_ptr<GlPlatform> loadPlatform(Backend backend, const PlatformRequest& request,
                                          const std::vector<fs::path>& folders) {
-    const std::string name(backendName(backend));
+    const std::string name(base::nameOf(backend));
     const Packages packages = packagesOf(backend);
     void* const symbol = host::loadModule(
         {.file = "sandwall-gl-" + name + ".so",

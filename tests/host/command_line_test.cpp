@@ -5,12 +5,21 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "base/input_error.hpp"
 
 namespace {
+
+enum class Direction : std::uint8_t { north, south };
+constexpr auto valuesOf(Direction) {
+    return std::array{base::Named{Direction::north, "north"}, base::Named{Direction::south, "south"}};
+}
 
 struct Given {
     std::optional<int> status;
@@ -95,6 +104,50 @@ TEST_F(CommandLineOptions, AnswersHelpWhereverItIsAsked) {
     EXPECT_TRUE(answers({"--rate", "0", "-h"}));
     EXPECT_FALSE(answers({"a.txt", "--rate", "3"}));
     EXPECT_FALSE(answers({}));
+}
+
+TEST_F(CommandLineOptions, ListsThemForOtherPrograms) {
+    line_.named("--rate").metavar("HZ").showDefault().offeredBy({"run", "film"});
+    line_.named("--way").beginnings({"north", "south"});
+    host::CommandLine command = line_.command("send", "sends it");
+    int count = 3;
+    command.option("--count", count, "how often").positive();
+    line_.words("verbs", {"pause", "show LAYER"});
+    testing::internal::CaptureStdout();
+    EXPECT_EQ(parse(line_, {"--options-json"}).status, 0);
+    const auto list = nlohmann::json::parse(testing::internal::GetCapturedStdout());
+    const auto option = [&list](const std::string& name) {
+        const auto& all = list["options"];
+        return *std::find_if(all.begin(), all.end(), [&name](const auto& entry) { return entry["name"] == name; });
+    };
+    EXPECT_EQ(list["name"], "tool");
+    EXPECT_EQ(list["what"], "Does something.");
+    EXPECT_EQ(option("FILE"), nlohmann::json::parse(R"({"name": "FILE", "kind": "text", "help": "a file"})"));
+    EXPECT_EQ(option("--rate"),
+              nlohmann::json::parse(R"({"name": "--rate", "kind": "integer", "help": "a rate", "metavar": "HZ",
+                                        "default": "5", "least": 1, "most": 1000, "offered_by": ["run", "film"]})"));
+    EXPECT_EQ(option("--way")["beginnings"], (std::vector<std::string>{"north", "south"}));
+    EXPECT_EQ(option("--wait")["kind"], "number");
+    EXPECT_EQ(option("--wait")["least"], 0);
+    EXPECT_EQ(option("--kind")["values"], (std::vector<std::string>{"grid", "tin"}));
+    EXPECT_EQ(option("--force")["values"], (std::vector<std::string>{"on", "off"}));
+    EXPECT_EQ(option("--sizes")["several"], true);
+    EXPECT_EQ(option("--film")["kind"], "flag");
+    EXPECT_EQ(option("--live")["excludes"], std::vector<std::string>{"--film"});
+    EXPECT_EQ(list["commands"][0]["name"], "send");
+    EXPECT_EQ(list["commands"][0]["options"][0]["above"], 0);
+    EXPECT_EQ(list["verbs"], (std::vector<std::string>{"pause", "show LAYER"}));
+}
+
+TEST_F(CommandLineOptions, TakesTheNamesOfAnEnum) {
+    Direction way = Direction::south;
+    std::optional<Direction> other;
+    line_.choice("--towards", way, "where to");
+    line_.choice("--or", other, "or where to");
+    EXPECT_EQ(parse(line_, {"a.txt", "--towards", "north", "--or", "south"}).status, std::nullopt);
+    EXPECT_EQ(way, Direction::north);
+    EXPECT_EQ(other, Direction::south);
+    expectRefused({"a", "--towards", "up"}, "up not in {north,south}");
 }
 
 TEST_F(CommandLineOptions, LeavesDefaultsAlone) {

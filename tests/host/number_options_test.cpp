@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every option of every program that takes a number, as --help lists them. So a new option is tested too.
+// Every option of every program that takes a number, as --options-json lists them. So a new option is tested too.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "tests/support/run_program.hpp"
@@ -38,38 +40,37 @@ std::vector<std::string> programs() {
     return names;
 }
 
-/// Returns the program alone, or the program with each of its commands.
-std::vector<std::string> commandsOf(const std::string& program) {
-    const std::string help = support::runProgram(program, "--help").output;
-    const std::size_t list = help.find("\nSubcommands:\n");
-    if (list == std::string::npos) {
-        return {program};
+/// Adds the options of a command, and of its own commands, that take a number. `command` is how a shell starts it.
+void addNumbers(const nlohmann::json& list, const std::string& command,
+                std::vector<std::pair<std::string, std::string>>& found) {
+    for (const nlohmann::json& option : list["options"]) {
+        if (option["kind"] == "number") {
+            found.emplace_back(command, option["name"]);
+        }
     }
-    std::vector<std::string> commands;
-    for (const std::string& name : matches(help.substr(list), "\n  ([a-z-]+)")) {
-        commands.push_back(fmt::format("{} {}", program, name));
+    if (list.contains("commands")) {
+        for (const nlohmann::json& more : list["commands"]) {
+            addNumbers(more, fmt::format("{} {}", command, more["name"].get<std::string>()), found);
+        }
     }
-    return commands;
 }
 
 TEST(NumberOptions, OfEveryProgramRefuseWhatIsNotFinite) {
     std::set<std::string> tried;
     for (const std::string& program : programs()) {
-        for (const std::string& command : commandsOf(program)) {
-            const std::string help = support::runProgram(command, "--help").output;
-            for (const std::string& option : matches(help, "\n  (?:-[a-z],)?(--[a-z-]+) FLOAT")) {
-                tried.insert(fmt::format("{} {}", program, option));
-                for (const std::string number : {"nan", "inf", "-inf"}) {
-                    const support::Ran ran =
-                        support::runProgram(command, fmt::format("{}={} </dev/null", option, number));
-                    EXPECT_EQ(ran.status, 2) << command << " " << option << "=" << number << "\n" << ran.output;
-                    EXPECT_EQ(ran.output, fmt::format("{}: {}: must be a finite number, got {}; try --help\n", program,
-                                                      option, number));
-                }
+        std::vector<std::pair<std::string, std::string>> options;
+        addNumbers(nlohmann::json::parse(support::runProgram(program, "--options-json").output), program, options);
+        for (const auto& [command, option] : options) {
+            tried.insert(fmt::format("{} {}", program, option));
+            for (const std::string number : {"nan", "inf", "-inf"}) {
+                const support::Ran ran = support::runProgram(command, fmt::format("{}={} </dev/null", option, number));
+                EXPECT_EQ(ran.status, 2) << command << " " << option << "=" << number << "\n" << ran.output;
+                EXPECT_EQ(ran.output, fmt::format("{}: {}: must be a finite number, got {}; try --help\n", program,
+                                                  option, number));
             }
         }
     }
-    // The test has read the help of programs with options, with a default and with none.
+    // The test has read programs with options, with a default and without one.
     EXPECT_TRUE(tried.contains("sandwall-track --rate"));
     if (std::filesystem::exists(support::pathOfProgram("sandwall-master"))) {
         for (const char* known : {"sandwall-master --frame-timeout", "sandwall-haptic-server --force-scale",

@@ -48,7 +48,7 @@ protected:
 };
 
 TEST_F(Picture, NamesItsRenderer) {
-    EXPECT_EQ(context_->name(), render_node::backendName(render_node::kInMemory));
+    EXPECT_EQ(context_->name(), base::nameOf(render_node::kInMemory));
     EXPECT_NE(context_->renderer().find("OpenGL"), std::string::npos) << context_->renderer();
 }
 

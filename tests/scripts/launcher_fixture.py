@@ -3,6 +3,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -10,6 +11,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
+BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
 
 CHECK = """#!/bin/sh
 [ "$2" = --ranks ] && exec grep -c . "$1"
@@ -49,6 +51,8 @@ class LauncherTest(unittest.TestCase):
         self.script("sandwall-check", CHECK)
         for name in ("sandwall-master", "sandwall-render-node", "sandwall-haptic-server"):
             self.script(name, SAY)
+        for options in BIN.glob("sandwall-*.json"):  # lists of options of the real programs
+            shutil.copy(options, self.folder / "bin")
         self.agent = self.script("agent", AGENT)
         self.write("scene.toml", "")
         for variable in ("SANDWALL_EVENTS", "DISPLAY"):

@@ -14,6 +14,7 @@ import unittest
 from launcher_fixture import ROOT, LauncherTest
 
 import layout
+import program_options
 from rank_hosts import BadInput
 
 
@@ -44,16 +45,16 @@ class Names(unittest.TestCase):
             layout.found("scenes", "dnes")
 
     def test_known_strokes_are_a_device(self):
-        self.assertEqual(layout.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
+        self.assertEqual(program_options.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
         (self.folder / "stroke").write_text("")
         for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "pointer", "none"):
-            self.assertEqual(layout.device(spec), spec)
+            self.assertEqual(program_options.device(spec), spec)
 
     def test_an_unknown_device_names_the_known_ones(self):
         with self.assertRaisesRegex(BadInput, "^giss: no file and no known name; strokes .*: ellipses, .*, stroke$"):
-            layout.device("script:giss")
+            program_options.device("script:giss")
         with self.assertRaisesRegex(BadInput, "--device pointer"):
-            layout.device("mouse")
+            program_options.device("mouse")
 
     def test_a_journal_and_its_folder_name_the_same_session(self):
         session = self.folder / "session"

@@ -49,7 +49,7 @@ class Ctl(Supervised):
         for word in ("help", "--help", "-h"):
             status, printed, error = self.ctl(word)
             self.assertEqual((status, error), (0, ""), word)
-            self.assertEqual([line.split()[0] for line in printed.splitlines()], sorted(listed))
+            self.assertEqual([line.split()[0] for line in printed.splitlines()], listed)
 
 
 if __name__ == "__main__":

@@ -86,13 +86,6 @@ TEST_F(Backends, NeedLittleMemoryBesideTheFrameBuffers) {
     }
 }
 
-TEST_F(Backends, AreNamedAsOnTheCommandLine) {
-    for (const Backend backend : {Backend::automatic, Backend::osmesa, Backend::egl, Backend::glfw}) {
-        EXPECT_EQ(render_node::backendNamed(render_node::backendName(backend)), backend);
-    }
-    EXPECT_THROW((void)render_node::backendNamed("vulkan"), base::InputError);
-}
-
 TEST_F(Backends, AutoOpensWindowsOnlyWhereTheWallFileNamesAPlace) {
     walls::Tile tile;
     tile.outputs = {{"left", {walls::Eye::left}, {}, {}}, {"right", {walls::Eye::right}, {}, {}}};

@@ -59,14 +59,14 @@ TEST(OperatorCommand, EveryVerbIsRead) {
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
-              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern NAME, "
-              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [KEY=VALUE], material KEY "
-              "VALUE, save NAME, "
-              "load NAME, "
-              "capture, force on|off|scale SHARE, stop");
+              "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern "
+              "NAME|none|next, "
+              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [radius=R] [width=W] "
+              "[heading=DEG] [foot=left|right], material KEY VALUE, save NAME, load NAME, capture, force on|off|scale "
+              "SHARE, stop");
     EXPECT_EQ(complaint("").substr(0, 19), "'' is not a command");
     EXPECT_EQ(complaint("undo twice"), "undo takes no argument, got 'twice'");
-    EXPECT_EQ(complaint("pattern"), "pattern needs NAME");
+    EXPECT_EQ(complaint("pattern"), "pattern needs NAME|none|next");
     EXPECT_EQ(complaint("material talus"), "material needs KEY VALUE");
     EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
     EXPECT_EQ(complaint("tool radius=1e999"), "a tool's radius must be a number, got '1e999'");
