@@ -4,7 +4,7 @@
 An installed tree may be moved as a whole, because every path begins at this file:
 
     PREFIX/bin/sandwall                 link to lib/sandwall/python/sandwall
-    PREFIX/lib/sandwall/                programs and modules
+    PREFIX/lib/sandwall/                programs, modules, and a list of options for each program
     PREFIX/lib/sandwall/python/         the launcher, with this file, build.json and a schema
     PREFIX/share/sandwall/              walls, scenes, strokes, samples, examples
 """

@@ -29,11 +29,20 @@ struct WallPictures {
     Mask part;       // pixels that are compared separately for the tool
 };
 
+/// Returns the names of all golden pictures of walls.
+std::set<std::string> goldens() {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(golden::folder("golden"))) {
+        names.insert(entry.path().stem().string());
+    }
+    return names;
+}
+
 class GoldenWalls : public testing::Test {
 protected:
     /// Calls `check` with every wall file, at reduced size, and with the sand on it. Returns the number of wall files.
-    int forEachWall(const std::function<void(const std::string&, const walls::Wall&)>& check) {
-        int count = 0;
+    std::size_t forEachWall(const std::function<void(const std::string&, const walls::Wall&)>& check) {
+        std::size_t count = 0;
         for (const std::string& name : sample::wallNames()) {
             SCOPED_TRACE(name);
             check(name,
@@ -69,17 +78,13 @@ TEST_F(GoldenWalls, LookAsTheyDid) {
 }
 
 TEST_F(GoldenWalls, AreThoseOfTheWallFiles) {
-    std::set<std::string> goldens;
-    for (const auto& entry : std::filesystem::directory_iterator(golden::folder("golden"))) {
-        goldens.insert(entry.path().stem().string());
-    }
     const auto names = sample::wallNames();
-    EXPECT_EQ(goldens, std::set<std::string>(names.begin(), names.end()));
+    EXPECT_EQ(goldens(), std::set<std::string>(names.begin(), names.end()));
 }
 
 // The part that is compared separately comes from geometry. The pictures show the pixels that the tool really changes.
 TEST_F(GoldenWalls, HoldAPartThatHasAllThatTheToolChangesAndLittleElse) {
-    const int count = forEachWall([this](const std::string&, const walls::Wall& wall) {
+    const std::size_t count = forEachWall([this](const std::string&, const walls::Wall& wall) {
         const WallPictures shown = picturesOf(wall);
         const pictures::Comparison tool = pictures::compare(shown.without, shown.engaged, 0);
         EXPECT_EQ(pictures::countOutside(tool.bad, shown.part), 0);
@@ -88,7 +93,7 @@ TEST_F(GoldenWalls, HoldAPartThatHasAllThatTheToolChangesAndLittleElse) {
         EXPECT_GT(static_cast<double>(tool.badPixels), static_cast<double>(part) / 7);
         EXPECT_LT(part, static_cast<std::ptrdiff_t>(shown.part.size() / 8));
     });
-    EXPECT_EQ(count, 14);
+    EXPECT_EQ(count, goldens().size());
 }
 
 /// Returns `from` with the pixels of `other` where `where` is not 0.
@@ -110,13 +115,13 @@ Image withLevels(Image image, const std::function<int(int)>& change) {
 }
 
 TEST_F(GoldenWalls, FailForAnotherToolAndForNoTool) {
-    int otherColour = 0, darker = 0, noShadow = 0, noTool = 0;
-    const int count = forEachWall([&](const std::string& name, const walls::Wall& wall) {
+    std::size_t otherColour = 0, darker = 0, noShadow = 0, noTool = 0;
+    const std::size_t count = forEachWall([&](const std::string& name, const walls::Wall& wall) {
         const Image want = pictures::readPng(golden::folder("golden") / (name + ".png"));
         const WallPictures shown = picturesOf(wall);
         // The red ball and the steel ball differ only in the ball's own pixels.
         const Mask ball = pictures::compare(shown.engaged, shown.hovering, 0).bad;
-        const auto fails = [&](const Image& got) { return golden::fault(want, got, shown.part).empty() ? 0 : 1; };
+        const auto fails = [&](const Image& got) { return golden::fault(want, got, shown.part).empty() ? 0U : 1U; };
         EXPECT_EQ(fails(shown.engaged), 0);
         otherColour += fails(shown.hovering);
         const Image dark = withLevels(shown.engaged, [](int level) { return level * 9 / 10; });
@@ -128,18 +133,18 @@ TEST_F(GoldenWalls, FailForAnotherToolAndForNoTool) {
     EXPECT_EQ(darker, count) << "a ball that is a tenth darker";
     EXPECT_EQ(noShadow, count);
     EXPECT_EQ(noTool, count);
-    EXPECT_EQ(count, 14);
+    EXPECT_EQ(count, goldens().size());
 }
 
 TEST_F(GoldenWalls, FailForAPictureThatIsALevelBrighterOrDarker) {
-    const int count = forEachWall([](const std::string& name, const walls::Wall&) {
+    const std::size_t count = forEachWall([](const std::string& name, const walls::Wall&) {
         const Image want = pictures::readPng(golden::folder("golden") / (name + ".png"));
         EXPECT_EQ(golden::fault(want, want, {}), "");
         for (const int by : {-1, 1}) {
             EXPECT_NE(golden::fault(want, withLevels(want, [by](int level) { return level + by; }), {}), "") << by;
         }
     });
-    EXPECT_EQ(count, 14);
+    EXPECT_EQ(count, goldens().size());
 }
 
 class GoldenFile : public test::FolderTest {

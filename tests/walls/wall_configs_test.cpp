@@ -71,13 +71,13 @@ std::optional<Wall> oneCamera(const Wall& wall) {
 }
 
 TEST(WallConfigs, TheSandFillsMostOfAWallAndNoneOfItFallsOff) {
-    int count = 0;
+    std::vector<std::string> corners;
     for (const std::string& name : configNames()) {
         const std::optional<Wall> whole = oneCamera(config(name));
         if (!whole) {
+            corners.push_back(name);
             continue;
         }
-        ++count;
         for (const Eye eye : eyesOf(whole->stereo)) {
             glm::dvec2 lowest(2), highest(-2);
             for (int corner = 0; corner < 4; ++corner) {
@@ -93,7 +93,7 @@ TEST(WallConfigs, TheSandFillsMostOfAWallAndNoneOfItFallsOff) {
             EXPECT_GT((highest - lowest).y, 2 * 0.7) << name << ": of the picture's height";
         }
     }
-    EXPECT_EQ(count, 13);
+    EXPECT_EQ(corners, std::vector<std::string>{"flex_cave"}) << "walls that are not flat, which no single camera sees";
 }
 
 TEST(WallConfigs, TheSandStandsPartlyBeforeAndPartlyBehindTheWall) {
@@ -164,7 +164,6 @@ TEST(WallConfigs, EveryFileLoadsAndPassesTheCheck) {
         const support::Ran mono = support::runProgram("sandwall-check", file + " --mono");
         EXPECT_EQ(mono.status, 0) << mono.output;
     }
-    EXPECT_EQ(configNames().size(), 14U);
 }
 
 /// Locale that writes 1,5 for one and a half, and 1.024 for a thousand and twenty-four.
