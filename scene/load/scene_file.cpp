@@ -10,6 +10,7 @@
 #include "sand/force/finite_law.hpp"
 #include "sand/replica.hpp"
 #include "sand/surface_factory.hpp"
+#include "scene/load/colour.hpp"
 #include "scene/load/terrain.hpp"
 #include "scene/load/tin_settings.hpp"
 #include "scene/load/tin_table.hpp"
@@ -147,8 +148,8 @@ constexpr double kLeastDetail = 1.0 / 16;
 
 void readLook(const host::TomlTable& file, Scene& scene) {
     if (const auto look = file.table("look")) {
-        scene.look.sandColour = look->numbersOr("sand", scene.look.sandColour);
-        scene.look.backgroundColour = look->numbersOr("background", scene.look.backgroundColour);
+        scene.look.sandColour = colourOr(*look, "sand", scene.look.sandColour);
+        scene.look.backgroundColour = colourOr(*look, "background", scene.look.backgroundColour);
         scene.look.sunDirection = look->numbersOr("sun", scene.look.sunDirection);
         scene.look.hillShade = look->flagOr("hill_shade", scene.look.hillShade);
         scene.look.flatShading = look->choiceOr("shading", {"smooth", "flat"}, 0) == 1;

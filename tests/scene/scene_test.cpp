@@ -187,6 +187,30 @@ TEST_F(SceneFile, EsriGridErrorsNameTheGridsLine) {
     EXPECT_EQ(complaintOf("depth 3\n"), "t.asc:1: 'depth' is not a key of an ESRI ASCII grid");
 }
 
+TEST_F(SceneFile, TakesColoursAsLinearLightAndAsImageProgramsWriteThem) {
+    const scene::Scene scene =
+        scene::loadScene(write("s.toml", kFlat + "[look]\nsand = \"#c8B48c\"\nbackground = [0, 0.5, 1]\n"));
+    // ((level / 255 + 0.055) / 1.055)^2.4
+    const std::vector<double> sand{0.577580, 0.456411, 0.262251};
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(scene.look.sandColour[i], sand[i], 1e-6);
+    }
+    EXPECT_EQ(scene.look.backgroundColour, (std::vector<double>{0, 0.5, 1}));
+    const auto black = scene::loadScene(write("s.toml", kFlat + "[look]\nsand = \"#000a00\"\n"));
+    EXPECT_NEAR(black.look.sandColour[1], 10 / 255.0 / 12.92, 1e-12) << "the straight part of the curve";
+    EXPECT_EQ(complaint(kFlat + "[look]\nbackground = [20, 30, 40]\n"),
+              "s.toml:5: background must be three numbers from 0 to 1, got 20; divide by 255");
+    EXPECT_EQ(complaint(kFlat + "[look]\nsand = [0.5, 300, 0.5]\n"),
+              "s.toml:5: sand must be three numbers from 0 to 1, got 300");
+    EXPECT_EQ(complaint(kFlat + "[look]\nsand = [0.5, -0.1, 0.5]\n"),
+              "s.toml:5: sand must be three numbers from 0 to 1, got -0.1");
+    for (const std::string wrong : {"sandy", "#c8b48", "#c8b48g", "#-8b48c", "c8b48c0", "#c8b48c0"}) {
+        EXPECT_EQ(
+            complaint(kFlat + "[look]\nsand = \"" + wrong + "\"\n"),
+            "s.toml:5: sand must be a colour such as \"#c8b48c\", or three numbers from 0 to 1, got '" + wrong + "'");
+    }
+}
+
 TEST_F(SceneFile, FlatShadingSurvivesItsEncodingAndIsNoHillShade) {
     const scene::Scene scene = scene::loadScene(write("s.toml", kFlat + "[look]\nshading = \"flat\"\n"));
     const scene::Look look = scene::Scene::decode(scene.encode()).look;
