@@ -27,6 +27,8 @@ class Parser(argparse.ArgumentParser):
 
     def parse_known_args(self, *args, **options):
         if self.later is not None:
+            if why := environment.why_bad(os.environ):  # before the programs are looked for
+                self.exit(BAD_INPUT, f"{self.prog.split()[0]}: {why}\n")
             complete, self.later = self.later, None
             complete()
         return super().parse_known_args(*args, **options)

@@ -38,13 +38,6 @@ TEST_F(FilmOfAWall, ShowsAnEyeOnlyWhereTwoAreDrawn) {
     EXPECT_EQ(complaint(Stereo::mono, std::nullopt), "accepted");
 }
 
-TEST_F(FilmOfAWall, NamesTheEyesThereAre) {
-    EXPECT_EQ(master::filmEyeNamed("left"), FilmEye::left);
-    EXPECT_EQ(master::filmEyeNamed("right"), FilmEye::right);
-    EXPECT_EQ(master::filmEyeNamed("anaglyph"), FilmEye::anaglyph);
-    EXPECT_THROW((void)master::filmEyeNamed("middle"), base::InputError);
-}
-
 TEST_F(FilmOfAWall, ForgetsThePicturesOfAnEarlierFilmAndNoOtherFiles) {
     for (const char* name : {"frame_000001.png", "frame_000047.png", "frame_mine.png", "mine.png"}) {
         std::ofstream(folder_ / name) << "a picture";

@@ -46,8 +46,8 @@ class Film(LauncherTest):
         status, printed, error = self.film("--stereo", "side_by_side", "--fps", "25")
         self.assertEqual((status, error), (0, ""))
         master, node = printed.split("\n")[0].split(" : ")
-        self.assertTrue(master.endswith("-n 1 sandwall-master --replay s.journal --film --fps 25 --wall wall --out out %d "
-                                        "--track none --no-report --control-stdin --frame-timeout 60 --stereo side_by_side"), master)
+        self.assertTrue(master.endswith("-n 1 sandwall-master --replay s.journal --film --wall wall --out out %d --no-report "
+                                        "--control-stdin --frame-timeout 60 --stereo side_by_side --track none --fps 25"), master)
         self.assertEqual(node, "-n 2 sandwall-render-node --gl osmesa")
 
     def test_without_ffmpeg_the_pictures_are_the_film(self):
@@ -100,7 +100,7 @@ class Film(LauncherTest):
         self.assertFalse((self.folder / "out %d" / "film.mp4").exists())
 
     def test_a_rate_of_no_frames_is_refused(self):
-        self.assertEqual(self.film("--fps", "0"), (2, "", "sandwall film: argument --fps: 0 must be 1 or more; try --help\n"))
+        self.assertEqual(self.film("--fps", "0"), (2, "", "sandwall film: argument --fps: 0 must be from 1 to 240; try --help\n"))
 
     def test_a_journal_that_is_missing_is_refused(self):
         (self.folder / "s.journal").unlink()

@@ -114,14 +114,14 @@ class PrintedCommands(DisplayTest):
 
     def test_a_device_needs_a_server_started_before(self):
         server, job = self.printed(["-"], "--device", "script:gis").splitlines()
-        self.assertEqual(server, "sandwall-haptic-server --scene scene.toml --device script:gis --pace realtime "
-                         "--listen 127.0.0.1:7750")
+        self.assertEqual(server, "sandwall-haptic-server --scene scene.toml --device script:gis "
+                         "--listen 127.0.0.1:7750 --pace realtime")
         self.assertIn(" --haptic 127.0.0.1:7750 ", job)
 
     def test_what_a_hand_feels_is_for_the_server(self):
         server, job = self.printed(["-"], "--device", "sim:touch,path=gis", "--guards", "literal", "--force", "off",
                                    "--force-scale", "0").splitlines()
-        self.assertTrue(server.endswith(" --force off --force-scale 0.0 --guards literal"), server)
+        self.assertTrue(server.endswith(" --force off --force-scale 0 --guards literal"), server)
         for option in ("--guards", "--force"):
             self.assertNotIn(option, job)
         self.assertNotIn("--guards", self.printed(["-"], "--device", "script:gis"))
@@ -247,9 +247,10 @@ class Refusals(LauncherTest):
         self.assertIn("not allowed with argument", self.refused(["-"], "--mono", "--stereo", "mono"))
 
     def test_a_number_that_is_none_or_too_small_is_refused(self):
-        for option, value in (("--restarts", "-1"), ("--restart-window", "-5"), ("--checkpoint", "-0.1")):
+        for option, value, bounds in (("--restarts", "-1", "0 or more"), ("--restart-window", "-5", "0 or more"),
+                                      ("--checkpoint", "-0.1", "from 0 to 86400")):
             self.assertEqual(self.refused(["-"], option, value),
-                             f"sandwall run: argument {option}: {value} must be 0 or more; try --help\n")
+                             f"sandwall run: argument {option}: {value} must be {bounds}; try --help\n")
 
     def test_a_folder_that_cannot_be_made_is_refused_before_a_program_starts(self):
         self.script("mpirun", MPIRUN)

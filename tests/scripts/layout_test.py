@@ -150,7 +150,7 @@ class InstalledTree(LauncherTest):
                          "set it to the folder of the programs\n"))
         self.environment["SANDWALL_BIN"] = str(self.folder)
         ended = self.call("run", "--wall", "small", "--scene", "small")
-        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", f"sandwall: {self.folder}/sandwall-check: does not exist; unset "
+        self.assertEqual((ended.returncode, ended.stdout, ended.stderr), (2, "", f"sandwall: {self.folder}/sandwall-master: does not exist; unset "
                          "SANDWALL_BIN, or set it to the folder of the programs\n"))
 
 

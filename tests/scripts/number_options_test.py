@@ -84,8 +84,8 @@ class Launcher(unittest.TestCase):
         parser = launcher().options()
         session = ["run", "--wall", "w"]
         for option, good, bad, words in (("--force-scale", ("0", "1"), ("-1e-9", "1.0001"), "from 0 to 1"),
-                                         ("--refresh", ("1e-3",), ("0", "-60"), "more than 0"),
-                                         ("--frame-timeout", ("0.5",), ("0", "-1"), "more than 0")):
+                                         ("--refresh", ("1", "1e3"), ("0.99", "-60"), "from 1 to 1000"),
+                                         ("--frame-timeout", ("2", "3600"), ("1.9", "-1"), "from 2 to 3600")):
             for text in good:
                 self.assertEqual(refusal(parser, [*session, f"{option}={text}"]), (None, ""))
             for text in bad:

@@ -26,7 +26,7 @@ def good_value(option):
     if option["kind"] == "text":
         return "some.0"
     bounds = [option[key] for key in ("most", "least") if key in option]
-    return f"{bounds[0]:g}" if bounds else "7"
+    return str(program_options.whole(bounds[0])) if bounds else "7"
 
 
 def parser_of(command):
@@ -63,8 +63,8 @@ class Offered(unittest.TestCase):
     def test_every_bound_and_every_name_is_checked(self):
         for option in (option for program in PROGRAMS for option in program_options.offered("run", program)):
             bad = ["no such"] if "values" in option else []
-            bad += [f"{option['most'] + 1:g}"] if "most" in option else []
-            bad += [f"{option['least'] - 1:g}"] if "least" in option else []
+            bad += [str(option["most"] + 1)] if "most" in option else []
+            bad += [str(option["least"] - 1)] if "least" in option else []
             bad += ["0"] if option.get("above") == 0 else []
             bad += ["nan", "many"] if option["kind"] in ("integer", "number") else []
             for value in bad:
