@@ -17,7 +17,7 @@ Summary Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     steps_->stop();
     if (steps_->serverAtEnd() == false) {
-        ++serverDivergences_;
+        ++counted_.serverDivergences;
         compared_.differed(frame_);
     }
     try {
