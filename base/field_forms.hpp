@@ -108,6 +108,20 @@ template <class Bool, class... More>
     return {{&first, &more...}};
 }
 
+/// Array with one element for each value of `Enum`, in the order of valuesOf(). Each element has the name of its value
+/// in JSON.
+template <NamedEnum Enum, class Elements>
+struct ByName {
+    Elements& value;
+    void put(ByteWriter& writer) const { putMember(writer, value); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Elements>) { getMember(reader, value); }
+};
+template <NamedEnum Enum, class Elements>
+[[nodiscard]] ByName<Enum, Elements> byName(Elements& value) {
+    static_assert(std::tuple_size_v<std::remove_const_t<Elements>> == valuesOf(Enum{}).size());
+    return {value};
+}
+
 /// Elements behind their number, which is at most `most`. `Count` is the type of the number; void stands for a varint.
 template <class List, class Count>
 struct UpTo {

@@ -86,22 +86,23 @@ struct RankReport {
     // Numbers of views that were not drawn, drawn in part, and drawn whole. A view is one eye in one frame.
     std::int64_t viewsSkipped = 0, viewsInPart = 0, viewsWhole = 0;
     double pixelShare = 0;  // share of all views' pixels that were drawn
+    /// The names are the keys in `per_rank` of summary.json.
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("host", base::text(it.host, kMostText));
         visit("renderer", base::text(it.renderer, kMostText));
         visit("swap_lock", base::text(it.swapLock, kMostText));
-        visit("draw_p50_ms", it.drawP50);
-        visit("draw_p99_ms", it.drawP99);
-        visit("draw_max_ms", it.drawMax);
-        visit("wait_p50_ms", it.waitP50);
-        visit("wait_p99_ms", it.waitP99);
-        visit("resident_bytes", it.residentBytes);
+        visit("draw_ms/p50", it.drawP50);
+        visit("draw_ms/p99", it.drawP99);
+        visit("draw_ms/max", it.drawMax);
+        visit("barrier_wait_ms/p50", it.waitP50);
+        visit("barrier_wait_ms/p99", it.waitP99);
+        visit("memory_bytes", it.residentBytes);
         visit("frame_buffer_bytes", it.frameBufferBytes);
-        visit("views_skipped", it.viewsSkipped);
-        visit("views_in_part", it.viewsInPart);
-        visit("views_whole", it.viewsWhole);
-        visit("pixel_share", it.pixelShare);
+        visit("views/skipped", it.viewsSkipped);
+        visit("views/in_part", it.viewsInPart);
+        visit("views/whole", it.viewsWhole);
+        visit("views/pixel_share", it.pixelShare);
     }
 };
 

@@ -19,7 +19,7 @@ struct Drag {
     static void fields(Self& it, Visit& visit) {
         visit("rank", base::varint(it.rank));
         visit("share", it.share);
-        visit("kept_ms", it.keptMs);
+        visit("wall_waited_ms", it.keptMs);
     }
     friend bool operator==(const Drag&, const Drag&) = default;
 };

@@ -24,11 +24,12 @@ std::vector<int> ranksOf(const lockstep::Divergence& divergence) {
 
 }  // namespace
 
-Agreement::Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out, lockstep::RankStatistics& statistics,
-                     Witness witness)
+Agreement::Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out, Incidents& incidents,
+                     lockstep::RankStatistics& statistics, Witness witness)
     : ranks_(ranks),
       labels_(std::move(labels)),
       out_(std::move(out)),
+      incidents_(incidents),
       statistics_(statistics),
       witness_(std::move(witness)),
       strikes_(labels_.names.size()) {}
@@ -44,7 +45,7 @@ bool Agreement::reach(lockstep::Arrival mine, MasterSand& sand, StepSource& step
             reportNonsense();
             return false;
         }
-        divergences_ += again ? 0 : 1;
+        incidents_.divergences += again ? 0 : 1;
         if (verdict == lockstep::Verdict::otherView) {
             reportOtherViews(mine.frame);
             return false;
@@ -109,7 +110,7 @@ std::vector<std::string> Agreement::countHealed(std::uint64_t frame, const locks
         divergence.journal ? "the journal" : labels_.names[static_cast<std::size_t>(divergence.source)];
     statistics_.addHealed(odd);
     countStrikes(divergence, odd);
-    healed_ += odd.size();
+    incidents_.healed += odd.size();
     std::vector<std::string> lines;
     for (const int rank : odd) {
         const auto index = static_cast<std::size_t>(rank);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lockstep/rank_statistics.hpp"
+#include "master/incidents.hpp"
 #include "master/journal/keeper.hpp"
 #include "master/master_sand.hpp"
 #include "master/rank_labels.hpp"
@@ -29,10 +30,10 @@ public:
         std::function<std::unique_ptr<sand::Replica>()> sand;
     };
 
-    /// `statistics` counts the frames in which each rank agreed, differed or was healed. `out` gets divergence.txt and
-    /// failure.json.
-    Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out, lockstep::RankStatistics& statistics,
-              Witness witness);
+    /// `incidents` counts divergences and healings. `statistics` counts the frames in which each rank agreed, differed
+    /// or was healed. `out` gets divergence.txt and failure.json.
+    Agreement(Ranks& ranks, RankLabels labels, std::filesystem::path out, Incidents& incidents,
+              lockstep::RankStatistics& statistics, Witness witness);
 
     /// A rank that needs to be healed more often counts as broken. One flipped bit is an accident, but memory that
     /// needs to be healed a third time is broken and stays so.
@@ -50,9 +51,6 @@ public:
     /// Called when the journal has confirmed all decisions so far. A later overrule() then does not concern them.
     void confirmed() { healedInDoubt_.clear(); }
 
-    /// Return the number of frames in which ranks differed, and how often a rank was healed, since this process began.
-    [[nodiscard]] std::uint64_t divergences() const { return divergences_; }
-    [[nodiscard]] std::uint64_t healed() const { return healed_; }
     /// Returns how many ranks have ended the session because their sand or view differed and could not be healed.
     [[nodiscard]] std::uint64_t unhealed() const { return unhealed_; }
 
@@ -69,13 +67,14 @@ private:
     Ranks& ranks_;
     const RankLabels labels_;
     const std::filesystem::path out_;
+    Incidents& incidents_;
     lockstep::RankStatistics& statistics_;
     const Witness witness_;
     std::unique_ptr<sand::Replica> overruling_;  // the journal's sand, which all ranks must take; usually null
     std::optional<JournalEnd> decision_;
     std::vector<int> healedInDoubt_;      // ranks that a majority has healed whose decision is not confirmed
     std::vector<std::uint64_t> strikes_;  // by rank: healings that count against it
-    std::uint64_t divergences_ = 0, healed_ = 0, unhealed_ = 0;
+    std::uint64_t unhealed_ = 0;
 };
 
 }  // namespace master

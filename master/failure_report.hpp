@@ -14,6 +14,15 @@ struct FailureReport {
     std::string host;     // host that the rank runs on
     std::string tile;     // name of the rank's tile; empty for the master
     std::string message;  // one line
+    /// The keys of failure.json.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("what", it.what);
+        visit("rank", it.rank);
+        visit("host", it.host);
+        visit("tile", it.tile);
+        visit("message", it.message);
+    }
 };
 
 /// Emits the event `failure`, and writes failure.json whole or not at all. If it cannot be written, prints a line on

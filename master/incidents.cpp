@@ -10,36 +10,16 @@
 
 #include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
-#include "master/json_count.hpp"
 
 namespace master {
 namespace {
 
-using nlohmann::ordered_json;
-
 constexpr std::int64_t kSeldomNs = 250'000'000;  // so that a flood of incidents does not become a flood of files
 constexpr std::size_t kMostBytes = 1 << 16;      // of the file
-
-ordered_json jsonOf(const Incidents& incidents) {
-    ordered_json json{{"divergences", incidents.divergences},
-                      {"healed", incidents.healed},
-                      {"outvoted", incidents.outvoted},
-                      {"server_divergences", incidents.serverDivergences},
-                      {"links", incidents.links},
-                      {"reconnects", incidents.reconnects},
-                      {"stands", incidents.stands},
-                      {"steps_left_out", incidents.stepsLeftOut},
-                      {"first_difference", incidents.firstDifference}};
-    for (std::size_t i = 0; i < valuesOf(haptic_bridge::RefusalCode{}).size(); ++i) {
-        const std::string kind(valuesOf(haptic_bridge::RefusalCode{})[i].name);
-        json["refused_by_server"][kind] = incidents.refusedHere[i];
-        json["refused"][kind] = incidents.refused[i];
-    }
-    return json;
-}
 
 Incidents incidentsOf(const std::filesystem::path& file) {
     const host::RegularFile opened(file, host::RegularFile::Links::refused);
@@ -47,25 +27,7 @@ Incidents incidentsOf(const std::filesystem::path& file) {
     if (!text) {
         return {};
     }
-    const ordered_json json = ordered_json::parse(*text);
-    const auto count = [&json](const std::string& key) {
-        return countAt(json, nlohmann::json::json_pointer("/" + key));
-    };
-    Incidents incidents{.divergences = count("divergences"),
-                        .healed = count("healed"),
-                        .outvoted = count("outvoted"),
-                        .serverDivergences = count("server_divergences"),
-                        .links = count("links"),
-                        .reconnects = count("reconnects"),
-                        .stands = count("stands"),
-                        .stepsLeftOut = count("steps_left_out"),
-                        .firstDifference = count("first_difference")};
-    for (std::size_t i = 0; i < valuesOf(haptic_bridge::RefusalCode{}).size(); ++i) {
-        const std::string kind(valuesOf(haptic_bridge::RefusalCode{})[i].name);
-        incidents.refusedHere[i] = count("refused_by_server/" + kind);
-        incidents.refused[i] = count("refused/" + kind);
-    }
-    return incidents;
+    return host::fromJson<Incidents>(nlohmann::ordered_json::parse(*text));
 }
 
 }  // namespace
@@ -100,7 +62,7 @@ void IncidentFile::keepLast(const Incidents& sinceTheBeginning) {
 void IncidentFile::write(const Incidents& incidents) {
     try {
         host::WholeFile whole(file_, host::WholeFile::Other::refused);
-        whole.stream() << jsonOf(incidents).dump() << '\n';
+        whole.stream() << host::jsonOf(incidents).dump() << '\n';
         whole.keep();
         kept_ = incidents;
         toldFailure_ = false;

@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
+#include "base/field_forms.hpp"
 #include "haptic_bridge/link/protocol.hpp"
 
 namespace master {
@@ -11,12 +13,41 @@ namespace master {
 /// Counts of the incidents of a session, including the time before its restarts. A process that is killed writes no
 /// summary, so these counts have a file of their own.
 struct Incidents {
-    std::uint64_t divergences = 0, healed = 0, outvoted = 0, serverDivergences = 0;  // see Summary
+    std::uint64_t divergences = 0;                          // frames in which the ranks' sand or views differed
+    std::uint64_t healed = 0;                               // times that a rank was healed
+    std::uint64_t outvoted = 0;                             // times that the journal outvoted a majority of the ranks
+    std::uint64_t serverDivergences = 0;                    // frames in which the haptic server's sand differed
+    std::uint64_t stepsLeftOut = 0;                         // steps with a sand::Replica::leftOut()
     std::uint64_t links = 0, reconnects = 0;                // of the haptic link, see LinkCounters
     haptic_bridge::RefusalCounts refusedHere{}, refused{};  // of the haptic link, see LinkCounters
     std::uint64_t stands = 0;                               // times that the sand was stopped because the disk was full
-    std::uint64_t stepsLeftOut = 0;                         // see Summary
-    std::uint64_t firstDifference = 0;                      // see Summary::Compared
+    std::uint64_t firstDifference = 0;                      // first frame in which sand or a view differed; 0: none
+
+    /// Returns firstDifference; nullopt if it is 0.
+    [[nodiscard]] std::optional<std::uint64_t> firstFrame() const {
+        return firstDifference == 0 ? std::nullopt : std::optional(firstDifference);
+    }
+
+    /// The counters that incidents.json, summary.json and `ctl status` contain under the same keys.
+    template <class Self, class Visit>
+    static void counters(Self& it, Visit& visit) {
+        visit("divergences", it.divergences);
+        visit("healed", it.healed);
+        visit("outvoted", it.outvoted);
+        visit("server_divergences", it.serverDivergences);
+        visit("steps_left_out", it.stepsLeftOut);
+    }
+    /// The keys of incidents.json. Summary::fields() has the keys of summary.json for those below counters().
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        counters(it, visit);
+        visit("links", it.links);
+        visit("reconnects", it.reconnects);
+        visit("stands", it.stands);
+        visit("first_difference", it.firstDifference);
+        visit("refused_by_server", base::byName<haptic_bridge::RefusalCode>(it.refusedHere));
+        visit("refused", base::byName<haptic_bridge::RefusalCode>(it.refused));
+    }
     friend bool operator==(const Incidents&, const Incidents&) = default;
 };
 

@@ -12,8 +12,8 @@
 
 namespace master {
 
-JournalCheck::JournalCheck(Record record, std::filesystem::path out)
-    : record_(std::move(record)), out_(std::move(out)) {}
+JournalCheck::JournalCheck(Record record, std::filesystem::path out, Incidents& incidents)
+    : record_(std::move(record)), out_(std::move(out)), incidents_(incidents) {}
 
 void JournalCheck::begin(std::uint64_t frame, const JournalEnd& sand) {
     if (record_.journal().empty()) {
@@ -93,7 +93,7 @@ void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const Journa
 }
 
 void JournalCheck::taken(std::uint64_t frame, const JournalEnd& shown) {
-    ++outvoted_;
+    ++incidents_.outvoted;
     wrong_ = holds_ = taking_ = false;
     record_.checked({frame, shown, true});
     tell(frame, "outvoted", rightHash_,
@@ -116,7 +116,7 @@ void JournalCheck::finish(std::uint64_t frame, const JournalEnd& shown, std::chr
 }
 
 void JournalCheck::tellResumed(const Outvoted& outvoted) {
-    ++outvoted_;
+    ++incidents_.outvoted;
     majority_ = outvoted.majority;
     tell(majority_.frame, "outvoted", outvoted.rightHash,
          fmt::format("the majority of frame {} was wrong: after step {} it had {:016x}, the journal has {:016x}; the "

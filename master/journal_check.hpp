@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "master/incidents.hpp"
 #include "master/journal/background_replay.hpp"
 #include "sand/replica.hpp"
 
@@ -25,8 +26,8 @@ public:
         std::function<void(const JournalDoubt&)> doubt;
         std::function<void(const JournalChecked&)> checked;
     };
-    /// `out` gets divergence.txt.
-    JournalCheck(Record record, std::filesystem::path out);
+    /// `out` gets divergence.txt. `incidents` counts the majorities that the journal outvotes.
+    JournalCheck(Record record, std::filesystem::path out, Incidents& incidents);
 
     /// If the replay is no more than so many steps behind the wall, the wall takes no steps until the replay is there.
     static constexpr std::uint64_t kShortWay = 60;
@@ -60,8 +61,6 @@ public:
     [[nodiscard]] bool failed() const { return !doubt_.empty(); }
     /// Returns why failed() is true, such as "its journal could not be replayed"; an empty text if it is false.
     [[nodiscard]] const std::string& doubt() const { return doubt_; }
-    /// Returns how often the journal has outvoted a majority since this process began.
-    [[nodiscard]] std::uint64_t outvoted() const { return outvoted_; }
     /// Returns the step that the replay has reached, for people.
     [[nodiscard]] std::uint64_t step() const { return replay_ ? replay_->progress().step : 0; }
 
@@ -73,6 +72,7 @@ private:
 
     const Record record_;
     const std::filesystem::path out_;
+    Incidents& incidents_;
     JournalDoubt majority_;  // its latest decision
     std::unique_ptr<BackgroundReplay> replay_;
     bool wrong_ = false;           // the journal disagrees with majority_
@@ -81,7 +81,6 @@ private:
     std::string doubt_;      // why the latest decision is in doubt; empty if it is not
     std::uint64_t way_ = 0;  // [step], by which the replay was behind when it last set out
     int tries_ = 0;
-    std::uint64_t outvoted_ = 0;
 };
 
 }  // namespace master

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/event.hpp"
+#include "host/json_fields.hpp"
 
 namespace master {
 namespace {
@@ -92,7 +93,7 @@ lockstep::WallFigures Measurements::figures(const Incidents& incidents) const {
 
 void Measurements::describe(nlohmann::json& status, const std::vector<std::string>& names) const {
     status["fps"] = fps_;
-    status["slowest"] = slowestRank(ranks_.recentDrag(), names);
+    status["slowest"] = host::jsonOf<nlohmann::json>(slowestRank(ranks_.recentDrag(), names));
 }
 
 void Measurements::fill(Summary& summary) const {

@@ -12,9 +12,9 @@
 
 #include "base/byte_stream.hpp"
 #include "host/event.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
-#include "master/json_count.hpp"
 
 namespace master {
 namespace {
@@ -34,38 +34,30 @@ std::string textOf(const std::filesystem::path& file) {
     return bytes ? std::string(bytes->begin(), bytes->end()) : "";
 }
 
-/// Throws base::InputError if `recovery` lacks a field, or has a value that no session can write.
-void check(const ordered_json& recovery) {
-    const auto require = [&recovery](const char* key, auto fits, const std::string& allowed) {
-        const auto found = recovery.find(key);
-        const ordered_json value = found == recovery.end() ? ordered_json() : *found;
-        if (found == recovery.end() || !fits(value)) {
-            refuseValue(key, value, allowed);
-        }
-    };
-    const auto isText = [](const ordered_json& value) { return value.is_string(); };
-    const auto isTime = [](const ordered_json& value) {
-        return value.is_number() && value.get<double>() >= 0 && value.get<double>() <= kMostCount;
-    };
-    const auto orNull = [](auto fits) {
-        return [fits](const ordered_json& value) { return value.is_null() || fits(value); };
-    };
-    const std::string count = fmt::format("a whole number from 0 to {}", kMostCount);
-    require("failure", isText, "a text");
-    require("failed_how", isText, "a text");
-    require("failed_rank", orNull(isCount), count + " or null");
-    require("seconds_to_next_frame", orNull(isTime), fmt::format("a number from 0 to {}, or null", kMostCount));
-    if (recovery.contains("seconds_to_link")) {
-        require("seconds_to_link", isTime, fmt::format("a number from 0 to {}", kMostCount));
+/// A line of the file. The launcher writes lines too, also for the haptic server, for which some values are null.
+struct Line {
+    std::string failure;
+    std::optional<std::uint64_t> rank{};
+    std::string how;
+    std::optional<double> secondsToFrame{}, secondsToLink{};  // [s]
+    std::uint64_t step = 0, frame = 0;
+    std::optional<std::string> stateHash;
+    std::optional<std::uint64_t> checkpointStep, replayedSteps, cutBytes;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("failure", it.failure);
+        visit("failed_rank", it.rank);
+        visit("failed_how", it.how);
+        visit("seconds_to_next_frame", it.secondsToFrame);
+        visit("seconds_to_link", host::ifThere(it.secondsToLink));
+        visit("step", it.step);
+        visit("frame", it.frame);
+        visit("state_hash", it.stateHash);
+        visit("checkpoint_step", it.checkpointStep);
+        visit("replayed_steps", it.replayedSteps);
+        visit("cut_bytes", it.cutBytes);
     }
-    require("state_hash", orNull(isText), "a text or null");
-    for (const char* key : {"step", "frame"}) {
-        require(key, isCount, count);
-    }
-    for (const char* key : {"checkpoint_step", "replayed_steps", "cut_bytes"}) {
-        require(key, orNull(isCount), count + " or null");
-    }
-}
+};
 
 struct Lines {
     std::vector<std::string> good, complaints;
@@ -82,7 +74,7 @@ Lines linesOf(const std::filesystem::path& folder) {
             continue;
         }
         try {
-            check(recovery);
+            (void)host::fromJson<Line>(recovery);
             lines.good.push_back(line);
         } catch (const base::InputError& error) {
             lines.complaints.push_back(fmt::format("{}:{}: {}; the summary leaves this recovery out",
@@ -100,20 +92,21 @@ void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder)
     const double seconds = std::max(0.0, unixTime() - (failure.noticed > 0 ? failure.noticed : kStarted));
     host::printLine("first frame {:.2f} s after {}: step {}, frame {}", seconds, failure.what, recovery.step,
                     recovery.frame);
-    const ordered_json json{{"failure", failure.what},
-                            {"failed_rank", failure.rank ? ordered_json(*failure.rank) : ordered_json()},
-                            {"failed_how", failure.how},
-                            {"seconds_to_next_frame", seconds},
-                            {"step", recovery.step},
-                            {"frame", recovery.frame},
-                            {"state_hash", fmt::format("{:016x}", recovery.stateHash)},
-                            {"checkpoint_step", recovery.checkpointStep},
-                            {"replayed_steps", recovery.replayedSteps},
-                            {"cut_bytes", recovery.cutBytes}};
-    host::emitEvent("recovered",
-                    {{"recovery", host::Json{json.dump(-1, ' ', false, ordered_json::error_handler_t::replace)}}});
-    const std::string line = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace) + '\n';
-    if (!host::appendLines(fileIn(folder), line)) {
+    Line told{.failure = failure.what,
+              .how = failure.how,
+              .secondsToFrame = seconds,
+              .step = recovery.step,
+              .frame = recovery.frame,
+              .stateHash = fmt::format("{:016x}", recovery.stateHash),
+              .checkpointStep = recovery.checkpointStep,
+              .replayedSteps = recovery.replayedSteps,
+              .cutBytes = static_cast<std::uint64_t>(recovery.cutBytes)};
+    if (failure.rank) {
+        told.rank = static_cast<std::uint64_t>(*failure.rank);
+    }
+    const std::string json = host::jsonOf(told).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    host::emitEvent("recovered", {{"recovery", host::Json{json}}});
+    if (!host::appendLines(fileIn(folder), json + '\n')) {
         host::printLine("{}: cannot be written", fileIn(folder).string());
     }
 }

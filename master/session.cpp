@@ -13,6 +13,7 @@
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "master/failure_report.hpp"
 #include "master/wall_pictures.hpp"
@@ -54,18 +55,19 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       sand_(sandOf(options_, scene)),
       steps_(stepsOf(options_, scene)),
       record_(options_.out, options_.record, scene, labels_),
+      counted_(record_.before()),
       desk_(scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
             options_.desk,
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
       agreement_(
-          ranks_, labels_, options_.out, measure_.ranks(),
+          ranks_, labels_, options_.out, counted_, measure_.ranks(),
           {[this] { return record_.journalFile(); }, [this] { return record_.sandOfJournal(sand_, options_.sweeps); }}),
       compared_(sand_.allTiles(), record_.before().firstDifference),
       check_({[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
               [this](const JournalChecked& checked) { record_.checked(checked); }},
-             options_.out) {
+             options_.out, counted_) {
     if (options_.record.resumed && options_.record.resumed->outvoted) {
         check_.tellResumed(*options_.record.resumed->outvoted);
     }
@@ -144,7 +146,7 @@ void Session::keep(const lockstep::FrameMessage& frame) {
 /// their number is a power of two.
 void Session::tellLeftOut() {
     for (const LeftOut& one : sand_.takeLeftOut()) {
-        const std::uint64_t count = record_.before().stepsLeftOut + ++stepsLeftOut_;
+        const std::uint64_t count = ++counted_.stepsLeftOut;
         if (std::has_single_bit(count)) {
             host::printLine("step {}: {}; all ranks leave it out, and the session continues ({} such steps so far)",
                             one.step, one.what, count);
@@ -189,7 +191,7 @@ bool Session::showFrame(bool& more) {
     handed_ = steps_->handed();
     framesWithHand_ += handed_ ? 1 : 0;
     if (!steps_->proveServer(steps, sand_.hash())) {
-        ++serverDivergences_;
+        ++counted_.serverDivergences;
         compared_.differed(frame.frame);
     }
     followCheck(frame.frame);
@@ -200,9 +202,9 @@ bool Session::showFrame(bool& more) {
 }
 
 bool Session::agree(const lockstep::FrameMessage& frame, const lockstep::Arrival& mine) {
-    const std::uint64_t before = agreement_.divergences();
+    const std::uint64_t before = counted_.divergences;
     const bool agreed = agreement_.reach(mine, sand_, *steps_, clock_.next(held()));
-    const bool differed = agreement_.divergences() != before;
+    const bool differed = counted_.divergences != before;
     if (differed) {
         compared_.differed(frame.frame);
     }
@@ -230,12 +232,7 @@ void Session::followCheck(std::uint64_t frame) {
 }
 
 Incidents Session::incidents() const {
-    Incidents all = record_.before();
-    all.divergences += agreement_.divergences();
-    all.healed += agreement_.healed();
-    all.outvoted += check_.outvoted();
-    all.serverDivergences += serverDivergences_;
-    all.stepsLeftOut += stepsLeftOut_;
+    Incidents all = counted_;
     all.stands += record_.stands();
     all.firstDifference = compared_.firstDifference();
     const haptic_bridge::LinkCounters link = steps_->counters();
@@ -250,7 +247,6 @@ Incidents Session::incidents() const {
 
 nlohmann::json Session::status() const {
     const sand::Replica& sand = sand_.replica();
-    const Incidents all = incidents();
     nlohmann::json status{{"frame", frame_},
                           {"step", sand.stepNumber()},
                           {"ranks", wall_.ranks()},
@@ -260,14 +256,12 @@ nlohmann::json Session::status() const {
                           {"tool_shape", std::string(base::nameOf(sand.toolShape().kind))},
                           {"tool_heading", sand::degreesOf(sand.heading())},
                           {"state_hash", fmt::format("{:016x}", sand_.hash())},
-                          {"divergences", all.divergences},
-                          {"healed", all.healed},
-                          {"outvoted", all.outvoted},
                           {"checking_journal", check_.pending()},
-                          {"server_divergences", all.serverDivergences},
-                          {"steps_left_out", all.stepsLeftOut},
                           {"edits", sand_.edits()},
                           {"can_undo", sand.canUndo()}};
+    const Incidents all = incidents();
+    host::JsonWriter writer(status);
+    Incidents::counters(all, writer);
     measure_.describe(status, labels_.names);
     record_.describe(status);
     return status;

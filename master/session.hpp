@@ -100,6 +100,7 @@ private:
     MasterSand sand_;
     std::unique_ptr<StepSource> steps_;
     SessionRecord record_;
+    Incidents counted_;  // since the session began; incidents() adds what the link, the disk and compared_ have counted
     OperatorDesk desk_;
     Measurements measure_;
     Agreement agreement_;
@@ -107,11 +108,9 @@ private:
     JournalCheck check_;
     std::int64_t endsSince_ = 0;  // [ns], since when the end of the session waits for check_; 0: it does not wait
     std::optional<Film> film_;
-    std::uint64_t serverDivergences_ = 0;  // since this process started
-    std::uint64_t stepsLeftOut_ = 0;       // since this process started
-    std::uint64_t framesWithHand_ = 0;     // since this process started
-    bool handed_ = false;                  // whether the frame before had a hand
-    bool agreedToEnd_ = false;             // whether all ranks have agreed on the last frame
+    std::uint64_t framesWithHand_ = 0;  // since this process started
+    bool handed_ = false;               // whether the frame before had a hand
+    bool agreedToEnd_ = false;          // whether all ranks have agreed on the last frame
 };
 
 }  // namespace master

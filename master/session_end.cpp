@@ -17,7 +17,7 @@ Summary Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     steps_->stop();
     if (steps_->serverAtEnd() == false) {
-        ++serverDivergences_;
+        ++counted_.serverDivergences;
         compared_.differed(frame_);
     }
     try {
@@ -39,7 +39,6 @@ Summary Session::finish(bool agreed) {
 
 Summary Session::summary() {
     const sand::Replica& sand = sand_.replica();
-    const Incidents all = incidents();
     Summary summary;
     summary.scene = scene_.name;
     summary.terrain = scene_.statements;
@@ -49,11 +48,7 @@ Summary Session::summary() {
     summary.edits = sand_.edits();
     summary.ranks = wall_.ranks();
     summary.stateHash = sand_.hash();
-    summary.divergences = all.divergences;
-    summary.healed = all.healed;
-    summary.outvoted = all.outvoted;
-    summary.serverDivergences = all.serverDivergences;
-    summary.stepsLeftOut = all.stepsLeftOut;
+    summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
     summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
     summary.volumeFinal = sand.volume();
@@ -61,11 +56,8 @@ Summary Session::summary() {
     summary.seconds = clock_.seconds();
     measure_.fill(summary);
     summary.haptic = steps_->report();
-    summary.link = steps_->counters();
-    summary.link.links = all.links;
-    summary.link.reconnects = all.reconnects;
-    summary.link.refusedHere = all.refusedHere;
-    summary.link.refused = all.refused;
+    const haptic_bridge::LinkCounters link = steps_->counters();
+    summary.handOvers = {link.catchUps, link.snapshots};
     if (const ResumedSession* resumed = options_.record.resumed.get()) {
         summary.framesBefore = resumed->frame;
         summary.stepsBefore = resumed->step;
@@ -84,7 +76,9 @@ Summary Session::summary() {
     summary.rankNames = labels_.names;
     summary.masterResidentBytes = lockstep::residentBytes();
     summary.journal = record_.summary();
-    summary.recoveries = recoveriesOf(options_.out);
+    for (std::string& recovery : recoveriesOf(options_.out)) {
+        summary.recoveries.push_back({std::move(recovery)});
+    }
     return summary;
 }
 
@@ -93,9 +87,6 @@ void Session::tellComparison(Summary& summary) const {
     summary.compared.atEnd = agreedToEnd_;
     summary.compared.serverAtEnd = steps_->serverAtEnd();
     summary.compared.lastWhole = compared_.lastWhole();
-    if (const std::uint64_t frame = compared_.firstDifference(); frame != 0) {
-        summary.compared.firstDifference = frame;
-    }
 }
 
 void Session::tellHand(Summary& summary) const {

@@ -160,7 +160,6 @@ void SessionRecord::describe(nlohmann::json& status) const {
 
 Summary::Journal SessionRecord::summary() const {
     Summary::Journal told;
-    told.stands = before().stands;
     if (!journal_) {
         return told;
     }
@@ -170,7 +169,6 @@ Summary::Journal SessionRecord::summary() const {
     told.checkpointsFailed = journal_->checkpointsFailed();
     told.checkpointsBeyond = journal_->checkpointsBeyond();
     told.whole = journal_->whole();
-    told.stands += journal_->stands();
     told.stoodSeconds = journal_->stoodSeconds();
     for (const double ms : journal_->copyMs()) {
         told.checkpointMs.add(ms);

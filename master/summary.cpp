@@ -32,14 +32,15 @@ std::string describeRefusals(const Summary& summary) {
             text += fmt::format("{}{} {}", text.empty() ? "" : "; ", what, times);
         }
     };
-    add("refused", timesOf(summary.link.refusedHere));
-    add("refused the server", timesOf(summary.link.refused));
+    add("refused", timesOf(summary.incidents.refusedHere));
+    add("refused the server", timesOf(summary.incidents.refused));
     add("the server refused connections",
         timesOf(summary.haptic ? summary.haptic->refused : haptic_bridge::RefusalCounts{}));
     if (text.empty()) {
         return {};
     }
-    return fmt::format("  haptics   {}: {}\n", summary.link.links == 0 ? "no hand all session" : "beside links", text);
+    return fmt::format("  haptics   {}: {}\n", summary.incidents.links == 0 ? "no hand all session" : "beside links",
+                       text);
 }
 
 /// Returns the line about steps of the hand that were not made; an empty text if all were made.
@@ -94,9 +95,9 @@ std::string describe(const Summary& summary) {
         "  sand      state hash {:016x}, {} divergences, {} healed, {}volume {} + outflow {} = {} at the start: {}\n"
         "  wall      swap skew p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; frame message p50 {:.0f} bytes\n",
         summary.scene, summary.wall, summary.steps, summary.frames, summary.framesPerSecond(), summary.ranks,
-        summary.stateHash, summary.divergences, summary.healed,
-        summary.outvoted == 0 ? "" : fmt::format("{} outvoted by the journal, ", summary.outvoted), summary.volumeFinal,
-        summary.volumeOutflow, summary.volumeInitial, summary.exact() ? "exact" : "WRONG",
+        summary.stateHash, summary.incidents.divergences, summary.incidents.healed,
+        summary.incidents.outvoted == 0 ? "" : fmt::format("{} outvoted by the journal, ", summary.incidents.outvoted),
+        summary.volumeFinal, summary.volumeOutflow, summary.volumeInitial, summary.exact() ? "exact" : "WRONG",
         summary.skewUs.percentile(0.5), summary.skewUs.percentile(0.99), summary.skewUs.largest(),
         summary.broadcastBytes.percentile(0.5));
     if (summary.latency.wholeWay.count() > 0) {

@@ -3,15 +3,17 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/link/report.hpp"
+#include "host/event.hpp"
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
+#include "master/incidents.hpp"
+#include "master/summary_parts.hpp"
 #include "scene/raster_statement.hpp"
 #include "tracking/head_tracker.hpp"
 
@@ -28,9 +30,17 @@ struct Latency {
     lockstep::Statistics drawn;     // -> drawn by the slowest rank
     lockstep::Statistics swapped;   // -> agreed and swapped
     lockstep::Statistics wholeWay;  // the whole way, from probe to swap
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("latency_ms", Distribution{it.wholeWay});
+        visit("latency_legs_ms/to_master", Distribution{it.toMaster});
+        visit("latency_legs_ms/queued", Distribution{it.queued});
+        visit("latency_legs_ms/drawn", Distribution{it.drawn});
+        visit("latency_legs_ms/swapped", Distribution{it.swapped});
+    }
 };
 
-/// The results of a session, which summary.json contains.
+/// The results of a session. fields() lists the keys of summary.json, and docs/schemas describes them.
 struct Summary {
     std::string scene, wall;
     std::optional<std::vector<scene::RasterStatement>> terrain;  // of the scene's files; nullopt if unknown
@@ -38,11 +48,7 @@ struct Summary {
     std::uint64_t edits = 0;  // steps with an operator's edit
     int ranks = 0;
     std::uint64_t stateHash = 0;
-    std::uint64_t divergences = 0;        // frames in which the ranks' sand differed
-    std::uint64_t healed = 0;             // times that a rank was healed
-    std::uint64_t outvoted = 0;           // times that the journal outvoted a majority of the ranks
-    std::uint64_t serverDivergences = 0;  // frames in which the haptic server's sand differed
-    std::uint64_t stepsLeftOut = 0;       // steps with a sand::Replica::leftOut()
+    Incidents incidents;
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     std::string pace = "realtime";                                       // "realtime", "fast" or "replay"
     double refreshHz = 0;                                                // frames per second that were asked for
@@ -54,7 +60,14 @@ struct Summary {
     lockstep::Statistics broadcastBytes;            // length of the frame message
     Latency latency;
     std::optional<haptic_bridge::Report> haptic;
-    haptic_bridge::LinkCounters link;
+    struct HandOvers {
+        std::uint64_t bySteps = 0, byState = 0;  // LinkCounters::catchUps and ::snapshots
+        template <class Self, class Visit>
+        static void fields(Self& it, Visit& visit) {
+            visit("by_steps", it.bySteps);
+            visit("by_state", it.byState);
+        }
+    } handOvers;
     std::optional<tracking::Counters> tracking;  // nullopt if the head is not tracked
     std::vector<lockstep::RankReport> ranksReports;
     std::vector<std::string> tileNames;                          // in order of rank, from 1
@@ -69,13 +82,25 @@ struct Summary {
         bool atEnd = false;               // the last frame has compared the whole sand, and all ranks agreed
         std::optional<bool> serverAtEnd;  // StepSource::serverAtEnd()
         std::uint64_t lastWhole = 0;      // frame up to which the whole sand has been compared
-        std::optional<std::uint64_t> firstDifference;  // first frame of the session in which sand differed
+        template <class Self, class Visit>
+        static void fields(Self& it, Visit& visit) {
+            visit("at_end", it.atEnd);
+            visit("server_at_end", it.serverAtEnd);
+            visit("last_whole", it.lastWhole);
+        }
     } compared;
     struct Hand {
         std::string asked = "none";              // "server" or "pointer" if the command line asked for one
         std::uint64_t frames = 0;                // since the last restart, with a hand (StepSource::handed())
         bool atEnd = false;                      // the last frame had a hand
         std::optional<std::string> lastRefusal;  // StepSource::lastRefusal()
+        template <class Self, class Visit>
+        static void fields(Self& it, Visit& visit) {
+            visit("asked", it.asked);
+            visit("frames_with_hand", it.frames);
+            visit("linked_at_end", it.atEnd);
+            visit("last_refusal", it.lastRefusal);
+        }
     } hand;
     struct Journal {
         std::string policy = "off", state = "off";
@@ -84,20 +109,92 @@ struct Summary {
         lockstep::Statistics checkpointMs;  // [ms], delay of the frame loop by each checkpoint
         std::uint64_t checkpointsFailed = 0;
         std::uint64_t checkpointsBeyond = 0;  // of later steps than the journal's end, which has lost steps
-        std::uint64_t stands = 0;             // times that the sand was stopped because the disk was full
-        double stoodSeconds = 0;
+        double stoodSeconds = 0;              // [s], for which the sand was stopped because the disk was full
+        template <class Self, class Visit>
+        static void fields(Self& it, Visit& visit) {
+            visit("policy", it.policy);
+            visit("state", it.state);
+            visit("whole", it.whole);
+            visit("parts", it.parts);
+            visit("checkpoints", it.checkpointMs.count());
+            visit("checkpoints_failed", it.checkpointsFailed);
+            visit("checkpoints_beyond", it.checkpointsBeyond);
+            visit("checkpoint_copy_ms", Spread{it.checkpointMs});
+            visit("full_disk/seconds", it.stoodSeconds);
+        }
     } journal;
-    std::vector<std::string> recoveries;  // of the session, each a JSON object
+    std::vector<host::Json> recoveries;  // of the session, each an object
 
     /// Returns whether no sand was lost or made since the scene's start.
     [[nodiscard]] bool exact() const { return volumeFinal + volumeOutflow == volumeInitial; }
     [[nodiscard]] double framesPerSecond() const;
-};
 
-/// Returns the rank that keeps the wall waiting, as summary.json and `ctl status` contain it; null if no rank stands
-/// out.
-[[nodiscard]] nlohmann::ordered_json slowestRank(const std::optional<lockstep::Drag>& drag,
-                                                 const std::vector<std::string>& rankNames);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("version", kSummaryVersion);
+        visit("scene", it.scene);
+        visit("terrain", it.terrain);
+        visit("wall", it.wall);
+        visit("frames", it.frames);
+        visit("steps", it.steps);
+        visit("frames_before", it.framesBefore);
+        visit("steps_before", it.stepsBefore);
+        visit("pace", it.pace);
+        visit("refresh_hz", it.refreshHz);
+        visit("ranks", it.ranks);
+        visit("state_hash", hashText(it.stateHash));
+        Incidents::counters(it.incidents, visit);
+        visit("master_healed", it.rankStatistics.empty() ? 0 : it.rankStatistics.front().healed);
+        visit("unhealed", it.unhealed);
+        visit("compared", it.compared);
+        visit("compared/frames_since", it.frames - it.compared.lastWhole);
+        visit("compared/first_difference", it.incidents.firstFrame());
+        visit("volume_initial", it.volumeInitial);
+        visit("volume_final", it.volumeFinal);
+        visit("edits", it.edits);
+        visit("volume_outflow", it.volumeOutflow);
+        visit("seconds", it.seconds);
+        visit("fps", it.framesPerSecond());
+        visit("frame_ms", Spread{it.frameMs});
+        visit("frame_ms/count", it.frameMs.count());
+        visit("frame_ms/mean", it.frameMs.mean());
+        visit("late_frames", it.lateFrames);
+        visit("held_seconds/pause", it.pausedSeconds);
+        visit("held_seconds/disk", it.fullDiskSeconds);
+        visit("skew_us", Spread{it.skewUs});
+        Latency::fields(it.latency, visit);
+        visit("haptic_period_us/p50", it.period(&haptic_bridge::Report::hapticPeriodUsP50));
+        visit("haptic_period_us/p99", it.period(&haptic_bridge::Report::hapticPeriodUsP99));
+        visit("haptic_period_us/max", it.period(&haptic_bridge::Report::hapticPeriodUsMax));
+        visit("slowest", slowestRank(it.drag, it.rankNames));
+        visit("broadcast_bytes", Spread{it.broadcastBytes});
+        visit("hand", it.hand);
+        visit("hand/links", it.incidents.links);
+        visit("haptic/reconnects", it.incidents.reconnects);
+        visit("haptic/hand_overs", it.handOvers);
+        using haptic_bridge::RefusalCode;
+        visit("haptic/refused_by_server", base::byName<RefusalCode>(it.incidents.refusedHere));
+        visit("haptic/refused/servers", base::byName<RefusalCode>(it.incidents.refused));
+        const haptic_bridge::Report report = it.haptic.value_or(haptic_bridge::Report{});
+        visit("haptic/refused/guests", base::byName<RefusalCode>(report.refused));
+        if (it.haptic) {
+            visit("haptic", ReportPart{report});
+        }
+        if (it.tracking) {
+            visit("head_tracking", *it.tracking);
+        }
+        visit("master_memory_bytes", it.masterResidentBytes);
+        visit("journal", it.journal);
+        visit("journal/full_disk/times", it.incidents.stands);
+        visit("recoveries", it.recoveries);
+        visit("per_rank", it.rankParts());
+    }
+
+private:
+    /// Returns a value of the force loop's period; nullopt if the loop did not run in real time, and so has no period.
+    [[nodiscard]] std::optional<double> period(double haptic_bridge::Report::*value) const;
+    [[nodiscard]] std::vector<RankPart> rankParts() const;
+};
 
 /// Writes summary.json. Throws base::InputError if it cannot be written.
 void writeSummary(const Summary& summary, const std::filesystem::path& file);

@@ -21,6 +21,17 @@ struct Counters {
     std::uint64_t timesLost = 0;  // times that no pose came for half a second
     std::uint64_t outside = 0;    // poses that are not in front of every screen, left out
     std::uint64_t strangers = 0;  // packets from another address than the tracker's, left out
+    /// The keys in `head_tracking` of summary.json.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("packets", it.packets);
+        visit("refused", it.refused);
+        visit("old", it.old);
+        visit("absent", it.absent);
+        visit("lost", it.timesLost);
+        visit("outside", it.outside);
+        visit("strangers", it.strangers);
+    }
     friend bool operator==(const Counters&, const Counters&) = default;
 };
 

@@ -5,7 +5,8 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
-#include <string_view>
+
+#include "base/names.hpp"
 
 namespace haptic_bridge {
 
@@ -27,10 +28,25 @@ enum class Guard : std::uint8_t {
     contact,     // a contact or an edit asks for much force at once: the excess grows in a ramp
     gate         // the force to be pushed would grow or turn faster than any guard before the gate allows
 };
-inline constexpr std::size_t kGuards = 15;
-inline constexpr std::array<std::string_view, kGuards> kGuardNames{
-    "not_a_number", "stiffness", "damping", "friction", "slew",   "passivity", "clamp", "ramp",
-    "stale",        "missed",    "lost",    "jumped",   "frozen", "contact",   "gate"};
+constexpr auto valuesOf(Guard) {
+    using enum Guard;
+    return std::array{base::Named{notANumber, "not_a_number"},
+                      base::Named{stiffness, "stiffness"},
+                      base::Named{damping, "damping"},
+                      base::Named{friction, "friction"},
+                      base::Named{slew, "slew"},
+                      base::Named{passivity, "passivity"},
+                      base::Named{clamp, "clamp"},
+                      base::Named{ramp, "ramp"},
+                      base::Named{stale, "stale"},
+                      base::Named{missed, "missed"},
+                      base::Named{lost, "lost"},
+                      base::Named{jumped, "jumped"},
+                      base::Named{frozen, "frozen"},
+                      base::Named{contact, "contact"},
+                      base::Named{gate, "gate"}};
+}
+inline constexpr std::size_t kGuards = valuesOf(Guard{}).size();
 
 [[nodiscard]] constexpr std::uint32_t bit(Guard guard) { return 1U << static_cast<unsigned>(guard); }
 
@@ -84,7 +100,8 @@ public:
         const auto counts = all();
         for (std::size_t i = 0; i < kGuards; ++i) {
             if (counts[i] > 0) {
-                text += (text.empty() ? "" : ", ") + std::string(kGuardNames[i]) + ' ' + std::to_string(counts[i]);
+                text += (text.empty() ? "" : ", ") + std::string(valuesOf(Guard{})[i].name) + ' ' +
+                        std::to_string(counts[i]);
             }
         }
         return "guards acted in ticks: " + (text.empty() ? "none" : text);

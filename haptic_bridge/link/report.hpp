@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "base/fields.hpp"
+#include "base/field_forms.hpp"
 #include "haptic_bridge/hand/guard_counts.hpp"
 #include "haptic_bridge/link/greetings.hpp"
 
@@ -56,41 +56,42 @@ struct Report {
     std::uint64_t samplesDropped = 0;             // hand samples in no step: thinned out, outdated, or queue full
     std::uint64_t ticks = 0;                      // of the force loop; 0 under --pace fast
     std::uint64_t ticksMissed = 0;                // ticks whose deadline the force loop missed
-    std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, in the order of kGuardNames
+    std::array<std::uint64_t, kGuards> guards{};  // ticks in which each guard acted, in the order of valuesOf(Guard)
     RefusalCounts refused{};                      // connections that the server refused
     std::uint64_t handTicks = 0;                  // ticks while a master was linked, under both paces
     std::uint64_t feltTicks = 0;                  // of these, ticks that pushed a force above 0
     std::uint64_t faultedTicks = 0;               // of these, ticks in which a fault pushed 0 (kFaults)
     bool literal = false;                         // the server runs with --guards literal
     Audited audited = Audited::no;                // agreed or differed only in the last report of a link
+    /// The order of the bytes. The names are the keys in `haptic` of summary.json (master/summary.hpp).
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        visit("haptic_period_us_p50", it.hapticPeriodUsP50);
-        visit("haptic_period_us_p99", it.hapticPeriodUsP99);
-        visit("haptic_period_us_max", it.hapticPeriodUsMax);
-        visit("force_us_p50", it.forceUsP50);
-        visit("force_us_p99", it.forceUsP99);
-        visit("to_wall_ms_mean", it.toWall.msMean);
-        visit("to_wall_ms_stddev", it.toWall.msStddev);
-        visit("to_wall_ms_p50", it.toWall.msP50);
-        visit("to_wall_ms_p99", it.toWall.msP99);
-        visit("to_master_ms_mean", it.toMaster.msMean);
-        visit("to_master_ms_stddev", it.toMaster.msStddev);
-        visit("to_master_ms_p50", it.toMaster.msP50);
-        visit("to_master_ms_p99", it.toMaster.msP99);
-        visit("step_bytes_mean", it.stepBytesMean);
+        visit("haptic_period_us/p50", it.hapticPeriodUsP50);
+        visit("haptic_period_us/p99", it.hapticPeriodUsP99);
+        visit("haptic_period_us/max", it.hapticPeriodUsMax);
+        visit("force_us/p50", it.forceUsP50);
+        visit("force_us/p99", it.forceUsP99);
+        visit("half_round_trip_ms/mean", it.toWall.msMean);
+        visit("half_round_trip_ms/stddev", it.toWall.msStddev);
+        visit("half_round_trip_ms/p50", it.toWall.msP50);
+        visit("half_round_trip_ms/p99", it.toWall.msP99);
+        visit("half_round_trip_to_master_ms/mean", it.toMaster.msMean);
+        visit("half_round_trip_to_master_ms/stddev", it.toMaster.msStddev);
+        visit("half_round_trip_to_master_ms/p50", it.toMaster.msP50);
+        visit("half_round_trip_to_master_ms/p99", it.toMaster.msP99);
+        visit("step_message_bytes", it.stepBytesMean);
         visit("steps", it.steps);
         visit("samples_dropped", it.samplesDropped);
         visit("ticks", it.ticks);
         visit("ticks_missed", it.ticksMissed);
-        visit("to_wall_count", it.toWall.count);
-        visit("to_master_count", it.toMaster.count);
+        visit("half_round_trip_ms/count", it.toWall.count);
+        visit("half_round_trip_to_master_ms/count", it.toMaster.count);
         visit("hand_ticks", it.handTicks);
         visit("felt_ticks", it.feltTicks);
         visit("faulted_ticks", it.faultedTicks);
-        visit("steps_withheld", it.stepsWithheld);
-        visit("guards", it.guards);
-        visit("refused", it.refused);
+        visit("steps_withheld_by", base::byName<Withheld>(it.stepsWithheld));
+        visit("guarded_ticks", base::byName<Guard>(it.guards));
+        visit("refused/guests", base::byName<RefusalCode>(it.refused));
         visit("literal", it.literal);
         visit("audited", it.audited);
     }

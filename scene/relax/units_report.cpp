@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/input_error.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/raster_memory.hpp"
@@ -16,13 +17,8 @@ namespace scene::relax {
 void printStatement(const RasterStatement& statement) { host::printLine("{}: {}", statement.file, statement.text()); }
 
 nlohmann::ordered_json jsonOf(const RasterStatement& statement) {
-    nlohmann::ordered_json json;
-    json["across"] = statement.across;
-    json["across_from"] = statement.acrossFrom;
-    json["up"] = statement.up;
-    json["up_from"] = statement.upFrom;
-    json["no_data"] = statement.noData ? nlohmann::ordered_json(*statement.noData) : nlohmann::ordered_json(nullptr);
-    json["no_data_share"] = statement.noDataShare;
+    nlohmann::ordered_json json = host::jsonOf(statement);
+    json.erase("file");  // the command line names it
     return json;
 }
 

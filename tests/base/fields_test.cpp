@@ -87,6 +87,11 @@ All full() {
     return all;
 }
 
+struct Counted {
+    std::array<std::uint16_t, 2> counts{};
+    static void fields(auto& it, auto& visit) { visit("counts", base::byName<Colour>(it.counts)); }
+};
+
 struct Small {
     std::uint8_t number = 0;
     static void fields(auto& it, auto& visit) { visit("number", base::varint(it.number)); }
@@ -241,6 +246,12 @@ TEST(Fields, ATextThatIsMissingHasOneByte) {
     };
     EXPECT_EQ(refusal({2}), "note: is 2, neither 0 nor 1");
     EXPECT_EQ(refusal({1, 5, 0, 0, 0, 't', 'o', 'o', 'l', 's'}), "note: has 5 bytes; at most 4 are allowed");
+}
+
+TEST(Fields, ByNameHaveTheBytesOfTheirArray) {
+    const base::Bytes bytes{1, 2, 3, 4};
+    EXPECT_EQ(base::encoded(described::Counted{{0x0201, 0x0403}}), bytes);
+    EXPECT_EQ(base::decoded<described::Counted>(bytes).counts, (std::array<std::uint16_t, 2>{0x0201, 0x0403}));
 }
 
 // A newer version of a message begins as the others do, and may be any bytes after that.

@@ -140,6 +140,7 @@ protected:
     master::MasterSand sand_{sceneOfRanks(), {}, {}};
     FakeRanks ranks_;
     HealedSteps steps_;
+    master::Incidents incidents_;
     lockstep::RankStatistics statistics_{3};
     bool hasJournal_ = false;
     int asked_ = 0;  // times that the journal was asked for its sand
@@ -147,6 +148,7 @@ protected:
         ranks_,
         {{"the master", "rank 1", "rank 2"}, {"h0", "h1", "h2"}, {"", "r1c1", "r1c2"}},
         folder_,
+        incidents_,
         statistics_,
         {[this] { return hasJournal_ ? folder_ / "session.journal" : std::filesystem::path(); },
          [this] {
@@ -159,7 +161,7 @@ protected:
 TEST_F(AgreementTest, OfEqualRanksIsOneMeeting) {
     EXPECT_TRUE(reach());
     EXPECT_EQ(ranks_.meetings, 1);
-    EXPECT_EQ(agreement_.divergences(), 0U);
+    EXPECT_EQ(incidents_.divergences, 0U);
     EXPECT_FALSE(std::filesystem::exists(folder_ / "divergence.txt"));
 }
 
@@ -168,8 +170,8 @@ TEST_F(AgreementTest, ARankThatDiffersTakesTheSandOfTheOthersAndMeetsThemAgain) 
     EXPECT_TRUE(reach());
     EXPECT_EQ(ranks_.meetings, 2);
     EXPECT_EQ(ranks_.replicas[1].stateHash(), right_);
-    EXPECT_EQ(agreement_.divergences(), 1U);
-    EXPECT_EQ(agreement_.healed(), 1U);
+    EXPECT_EQ(incidents_.divergences, 1U);
+    EXPECT_EQ(incidents_.healed, 1U);
     EXPECT_EQ(statistics_.ranks()[2].healed, 1U);
     EXPECT_EQ(steps_.healings, 0) << "the master was right";
     EXPECT_EQ(asked_, 0) << "with a majority the journal is not used";
@@ -194,7 +196,7 @@ TEST_F(AgreementTest, WithoutAMajorityTheJournalJudgesAndTheMasterPassesItsSandO
     EXPECT_EQ(sand_.hash(), right_);
     EXPECT_EQ(ranks_.replicas[0].stateHash(), right_);
     EXPECT_EQ(ranks_.replicas[1].stateHash(), right_);
-    EXPECT_EQ(agreement_.healed(), 3U);
+    EXPECT_EQ(incidents_.healed, 3U);
 }
 
 TEST_F(AgreementTest, WithoutAJournalTheMasterIsRight) {
@@ -221,7 +223,7 @@ TEST_F(AgreementTest, AMajorityDecidesUntilTheJournalOutvotesIt) {
     EXPECT_EQ(sand_.hash(), right_);
     EXPECT_EQ(ranks_.replicas[0].stateHash(), right_);
     EXPECT_EQ(ranks_.replicas[1].stateHash(), right_);
-    EXPECT_EQ(agreement_.healed(), 4U) << "the master, and then all three";
+    EXPECT_EQ(incidents_.healed, 4U) << "the master, and then all three";
     EXPECT_FALSE(agreement_.takeDecision().has_value());
     EXPECT_EQ(asked_, 0) << "the journal's sand was there already";
     EXPECT_TRUE(reach());
@@ -272,7 +274,7 @@ TEST_F(AgreementTest, AnOverruleThatChangesNothingIsOneMeeting) {
     agreement_.overrule(std::make_unique<sand::Replica>(sceneOfRanks()));
     EXPECT_TRUE(reach());
     EXPECT_EQ(ranks_.meetings, 1);
-    EXPECT_EQ(agreement_.healed(), 0U);
+    EXPECT_EQ(incidents_.healed, 0U);
 }
 
 TEST_F(AgreementTest, MemoryThatNeedsHelpAThirdTimeIsGivenUp) {
@@ -287,8 +289,8 @@ TEST_F(AgreementTest, MemoryThatNeedsHelpAThirdTimeIsGivenUp) {
     EXPECT_EQ(failure()["rank"], 2);
     EXPECT_EQ(failure()["host"], "h2");
     EXPECT_EQ(failure()["tile"], "r1c2");
-    EXPECT_EQ(agreement_.divergences(), 3U);
-    EXPECT_EQ(agreement_.healed(), 2U);
+    EXPECT_EQ(incidents_.divergences, 3U);
+    EXPECT_EQ(incidents_.healed, 2U);
     EXPECT_EQ(agreement_.unhealed(), 1U);
 }
 
@@ -297,7 +299,7 @@ TEST_F(AgreementTest, ARankThatHealingDoesNotHelpIsGivenUpAtOnce) {
     spoil(1, 3);
     EXPECT_FALSE(reach());
     EXPECT_EQ(failure()["rank"], 1);
-    EXPECT_EQ(agreement_.divergences(), 1U) << "one frame";
+    EXPECT_EQ(incidents_.divergences, 1U) << "one frame";
     EXPECT_EQ(agreement_.unhealed(), 1U);
 }
 
@@ -306,8 +308,8 @@ TEST_F(AgreementTest, AnotherViewEndsTheSession) {
     EXPECT_FALSE(reach());
     EXPECT_EQ(failure()["what"], "broken");
     EXPECT_EQ(failure()["rank"], 2);
-    EXPECT_EQ(agreement_.divergences(), 1U);
-    EXPECT_EQ(agreement_.healed(), 0U);
+    EXPECT_EQ(incidents_.divergences, 1U);
+    EXPECT_EQ(incidents_.healed, 0U);
     EXPECT_EQ(statistics_.ranks()[2].differed, 1U);
     EXPECT_EQ(agreement_.unhealed(), 1U);
 }
@@ -316,7 +318,7 @@ TEST_F(AgreementTest, NonsenseEndsTheSession) {
     ranks_.talkNonsense();
     EXPECT_FALSE(reach());
     EXPECT_EQ(failure()["rank"], 2);
-    EXPECT_EQ(agreement_.divergences(), 0U) << "its sand is unknown";
+    EXPECT_EQ(incidents_.divergences, 0U) << "its sand is unknown";
 }
 
 }  // namespace

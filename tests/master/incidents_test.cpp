@@ -25,10 +25,10 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
                            .healed = 2,
                            .outvoted = 1,
                            .serverDivergences = 1,
+                           .stepsLeftOut = 9,
                            .links = 6,
                            .reconnects = 4,
                            .stands = 1,
-                           .stepsLeftOut = 9,
                            .firstDifference = 250};
     some.refusedHere[1] = 8;
     some.refused[0] = 7;

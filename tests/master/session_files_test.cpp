@@ -98,7 +98,7 @@ TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
     EXPECT_EQ(master::recoveriesOf(folder_), (std::vector<std::string>{good, with("failed_rank", "null")}));
     const std::string said = testing::internal::GetCapturedStderr();
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 4) << said;
-    EXPECT_NE(said.find("recoveries.jsonl:2: seconds_to_next_frame must be a number from 0 to 1000000000000, or null, "
+    EXPECT_NE(said.find("recoveries.jsonl:2: seconds_to_next_frame must be a number from 0 to 1000000000000 or null, "
                         "got -2.5; "),
               std::string::npos)
         << said;

@@ -116,10 +116,10 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     };
     master::Summary summary = draggedWall(false);
     EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "a wall without haptics";
-    summary.link.refusedHere[index(haptic_bridge::RefusalCode::secret)] = 5;
+    summary.incidents.refusedHere[index(haptic_bridge::RefusalCode::secret)] = 5;
     saysHaptics(summary, "no hand all session: refused 5 times (secret)");
-    summary.link.refused[index(haptic_bridge::RefusalCode::tls)] = 1;
-    summary.link.refused[index(haptic_bridge::RefusalCode::garbage)] = 2;
+    summary.incidents.refused[index(haptic_bridge::RefusalCode::tls)] = 1;
+    summary.incidents.refused[index(haptic_bridge::RefusalCode::garbage)] = 2;
     saysHaptics(summary,
                 "no hand all session: refused 5 times (secret); refused the server 3 times (garbage 2, tls 1)");
     const nlohmann::json haptic = written(summary)["haptic"];
@@ -128,10 +128,10 @@ TEST(Summary, SaysThatAHandWasRefusedAndWhy) {
     EXPECT_EQ(haptic["refused"]["servers"]["tls"], 1);
 
     summary = draggedWall(false);
-    summary.link.links = 1;
+    summary.incidents.links = 1;
     summary.haptic.emplace();
     EXPECT_EQ(master::describe(summary).find("haptics"), std::string::npos) << "there were no refusals";
-    summary.link.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
+    summary.incidents.refusedHere[index(haptic_bridge::RefusalCode::busy)] = 1;
     summary.haptic->refused[index(haptic_bridge::RefusalCode::secret)] = 7;
     saysHaptics(summary, "beside links: refused 1 time (busy); the server refused connections 7 times (secret)");
 }
@@ -157,7 +157,8 @@ TEST(Summary, SaysHowFarTheSandWasCompared) {
                                  {"frames_since", 60},
                                  {"first_difference", nullptr}};
     EXPECT_EQ(written(summary)["compared"], lost);
-    summary.compared = {true, false, 200, 17};
+    summary.compared = {true, false, 200};
+    summary.incidents.firstDifference = 17;
     const nlohmann::json toTheEnd = {
         {"at_end", true}, {"server_at_end", false}, {"last_whole", 200}, {"frames_since", 0}, {"first_difference", 17}};
     EXPECT_EQ(written(summary)["compared"], toTheEnd);
@@ -169,7 +170,7 @@ TEST(Summary, SaysWhichHandWasAskedForAndWhetherItCame) {
         {"asked", "none"}, {"links", 0}, {"frames_with_hand", 0}, {"linked_at_end", false}, {"last_refusal", nullptr}};
     EXPECT_EQ(written(summary)["hand"], none);
     summary.hand = {"server", 12, true, "refuses: \xff not UTF-8"};
-    summary.link.links = 2;
+    summary.incidents.links = 2;
     const nlohmann::json hand = written(summary)["hand"];
     EXPECT_EQ(hand["links"], 2);
     EXPECT_EQ(hand["frames_with_hand"], 12);

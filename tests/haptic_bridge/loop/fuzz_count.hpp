@@ -41,7 +41,8 @@ public:
             fmt::format("{}: {} sequences from SANDWALL_SEED={}, {} ticks; ticks in which each guard acted:", fuzzer,
                         count, seed, ticks_);
         for (std::size_t i = 0; i < haptic_bridge::kGuards; ++i) {
-            line += fmt::format("{} {} {}", i == 0 ? "" : ",", haptic_bridge::kGuardNames.at(i), counts_.at(i));
+            line +=
+                fmt::format("{} {} {}", i == 0 ? "" : ",", valuesOf(haptic_bridge::Guard{}).at(i).name, counts_.at(i));
         }
         fmt::print("{}\n", line);
     }

@@ -38,7 +38,7 @@ void runSequences(const char* fuzzer, const std::vector<Guard>& guards, const Se
         ASSERT_FALSE(testing::Test::HasFailure()) << test::again(seed + i);
     }
     for (const Guard guard : guards) {
-        EXPECT_TRUE(counts.of(guard) > 0 || count < kSequences) << kGuardNames.at(static_cast<std::size_t>(guard));
+        EXPECT_TRUE(counts.of(guard) > 0 || count < kSequences) << base::nameOf(guard);
     }
     counts.tell(kGateCount, fuzzer, count, seed);
 }

@@ -256,8 +256,8 @@ void expectSilence(Guard guard, const Hurt& hurt) {
     double span = kTick;
     hurt(hand.reading, span);
     const Guards::Forces& bad = hand.next(span);
-    EXPECT_EQ(norm(bad.sent), 0) << kGuardNames[static_cast<std::size_t>(guard)];
-    EXPECT_NE(bad.acted & bit(guard), 0U) << kGuardNames[static_cast<std::size_t>(guard)];
+    EXPECT_EQ(norm(bad.sent), 0) << base::nameOf(guard);
+    EXPECT_NE(bad.acted & bit(guard), 0U) << base::nameOf(guard);
     const double time = hand.reading.time;
     hand.reading = good;
     hand.reading.time = time;
@@ -266,7 +266,7 @@ void expectSilence(Guard guard, const Hurt& hurt) {
     for (int tick = 0; tick < 2100; ++tick) {
         hand.next();
     }
-    EXPECT_NEAR(hand.last.sent.z, whole, 1e-9) << kGuardNames[static_cast<std::size_t>(guard)];
+    EXPECT_NEAR(hand.last.sent.z, whole, 1e-9) << base::nameOf(guard);
 }
 
 TEST(Guards, SendNothingWithinATickOfAFaultAndRampAfterIt) {
