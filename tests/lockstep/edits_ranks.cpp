@@ -63,10 +63,9 @@ std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const scene::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Replica terrain(scene,
-                          {.blockSize = kBlocks.at(way % kBlocks.size()),
-                           .path = way % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline,
-                           .executor = team.lend()});
+    sand::Replica terrain(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
+                                  .path = way % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline,
+                                  .executor = team.lend()});
     std::mt19937 random(53);
     for (std::uint64_t before = 0; before < (wild ? kWildEdits : kEdits); before += kTogether) {
         std::vector<std::uint64_t> hashes;

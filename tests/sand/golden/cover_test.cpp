@@ -18,7 +18,7 @@ class Cover : public testing::TestWithParam<std::size_t> {};
 
 struct Way {
     int threads, block;
-    sand::grid::CodePath path;
+    base::CodePath path;
 };
 
 // Pairwise cover: each number of threads meets each size of block in one of the three kinds of build. scripts/test.sh
@@ -35,7 +35,7 @@ constexpr std::array kBlocks{16, 32, 64};
 
 Way wayOf(std::size_t i) {
     return {kThreads[i], kBlocks[(i + kBuild) % kBlocks.size()],
-            i % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline};
+            i % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline};
 }
 
 /// Dunes on a field of odd size with an open rim.

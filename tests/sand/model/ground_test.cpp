@@ -75,7 +75,7 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     };
     for (const int block : {2, 16, 64}) {
         EXPECT_EQ(hashWith({.blockSize = block}), expected);
-        EXPECT_EQ(hashWith({.blockSize = block, .path = sand::grid::CodePath::baseline}), expected);
+        EXPECT_EQ(hashWith({.blockSize = block, .path = base::CodePath::baseline}), expected);
         EXPECT_EQ(hashWith({.blockSize = block, .executor = &backwards}), expected);
     }
 }

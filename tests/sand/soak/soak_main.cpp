@@ -44,7 +44,7 @@ int run(const Options& options) {
     const sand::Rules rules = dunes(options).rules;
     sand::Replica terrain(dunes(options),
                           {.blockSize = options.block,
-                           .path = options.baseline ? sand::grid::CodePath::baseline : sand::grid::CodePath::automatic,
+                           .path = options.baseline ? base::CodePath::baseline : base::fastestCodePath(),
                            .executor = options.threads > 1 ? &executor : nullptr});
     const std::int64_t volume = samples::fieldOf(terrain).volume();
     std::mt19937 random(options.seed);
