@@ -245,7 +245,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     (void)lockstep::clockAheadOfMaster(cluster);
     try {
         const host::WorkerPool pool(options.sandThreads);
-        options.session.sweeps.executor = pool.lend();
+        options.session.executor = pool.lend();
         return master::Session(cluster, world->scene, world->wall, options.session).run();
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to end.

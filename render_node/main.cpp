@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);
-        return render_node::showTile(cluster, render_node::backendNamed(gl), {.executor = pool.lend()});
+        return render_node::showTile(cluster, render_node::backendNamed(gl), pool.lend());
     });
     if (status != 0) {
         cluster.abort(status);

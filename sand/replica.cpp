@@ -52,12 +52,16 @@ std::uint64_t mix(std::uint64_t value) {
 
 }  // namespace
 
-Replica::Replica(const Start& start, const grid::Erosion::Options& options)
+Replica::Replica(const Start& start, const base::Executor* executor) : Replica(start, makeSurface(start, executor)) {}
+
+Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
-      surface_(makeSurface(start, options)),
-      heading_(start.rules.toolHeading) {}
+      surface_(std::move(surface)),
+      heading_(start.rules.toolHeading) {
+    (void)base::needDefaultFloats();
+}
 
 Replica::Replica(const Replica& other)
     : rules_(other.rules_),

@@ -5,8 +5,10 @@
 
 #include <cstring>
 #include <random>
+#include <string>
 
 #include "sand/grid/dunes.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 

@@ -10,6 +10,7 @@
 #include "sand/grid/dunes.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -56,7 +57,8 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     const Way way = wayOf(GetParam());
     host::WorkerPool team(way.threads);
     const base::Executor executor = team.executor();
-    sand::Replica terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
+    sand::Replica terrain =
+        samples::replicaSwept(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
     std::uint64_t all = 0;  // combines every step's hash, so that each of them counts
     for (std::uint64_t edit = 1; edit <= (samples::kSlowBuild ? kFew : kEdits); ++edit) {

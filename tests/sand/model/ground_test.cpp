@@ -59,7 +59,7 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
 TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     const scene::Scene scene = layerOverRock(7);
     const auto hashWith = [&](const sand::grid::Erosion::Options& options) {
-        Replica terrain(scene, options);
+        Replica terrain = samples::replicaSwept(scene, options);
         std::mt19937 random(11);
         for (std::uint64_t i = 1; i <= (samples::kSlowBuild ? 30 : 100); ++i) {
             terrain.apply(samples::randomStep(i, scene.rules, random));
