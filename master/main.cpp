@@ -104,8 +104,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         const std::string& file = options.scene;
         scene::Scene scene = scene::loadScene(
             file, {.raster = [&](int columns, int rows) { master::requireMemoryOfRaster(hosts, columns, rows, file); },
-                   .field = [&](int columns, int rows,
-                                bool tin) { master::requireMemory(hosts, columns, rows, tin, file); }});
+                   .field = [&](const sand::FieldSize& size) { master::requireMemory(hosts, size, file); }});
         for (const scene::RasterStatement& statement : *scene.statements) {
             host::printLine("{}: {}", statement.file, statement.text());
         }

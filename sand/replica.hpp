@@ -116,11 +116,6 @@ public:
     /// Returns the change of surface() since the last call. The first call returns a whole change.
     [[nodiscard]] SurfaceChange takeChange() { return surface_->takeChange(); }
 
-    /// Returns a lower bound of the memory for a replica and for the Start that it begins with [byte].
-    [[nodiscard]] static std::int64_t leastBytes(const Start& start);
-    /// Returns the lower bound for a height field of `columns` × `rows` cells [byte].
-    [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
-
     /// Returns a copy of the current sand. Another thread can compress it with SurfaceCopy::encode().
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }
     /// Returns the function that decodes sand for this field. It stays valid after the replica is gone.

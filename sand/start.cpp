@@ -3,7 +3,26 @@
 
 #include <utility>
 
+#include "sand/surface_factory.hpp"
+
 namespace sand {
+
+FieldSize FieldSize::of(const Rules& rules) { return {rules.columns, rules.rows, rules.tin != 0}; }
+
+std::optional<std::int64_t> FieldSize::bytesOfReplica() const {
+    if (nominal) {
+        return std::nullopt;
+    }
+    // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
+    constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
+    return kPerCell * columns * rows;
+}
+
+std::int64_t FieldSize::bytesOfHeights() const { return std::int64_t{sizeof(std::int32_t)} * columns * rows; }
+
+std::string FieldSize::text() const {
+    return std::to_string(columns) + " x " + std::to_string(rows) + (nominal ? " nominal cells of a TIN" : " cells");
+}
 
 void Start::beginAs(tin::TinStart start) {
     tin = std::make_shared<const tin::TinStart>(std::move(start));
@@ -17,6 +36,33 @@ std::int32_t Start::referenceHeight() const {
     }
     const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
     return static_cast<std::int32_t>(terrain.volume() / cells);
+}
+
+std::int64_t Start::volume() const { return tin != nullptr ? makeSurface(*this)->volume() : terrain.volume(); }
+
+std::int64_t Start::leastBytes() const {
+    if (tin != nullptr) {
+        // Replicas of 66 thousand to a million vertices took 329 to 401 bytes per vertex, depending on the layout of
+        // the mesh.
+        constexpr std::int64_t kPerVertex = 320;
+        return kPerVertex * static_cast<std::int64_t>(tin->places.size());
+    }
+    return FieldSize{rules.columns, rules.rows}.leastBytes();
+}
+
+std::int64_t Start::bytesToDraw() const {
+    // A TIN is drawn with a height for each nominal cell, from which follows how much sky each place sees.
+    return tin != nullptr ? std::int64_t{sizeof(float)} * rules.columns * rules.rows : 0;
+}
+
+SizeText Start::sizeText() const {
+    const FieldSize field{rules.columns, rules.rows};
+    if (tin != nullptr) {
+        return {"a TIN's " + std::to_string(tin->places.size()) + " vertices over " + std::to_string(field.columns) +
+                    " x " + std::to_string(field.rows) + " nominal cells",
+                "fewer of either"};
+    }
+    return {field.text(), "fewer cells"};
 }
 
 }  // namespace sand

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
@@ -9,6 +13,32 @@
 #include "sand/tin/geometry/tin_start.hpp"
 
 namespace sand {
+
+/// Size of a field, which a scene file or rules give before there is memory for its sand.
+struct FieldSize {
+    std::int32_t columns = 0, rows = 0;  // [cell]
+    bool nominal = false;                // whether a TIN is made of the field
+
+    static FieldSize of(const Rules& rules);
+
+    /// Returns a lower bound of the memory for a replica and its Start [byte]. Returns nullopt for a TIN: only its
+    /// Start gives the number of vertices, but a Start of vertices takes little memory.
+    [[nodiscard]] std::optional<std::int64_t> bytesOfReplica() const;
+    /// Returns the memory for a height per cell [byte]. A scene is loaded as heights, and a TIN is then made of them.
+    [[nodiscard]] std::int64_t bytesOfHeights() const;
+    /// Returns a lower bound of the memory for a scene of this size and a replica of it [byte].
+    [[nodiscard]] std::int64_t leastBytes() const { return bytesOfReplica().value_or(bytesOfHeights()); }
+    /// Returns "300 x 200 cells" or "300 x 200 nominal cells of a TIN".
+    [[nodiscard]] std::string text() const;
+    friend bool operator==(const FieldSize&, const FieldSize&) = default;
+};
+
+/// Size of some sand in a message of too little memory, such as "300 x 200 cells", and what saves memory: "fewer
+/// cells".
+struct SizeText {
+    std::string what;
+    std::string_view fewer;
+};
 
 /// Rules, sand and ground that a replica begins with. Equal starts and equal steps make equal sand.
 struct Start {
@@ -25,6 +55,14 @@ struct Start {
     void beginAs(tin::TinStart start);
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
+    /// Returns the exact volume of the sand, in the unit of Replica::volume(). Triangulates a TIN.
+    [[nodiscard]] std::int64_t volume() const;
+
+    /// Returns a lower bound of the memory for a replica and this Start [byte].
+    [[nodiscard]] std::int64_t leastBytes() const;
+    /// Returns a lower bound of the further memory that a program needs to draw the sand [byte].
+    [[nodiscard]] std::int64_t bytesToDraw() const;
+    [[nodiscard]] SizeText sizeText() const;
 };
 
 }  // namespace sand

@@ -156,8 +156,8 @@ void requireScene(const JournalReader& reader, const std::string& file) {
     };
     const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
     // Refuses a scene of another size before its heights are made.
-    const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
-        if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
+    const auto otherSize = [&, recorded = sand::FieldSize::of(rulesOf(reader))](const sand::FieldSize& size) {
+        if (size != recorded) {
             fail();
         }
     };
