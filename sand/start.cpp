@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/start.hpp"
 
+#include <stdexcept>
 #include <utility>
 
 #include "sand/surface_factory.hpp"
@@ -28,6 +29,13 @@ void Start::beginAs(tin::TinStart start) {
     tin = std::make_shared<const tin::TinStart>(std::move(start));
     rules.tin = tin->digest();
     terrain = HeightField(1, 1, terrain.cellSize());
+}
+
+SurfaceData Start::data() const {
+    if (tin != nullptr) {
+        throw std::logic_error("Start::data: a TIN has no triangles yet");
+    }
+    return GridData{terrain, ground.get()};
 }
 
 std::int32_t Start::referenceHeight() const {

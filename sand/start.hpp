@@ -10,6 +10,7 @@
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
 
 namespace sand {
@@ -53,6 +54,9 @@ struct Start {
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.
     void beginAs(tin::TinStart start);
+    /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from a
+    /// replica.
+    [[nodiscard]] SurfaceData data() const;
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
     /// Returns the exact volume of the sand, in the unit of Replica::volume(). Triangulates a TIN.
