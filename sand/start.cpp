@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sand/model/grid_codec.hpp"
 #include "sand/surface_factory.hpp"
 
 namespace sand {
@@ -29,6 +30,34 @@ void Start::beginAs(tin::TinStart start) {
     tin = std::make_shared<const tin::TinStart>(std::move(start));
     rules.tin = tin->digest();
     terrain = HeightField(1, 1, terrain.cellSize());
+}
+
+void Start::encodeSand(base::ByteWriter& writer) const {
+    encodeCells(terrain.cells(), terrain.bounds(), writer);
+    if (tin != nullptr) {
+        tin->encode(writer);
+    }
+    if (ground != nullptr) {
+        encodeCells(ground->cells(), terrain.bounds(), writer);
+    }
+}
+
+void Start::decodeSand(base::ByteReader& reader, double cellSize) {
+    const bool grid = rules.tin == 0;
+    terrain = HeightField(grid ? rules.columns : 1, grid ? rules.rows : 1, cellSize);
+    decodeCells(reader, terrain.bounds(), kMaxHeight, terrain.cells());
+    if (!grid) {
+        tin = std::make_shared<const tin::TinStart>(tin::TinStart::decode(reader));
+        if (tin->digest() != rules.tin || rules.ground != 0) {
+            throw base::FormatError("a scene whose TIN is not that of its rules");
+        }
+    }
+    if (rules.ground != 0) {
+        ground = std::make_shared<const Ground>(Ground::decode(reader, terrain));
+        if (ground->digest() != rules.ground) {
+            throw base::FormatError("a scene whose ground is not that of its rules");
+        }
+    }
 }
 
 SurfaceData Start::data() const {

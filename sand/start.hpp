@@ -54,8 +54,14 @@ struct Start {
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.
     void beginAs(tin::TinStart start);
-    /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from a
-    /// replica.
+    /// Writes heights, TIN and ground. The rules and the cell size are written elsewhere.
+    void encodeSand(base::ByteWriter& writer) const;
+    /// Reads what encodeSand() wrote. `rules` must have been read. Throws base::FormatError for bytes that are not the
+    /// sand of these rules.
+    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */);
+
+    /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from
+    /// a replica.
     [[nodiscard]] SurfaceData data() const;
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
