@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
+
+#include "base/names.hpp"
+
 namespace base {
 
 /// Returns whether this CPU runs code that is compiled for x86-64-v3. On another processor than x86-64 it is false, and
@@ -13,5 +18,16 @@ inline bool machineHasV3() {
     return false;
 #endif
 }
+
+/// Instruction set of code that is compiled twice. The results are the same with each. Only a CPU for which
+/// machineHasV3() is true can run `v3`.
+enum class CodePath : std::uint8_t { baseline, v3 };
+
+constexpr auto valuesOf(CodePath) {
+    return std::array{Named{CodePath::baseline, "baseline"}, Named{CodePath::v3, "x86-64-v3"}};
+}
+
+/// Returns the code path with which this CPU is fastest.
+inline CodePath fastestCodePath() { return machineHasV3() ? CodePath::v3 : CodePath::baseline; }
 
 }  // namespace base

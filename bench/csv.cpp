@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "base/code_path.hpp"
 #include "base/input_error.hpp"
-#include "bench/sand/relaxations.hpp"
 
 namespace bench {
 namespace {
@@ -65,7 +65,7 @@ void Csv::open() {
     note("machine: " + machine());
     note("compiler: " SANDWALL_COMPILER);
     note("flags: " SANDWALL_FLAGS);
-    note(std::string("code path: ") + codePath());
+    note(fmt::format("code path: {}", base::nameOf(base::fastestCodePath())));
     note(fmt::format("seed: {}", settings_.seed));
     note("command: " + settings_.commandLine);
     note("date: " + date());

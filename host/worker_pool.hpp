@@ -32,7 +32,7 @@ public:
     void run(int count, const std::function<void(int)>& task);
     /// Returns run() as an executor. The pool must outlive it.
     [[nodiscard]] base::Executor executor();
-    /// Returns the executor for sand::grid::Erosion::Options, or null for a pool of one.
+    /// Returns the executor for a replica of the sand, or null for a pool of one.
     [[nodiscard]] const base::Executor* lend() const { return threads_ > 1 ? &executor_ : nullptr; }
 
 private:

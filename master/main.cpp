@@ -101,8 +101,7 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
         const std::string& file = options.scene;
         scene::Scene scene = scene::loadScene(
             file, {.raster = [&](int columns, int rows) { master::requireMemoryOfRaster(hosts, columns, rows, file); },
-                   .field = [&](int columns, int rows,
-                                bool tin) { master::requireMemory(hosts, columns, rows, tin, file); }});
+                   .field = [&](const sand::FieldSize& size) { master::requireMemory(hosts, size, file); }});
         for (const scene::RasterStatement& statement : *scene.statements) {
             host::printLine("{}: {}", statement.file, statement.text());
         }
@@ -239,7 +238,7 @@ int runSession(const lockstep::Cluster& cluster, Options& options) {
     (void)lockstep::clockAheadOfMaster(cluster);
     try {
         const host::WorkerPool pool(options.sandThreads);
-        options.session.sweeps.executor = pool.lend();
+        options.session.executor = pool.lend();
         return master::Session(cluster, world->scene, world->wall, options.session).run();
     } catch (const std::exception& error) {
         // The ranks are in the middle of a frame and cannot be asked to end.

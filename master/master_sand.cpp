@@ -13,10 +13,10 @@ constexpr double kAuditSeconds = 1.0;
 
 }  // namespace
 
-MasterSand::MasterSand(const sand::Start& start, const sand::grid::Erosion::Options& options,
+MasterSand::MasterSand(const sand::Start& start, const base::Executor* executor,
                        const std::vector<lockstep::Fault>& faults, std::span<const std::uint8_t> state,
                        std::uint64_t edits)
-    : replica_(start, options), faults_(faults, lockstep::kMaster), edits_(edits) {
+    : replica_(start, executor), faults_(faults, lockstep::kMaster), edits_(edits) {
     if (!state.empty()) {
         replica_.decodeState(state);
     }

@@ -22,12 +22,11 @@ struct LeftOut {
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.
 class MasterSand {
 public:
-    /// `options` choose how the sand is swept. `faults` are the faults of all ranks. A resumed session gives its
+    /// `executor` is for sand::Replica. `faults` are the faults of all ranks. A resumed session gives its
     /// `state` and the number of its edits so far, `edits`. Throws base::FormatError if `state` is not a state of this
     /// sand.
-    MasterSand(const sand::Start& start, const sand::grid::Erosion::Options& options,
-               const std::vector<lockstep::Fault>& faults, std::span<const std::uint8_t> state = {},
-               std::uint64_t edits = 0);
+    MasterSand(const sand::Start& start, const base::Executor* executor, const std::vector<lockstep::Fault>& faults,
+               std::span<const std::uint8_t> state = {}, std::uint64_t edits = 0);
 
     [[nodiscard]] const sand::Replica& replica() const { return replica_; }
     /// Returns the replica so that it can be healed. Call rehash() after that.

@@ -61,9 +61,9 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
-      agreement_(
-          ranks_, labels_, options_.out, counted_, measure_.ranks(),
-          {[this] { return record_.journalFile(); }, [this] { return record_.sandOfJournal(sand_, options_.sweeps); }}),
+      agreement_(ranks_, labels_, options_.out, counted_, measure_.ranks(),
+                 {[this] { return record_.journalFile(); },
+                  [this] { return record_.sandOfJournal(sand_, options_.executor); }}),
       compared_(sand_.allTiles(), record_.before().firstDifference),
       check_({[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
               [this](const JournalChecked& checked) { record_.checked(checked); }},

@@ -50,7 +50,7 @@ Summary Session::summary() {
     summary.stateHash = sand_.hash();
     summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
-    summary.volumeInitial = scene_.tin != nullptr ? sand::Replica(scene_).volume() : scene_.terrain.volume();
+    summary.volumeInitial = scene_.volume();
     summary.volumeFinal = sand.volume();
     summary.volumeOutflow = sand.outflow();
     summary.seconds = clock_.seconds();

@@ -48,8 +48,8 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
 MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene) {
     const ResumedSession* resumed = options.record.resumed.get();
     return resumed == nullptr
-               ? MasterSand(scene, options.sweeps, faultsOf(options.drills))
-               : MasterSand(scene, options.sweeps, faultsOf(options.drills), resumed->state, resumed->edits);
+               ? MasterSand(scene, options.executor, faultsOf(options.drills))
+               : MasterSand(scene, options.executor, faultsOf(options.drills), resumed->state, resumed->edits);
 }
 
 }  // namespace master

@@ -39,7 +39,7 @@ struct SessionOptions {
     std::filesystem::path out;
     DeskOptions desk;
     RecordOptions record;
-    sand::grid::Erosion::Options sweeps;         // of the master's own replica
+    const base::Executor* executor = nullptr;    // for the master's own replicas; see sand::Replica
     std::shared_ptr<const Recording> recording;  // source of the steps of a replay, which writes no journal
     bool film = false;                           // writes a picture of every frame, and no other pictures
     std::optional<FilmEye> filmEye;

@@ -136,14 +136,14 @@ std::filesystem::path SessionRecord::journalFile() const {
 }
 
 std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sand,
-                                                            const sand::grid::Erosion::Options& sweeps) const {
+                                                            const base::Executor* executor) const {
     const std::filesystem::path file = journalFile();
     if (file.empty()) {
         return nullptr;
     }
     try {
         return std::make_unique<sand::Replica>(
-            restoreSand(file, sand.replica().stepNumber(), {.sweeps = sweeps}).terrain);
+            restoreSand(file, sand.replica().stepNumber(), {.executor = executor}).terrain);
     } catch (const std::exception& error) {  // caught, because the ranks wait for an answer
         host::printLine("{}", error.what());
         return nullptr;

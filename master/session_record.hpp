@@ -73,7 +73,7 @@ public:
     [[nodiscard]] std::filesystem::path journalFile() const;
     /// Computes the sand after the last step of `sand` from the journal. Returns null without a readable journal.
     [[nodiscard]] std::unique_ptr<sand::Replica> sandOfJournal(const MasterSand& sand,
-                                                               const sand::grid::Erosion::Options& sweeps) const;
+                                                               const base::Executor* executor) const;
 
     /// Adds the fields journal, journal_policy, journal_state, checkpoints_failed and restarts to the answer `status`
     /// of `ctl status`.

@@ -13,34 +13,22 @@
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
 #include "master/journal/journal.hpp"
-#include "sand/replica.hpp"
 #include "scene/import/raster_memory.hpp"
-#include "scene/load/memory.hpp"
 
 namespace master {
 
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
-                   const std::string& file) {
-    // The master computes the heights from which a TIN's vertices are chosen. A render rank needs as much memory.
-    if (const auto lack = lockstep::lackOfMemory(ranks, scene::bytesOfField(columns, rows, tin))) {
-        throw base::InputError(fmt::format("{}: {} x {} {} need {}; use fewer cells, or more hosts", file, columns,
-                                           rows, tin ? "nominal cells of a TIN" : "cells", *lack));
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file) {
+    // The master makes the heights. If a TIN is made of them, a render rank needs as much memory to draw it.
+    if (const auto lack = lockstep::lackOfMemory(ranks, size.leastBytes())) {
+        throw base::InputError(fmt::format("{}: {} need {}; use fewer cells, or more hosts", file, size.text(), *lack));
     }
 }
 
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file) {
-    if (scene.tin == nullptr) {
-        return requireMemory(ranks, scene.rules.columns, scene.rules.rows, false, file);
-    }
-    const int columns = scene.rules.columns;
-    const int rows = scene.rules.rows;
-    // A render rank keeps a height for each nominal cell. From these heights it computes how much sky each place sees.
-    const std::int64_t toDraw = std::int64_t{sizeof(float)} * columns * rows;
-    const auto lack = lockstep::lackOfMemory(ranks, sand::Replica::leastBytes(scene), toDraw);
-    if (lack) {
-        throw base::InputError(fmt::format(
-            "{}: a TIN of {} vertices over {} x {} nominal cells needs {}; use fewer of either, or more hosts", file,
-            scene.tin->places.size(), columns, rows, *lack));
+    if (const auto lack = lockstep::lackOfMemory(ranks, scene.leastBytes(), scene.bytesToDraw())) {
+        const sand::SizeText size = scene.sizeText();
+        throw base::InputError(
+            fmt::format("{}: {} need {}; use {}, or more hosts", file, size.what, *lack, size.fewer));
     }
 }
 
@@ -55,11 +43,10 @@ void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int col
 
 void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal) {
     const JournalReader reader(journal);
-    const sand::Rules rules = rulesOf(reader);
-    if (rules.tin == 0) {
-        requireMemory(ranks, rules.columns, rules.rows, false, journal.string());
+    const sand::FieldSize size = sand::FieldSize::of(rulesOf(reader));
+    if (size.bytesOfReplica()) {
+        requireMemory(ranks, size, journal.string());
     } else {
-        // A journal holds only a TIN's vertices, a small part of what a replica takes, so the scene may be decoded.
         requireMemory(ranks, sceneOf(reader), journal.string());
     }
 }

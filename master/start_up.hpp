@@ -13,13 +13,11 @@
 /// The master's checks before the first frame: the hosts can hold the sand, and every rank can take part.
 namespace master {
 
-/// Throws base::InputError if a host lacks memory for the replicas of its ranks. A render rank of a TIN also needs a
-/// height for each nominal cell. `file` is the scene's file.
+/// Throws base::InputError if a host lacks memory for the replicas of its ranks, and for what its render ranks draw.
+/// `file` is the scene's file.
 void requireMemory(const std::vector<lockstep::RankHost>& ranks, const scene::Scene& scene, const std::string& file);
-/// Checks the memory for a height field before it is made. With `tin` the field becomes a TIN whose vertices are not
-/// known yet, and every rank needs a height for each nominal cell.
-void requireMemory(const std::vector<lockstep::RankHost>& ranks, int columns, int rows, bool tin,
-                   const std::string& file);
+/// Checks the memory for a field before its heights are made.
+void requireMemory(const std::vector<lockstep::RankHost>& ranks, const sand::FieldSize& size, const std::string& file);
 /// Checks the memory for the pixels of a raster file before they are read. Only the master holds them.
 void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int columns, int rows,
                            const std::string& file);

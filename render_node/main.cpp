@@ -44,7 +44,7 @@ int main(int argc, char** argv) {
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);
-        return render_node::showTile(cluster, backend, {.executor = pool.lend()});
+        return render_node::showTile(cluster, backend, pool.lend());
     });
     if (status != 0) {
         cluster.abort(status);

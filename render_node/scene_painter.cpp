@@ -23,7 +23,7 @@ float encoded(float linear) {
 }  // namespace
 
 ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom)
-    : ScenePainter(scene, sand::GridData{scene.terrain}, sceneToRoom) {}
+    : ScenePainter(scene, scene.data(), sceneToRoom) {}
 
 ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom)
     : sceneToRoom_(sceneToRoom),

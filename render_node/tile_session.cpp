@@ -25,7 +25,6 @@
 #include "render_node/pointer/next_key.hpp"
 #include "render_node/pointer/pointer_reader.hpp"
 #include "render_node/tile_painter.hpp"
-#include "sand/tin/geometry/surface_view.hpp"
 #include "scene/scene.hpp"
 #include "walls/stereo_change.hpp"
 
@@ -38,7 +37,7 @@ using host::monotonicNs;
 class TileSession {
 public:
     TileSession(const lockstep::Cluster& cluster, const lockstep::SessionMessage& message, Backend backend,
-                const sand::grid::Erosion::Options& sweeps)
+                const base::Executor* executor)
         : cluster_(cluster),
           message_(message),
           faults_(message.faults, cluster.rank()),
@@ -54,7 +53,7 @@ public:
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
         const scene::Scene scene = scene::Scene::decode(message.scene);
-        terrain_.emplace(scene, sweeps);
+        terrain_.emplace(scene, executor);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
                          lockstep::hostName(), terrain_->surface().data());
         if (!message.state.empty()) {  // after the painter, because the painter's box follows from the scene's start
@@ -252,7 +251,7 @@ private:
 
 }  // namespace
 
-int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid::Erosion::Options& sweeps) {
+int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Executor* executor) {
     const std::optional<lockstep::SessionMessage> message = lockstep::broadcastSession(cluster, std::nullopt);
     if (!message) {
         return 0;  // the master has printed the reason
@@ -261,7 +260,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const sand::grid
     std::unique_ptr<TileSession> session;
     try {
         lockstep::requireStartUpLimit();
-        session = std::make_unique<TileSession>(cluster, *message, backend, sweeps);
+        session = std::make_unique<TileSession>(cluster, *message, backend, executor);
         readiness.tile = session->tile();
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();

@@ -52,12 +52,16 @@ std::uint64_t mix(std::uint64_t value) {
 
 }  // namespace
 
-Replica::Replica(const Start& start, const grid::Erosion::Options& options)
+Replica::Replica(const Start& start, const base::Executor* executor) : Replica(start, makeSurface(start, executor)) {}
+
+Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
-      surface_(makeSurface(start, options)),
-      heading_(start.rules.toolHeading) {}
+      surface_(std::move(surface)),
+      heading_(start.rules.toolHeading) {
+    (void)base::needDefaultFloats();
+}
 
 Replica::Replica(const Replica& other)
     : rules_(other.rules_),
@@ -72,22 +76,6 @@ Replica::Replica(const Replica& other)
       leftOut_(other.leftOut_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
-
-std::int64_t Replica::leastBytes(const Start& start) {
-    if (start.tin != nullptr) {
-        // Replicas of 66 thousand to a million vertices took 329 to 401 bytes per vertex, depending on the layout of
-        // the mesh.
-        constexpr std::int64_t kPerVertex = 320;
-        return kPerVertex * static_cast<std::int64_t>(start.tin->places.size());
-    }
-    return leastBytes(start.rules.columns, start.rules.rows);
-}
-
-std::int64_t Replica::leastBytes(int columns, int rows) {
-    // The height in the Start, the height in the replica, and the fluxes through two faces of the cell.
-    constexpr std::int64_t kPerCell = 4 * sizeof(std::int32_t);
-    return kPerCell * columns * rows;
-}
 
 void Replica::apply(const Step& step) {
     (void)base::needDefaultFloats();  // a driver may change the rounding of its caller at any time

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sand/grid/erosion.hpp"
+#include "base/executor.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface.hpp"
 #include "sand/start.hpp"
@@ -34,9 +34,12 @@ struct StateCopy {
 /// floats as the sand needs it (base/float_environment.hpp), and leave it so. Not thread-safe.
 class Replica {
 public:
-    /// Creates the sand of `start`. `options` choose how a height field is swept; they never change the result, and a
-    /// TIN ignores them. The replica replaces `options.ground` by the ground of `start`.
-    explicit Replica(const Start& start, const grid::Erosion::Options& options = {});
+    /// Creates the sand of `start`. `executor` shares out the work of its sweeps, and must outlive the replica. If it
+    /// is null, the calling thread does all work. A TIN does not use it.
+    explicit Replica(const Start& start, const base::Executor* executor = nullptr);
+    /// Takes `surface` as the sand of `start`. It must have been made from `start`, and may be swept in any way that
+    /// gives the same sand.
+    Replica(const Start& start, std::unique_ptr<Surface> surface);
     Replica(const Replica& other);
     Replica& operator=(const Replica& other);
     Replica(Replica&&) noexcept = default;
@@ -112,11 +115,6 @@ public:
 
     /// Returns the change of surface() since the last call. The first call returns a whole change.
     [[nodiscard]] SurfaceChange takeChange() { return surface_->takeChange(); }
-
-    /// Returns a lower bound of the memory for a replica and for the Start that it begins with [byte].
-    [[nodiscard]] static std::int64_t leastBytes(const Start& start);
-    /// Returns the lower bound for a height field of `columns` × `rows` cells [byte].
-    [[nodiscard]] static std::int64_t leastBytes(int columns, int rows);
 
     /// Returns a copy of the current sand. Another thread can compress it with SurfaceCopy::encode().
     [[nodiscard]] std::shared_ptr<const SurfaceCopy> copySand() const { return surface_->copy(); }

@@ -1,14 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
+#include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
 
 namespace sand {
+
+/// Size of a field, which a scene file or rules give before there is memory for its sand.
+struct FieldSize {
+    std::int32_t columns = 0, rows = 0;  // [cell]
+    bool nominal = false;                // whether a TIN is made of the field
+
+    static FieldSize of(const Rules& rules);
+
+    /// Returns a lower bound of the memory for a replica and its Start [byte]. Returns nullopt for a TIN: only its
+    /// Start gives the number of vertices, but a Start of vertices takes little memory.
+    [[nodiscard]] std::optional<std::int64_t> bytesOfReplica() const;
+    /// Returns the memory for a height per cell [byte]. A scene is loaded as heights, and a TIN is then made of them.
+    [[nodiscard]] std::int64_t bytesOfHeights() const;
+    /// Returns a lower bound of the memory for a scene of this size and a replica of it [byte].
+    [[nodiscard]] std::int64_t leastBytes() const { return bytesOfReplica().value_or(bytesOfHeights()); }
+    /// Returns "300 x 200 cells" or "300 x 200 nominal cells of a TIN".
+    [[nodiscard]] std::string text() const;
+    friend bool operator==(const FieldSize&, const FieldSize&) = default;
+};
+
+/// Size of some sand in a message of too little memory, such as "300 x 200 cells", and what saves memory: "fewer
+/// cells".
+struct SizeText {
+    std::string what;
+    std::string_view fewer;
+};
 
 /// Rules, sand and ground that a replica begins with. Equal starts and equal steps make equal sand.
 struct Start {
@@ -23,8 +54,25 @@ struct Start {
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.
     void beginAs(tin::TinStart start);
+    /// Writes heights, TIN and ground. The rules and the cell size are written elsewhere.
+    void encodeSand(base::ByteWriter& writer) const;
+    /// Reads what encodeSand() wrote. `rules` must have been read. Throws base::FormatError for bytes that are not the
+    /// sand of these rules.
+    void decodeSand(base::ByteReader& reader, double cellSize /* [scene unit] */);
+
+    /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from
+    /// a replica.
+    [[nodiscard]] SurfaceData data() const;
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
+    /// Returns the exact volume of the sand, in the unit of Replica::volume(). Triangulates a TIN.
+    [[nodiscard]] std::int64_t volume() const;
+
+    /// Returns a lower bound of the memory for a replica and this Start [byte].
+    [[nodiscard]] std::int64_t leastBytes() const;
+    /// Returns a lower bound of the further memory that a program needs to draw the sand [byte].
+    [[nodiscard]] std::int64_t bytesToDraw() const;
+    [[nodiscard]] SizeText sizeText() const;
 };
 
 }  // namespace sand

@@ -8,12 +8,13 @@
 
 namespace sand {
 
-std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options) {
+std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor) {
     (void)base::needDefaultFloats();
     if (start.tin != nullptr) {
         return std::make_unique<tin::TinSurface>(start.rules, start.tin);
     }
-    return std::make_unique<grid::GridSurface>(start.rules, start.terrain, start.ground, options);
+    return std::make_unique<grid::GridSurface>(start.rules, start.terrain, start.ground,
+                                               grid::Erosion::Options{.executor = executor});
 }
 
 void startFrom(const Surface& surface, Start& start) {

@@ -3,15 +3,15 @@
 
 #include <memory>
 
-#include "sand/grid/erosion.hpp"
+#include "base/executor.hpp"
 #include "sand/model/surface.hpp"
 #include "sand/start.hpp"
 
 namespace sand {
 
-/// Returns the sand that a replica begins with. `options` choose how a height field is swept; they never change the
-/// result. The ground of `start` replaces `options.ground`.
-[[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Options& options = {});
+/// Returns the sand that a replica begins with. `executor` shares out the work of a height field's sweeps, and must
+/// outlive the sand. If it is null, the calling thread does all work.
+[[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor = nullptr);
 
 /// Makes `start` begin with the current sand of `surface`, which makeSurface() made from `start`.
 void startFrom(const Surface& surface, Start& start);

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "sand/model/grid_codec.hpp"
-
 namespace scene {
 namespace {
 
@@ -63,13 +61,7 @@ base::ByteWriter Scene::encodeWithoutStatements() const {
         }
     }
     writer.put(terrain.cellSize());
-    sand::encodeCells(terrain.cells(), terrain.bounds(), writer);
-    if (tin != nullptr) {
-        tin->encode(writer);
-    }
-    if (ground != nullptr) {
-        sand::encodeCells(ground->cells(), terrain.bounds(), writer);
-    }
+    encodeSand(writer);
     writer.put(static_cast<std::uint8_t>((look.hillShade ? 1 : 0) | (look.flatShading ? 2 : 0)));
     writer.put(look.detail);
     force.encodeRest(writer);
@@ -121,21 +113,7 @@ Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     if (!(cellSize > 0)) {
         throw base::FormatError("a scene without a cell size");
     }
-    const bool grid = scene.rules.tin == 0;
-    scene.terrain = sand::HeightField(grid ? scene.rules.columns : 1, grid ? scene.rules.rows : 1, cellSize);
-    sand::decodeCells(reader, scene.terrain.bounds(), sand::kMaxHeight, scene.terrain.cells());
-    if (!grid) {
-        scene.tin = std::make_shared<const sand::tin::TinStart>(sand::tin::TinStart::decode(reader));
-        if (scene.tin->digest() != scene.rules.tin || scene.rules.ground != 0) {
-            throw base::FormatError("a scene whose TIN is not that of its rules");
-        }
-    }
-    if (scene.rules.ground != 0) {
-        scene.ground = std::make_shared<const sand::Ground>(sand::Ground::decode(reader, scene.terrain));
-        if (scene.ground->digest() != scene.rules.ground) {
-            throw base::FormatError("a scene whose ground is not that of its rules");
-        }
-    }
+    scene.decodeSand(reader, cellSize);
     const auto flags = reader.get<std::uint8_t>();
     scene.look.hillShade = (flags & 1U) != 0;
     scene.look.flatShading = (flags & 2U) != 0;

@@ -7,6 +7,7 @@
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 

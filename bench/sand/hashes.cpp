@@ -45,7 +45,7 @@ void hashes(const Settings& settings, Csv& csv) {
     for (const int side : settings.sizes) {
         for (const auto& [scheme, name] :
              {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::plainIsotropic, "G plain"}}) {
-            for (const auto path : {sand::grid::CodePath::automatic, sand::grid::CodePath::baseline}) {
+            for (const auto path : {base::fastestCodePath(), base::CodePath::baseline}) {
                 for (const int threads : {1, 2, 3, 7}) {
                     host::WorkerPool pool(threads);
                     const base::Executor executor = pool.executor();
@@ -55,9 +55,8 @@ void hashes(const Settings& settings, Csv& csv) {
                         options.path = path;
                         options.executor = &executor;
                         progress("N = {}, {}, {} threads, blocks of {}", side, name, threads, block);
-                        csv.row(SANDWALL_COMPILER, "\"" SANDWALL_FLAGS "\"", name,
-                                path == sand::grid::CodePath::automatic ? codePath() : "baseline", threads, block, side,
-                                fmt::format("{:016x}", hashAfterEdits(side, settings.seed, scheme, options)));
+                        csv.row(SANDWALL_COMPILER, "\"" SANDWALL_FLAGS "\"", name, base::nameOf(path), threads, block,
+                                side, fmt::format("{:016x}", hashAfterEdits(side, settings.seed, scheme, options)));
                     }
                 }
             }

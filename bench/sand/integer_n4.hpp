@@ -37,8 +37,8 @@ bool sweep(const IntegerN4Sweep& patch);
 /// moving.
 class IntegerN4 {
 public:
-    /// Takes the heights of `start`. With `v3`, sweeps use the instructions of x86-64-v3, which give the same heights.
-    IntegerN4(const sand::HeightField& start, const sand::Rules& rules, bool v3 = base::machineHasV3())
+    /// Takes the heights of `start`. The heights are the same with every `path`.
+    IntegerN4(const sand::HeightField& start, const sand::Rules& rules, base::CodePath path = base::fastestCodePath())
         : field_(start),
           east_(start.columns(), start.rows()),
           north_(start.columns(), start.rows()),
@@ -50,14 +50,14 @@ public:
                  .rows = start.rows(),
                  .threshold = rules.threshold,
                  .startThreshold = rules.startThreshold},
-          v3_(v3) {}
+          path_(path) {}
     IntegerN4(const IntegerN4&) = delete;
     IntegerN4& operator=(const IntegerN4&) = delete;
 
     /// Runs at most `count` sweeps. Stops after the first sweep in which no sand moves, which counts too.
     void sweep(int count) {
         for (int i = 0; i < count && !atRest_; ++i) {
-            atRest_ = !(v3_ ? v3::sweep(patch_) : baseline::sweep(patch_));
+            atRest_ = !(path_ == base::CodePath::v3 ? v3::sweep(patch_) : baseline::sweep(patch_));
             ++sweepsDone_;
         }
     }
@@ -78,7 +78,7 @@ private:
     sand::HeightField field_;
     sand::CellArray east_, north_;
     IntegerN4Sweep patch_;
-    bool v3_;
+    base::CodePath path_;
     bool atRest_ = false;
     std::int64_t sweepsDone_ = 0;
 };

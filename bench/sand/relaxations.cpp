@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "bench/sand/baseline_schemes.hpp"
@@ -46,7 +45,7 @@ public:
           talus_(static_cast<float>(rules.threshold) / sand::kUnitsPerCell),
           field_(field.columns()),
           scratch_(field.columns()),
-          v3_(std::strcmp(codePath(), "baseline") != 0) {
+          path_(base::fastestCodePath()) {
         if (field.columns() != field.rows()) {
             throw std::logic_error("the baselines need square fields");
         }
@@ -58,8 +57,8 @@ public:
     }
     void sweep(int count) override {
         for (int i = 0; i < count && !atRest(); ++i) {
-            largest_ =
-                v3_ ? v3::sweep(scheme_, talus_, field_, scratch_) : baseline::sweep(scheme_, talus_, field_, scratch_);
+            largest_ = path_ == base::CodePath::v3 ? v3::sweep(scheme_, talus_, field_, scratch_)
+                                                   : baseline::sweep(scheme_, talus_, field_, scratch_);
             ++sweepsDone_;
         }
     }
@@ -77,7 +76,7 @@ private:
     BaselineScheme scheme_;
     float talus_;
     FloatField field_, scratch_;
-    bool v3_;
+    base::CodePath path_;
     std::int64_t sweepsDone_ = 0;
     float largest_ = 1;  // largest move in the last sweep [cell]
 };
@@ -184,12 +183,6 @@ std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules) {
     sand::grid::Erosion erosion(field, rules);
     erosion.sweep(field, kMostSweeps);
     return erosion.sweepsDone();
-}
-
-const char* codePath() {
-    static const sand::HeightField field(1, 1, 1.0);
-    static const sand::grid::Erosion erosion(field, rulesFor(field));
-    return erosion.codePath();
 }
 
 }  // namespace bench

@@ -48,9 +48,6 @@ inline const std::vector<std::string> kToRest{"G plain full sweeps", "G plain", 
 /// Runs the scheme of `rules` until the sand is at rest. Returns the number of sweeps.
 std::int64_t sweepToRest(sand::HeightField& field, const sand::Rules& rules);
 
-/// Returns the code path of the sweeps on this machine: "x86-64-v3" or "baseline".
-[[nodiscard]] const char* codePath();
-
 inline constexpr int kMostSweeps = 1 << 22;      // more than any method in integers needs
 inline constexpr float kFloatTolerance = 1e-6F;  // [cell]; a baseline is at rest when no sweep moves more
 

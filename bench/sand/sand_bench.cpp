@@ -5,8 +5,10 @@
 
 #include <cstring>
 #include <random>
+#include <string>
 
 #include "sand/grid/dunes.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
@@ -28,7 +30,7 @@ void reportPerCell(benchmark::State& state, double cells) {
         benchmark::Counter(cells * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath path, std::int32_t band = 0) {
+void sweep(benchmark::State& state, sand::Scheme scheme, base::CodePath path, std::int32_t band = 0) {
     const int side = static_cast<int>(state.range(0));
     sand::HeightField field = roughField(side);
     sand::Rules rules;
@@ -40,16 +42,13 @@ void sweep(benchmark::State& state, sand::Scheme scheme, sand::grid::CodePath pa
     for (auto _ : state) {
         erosion.sweep(field, 1);
     }
-    state.SetLabel(erosion.codePath());
+    state.SetLabel(std::string(base::nameOf(path)));
     reportPerCell(state, static_cast<double>(side) * side);
 }
-BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, sand::grid::CodePath::automatic)->Arg(512)->Arg(1024)->Arg(2048);
-BENCHMARK_CAPTURE(sweep, G_band, sand::Scheme::isotropic, sand::grid::CodePath::automatic, 1)
-    ->Arg(512)
-    ->Arg(1024)
-    ->Arg(2048);
-BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, sand::grid::CodePath::automatic)->Arg(512);
-BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, sand::grid::CodePath::baseline)->Arg(512);
+BENCHMARK_CAPTURE(sweep, G, sand::Scheme::isotropic, base::fastestCodePath())->Arg(512)->Arg(1024)->Arg(2048);
+BENCHMARK_CAPTURE(sweep, G_band, sand::Scheme::isotropic, base::fastestCodePath(), 1)->Arg(512)->Arg(1024)->Arg(2048);
+BENCHMARK_CAPTURE(sweep, G_plain, sand::Scheme::plainIsotropic, base::fastestCodePath())->Arg(512);
+BENCHMARK_CAPTURE(sweep, G_baseline, sand::Scheme::isotropic, base::CodePath::baseline)->Arg(512);
 
 void copy(benchmark::State& state) {
     const auto cells = static_cast<std::size_t>(state.range(0) * state.range(0));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the time of a sweep per cell, beside the time of a copy, which is the limit of the machine's memory.
 #include <algorithm>
-#include <cstring>
 #include <random>
 #include <thread>
 
@@ -33,7 +32,7 @@ int sweepsFor(int side) { return std::clamp((1 << 24) / (side * side), 2, 64); }
 struct Variant {
     std::string name;
     sand::Scheme scheme;
-    sand::grid::CodePath path;
+    base::CodePath path;
     int threads;
 };
 
@@ -93,13 +92,13 @@ std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightFie
             field.row(y)[x] = static_cast<float>(start.height(x, y)) / sand::kUnitsPerCell;
         }
     }
-    const bool isV3 = std::strcmp(codePath(), "baseline") != 0;
+    const bool hasV3 = base::machineHasV3();
     const int count = sweepsFor(start.columns());
     std::vector<double> seconds;
     for (int run = 0; run < runs; ++run) {
         const double before = cpuSeconds();
         for (int i = 0; i < count; ++i) {
-            isV3 ? v3::sweep(scheme, 1e-3F, field, scratch) : baseline::sweep(scheme, 1e-3F, field, scratch);
+            hasV3 ? v3::sweep(scheme, 1e-3F, field, scratch) : baseline::sweep(scheme, 1e-3F, field, scratch);
         }
         seconds.push_back((cpuSeconds() - before) / count);
     }
@@ -110,12 +109,11 @@ std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightFie
 
 void throughput(const Settings& settings, Csv& csv) {
     using sand::Scheme;
-    using sand::grid::CodePath;
-    std::vector<Variant> variants{{"G", Scheme::isotropic, CodePath::automatic, 1},
-                                  {"G plain", Scheme::plainIsotropic, CodePath::automatic, 1},
-                                  {"G baseline x86-64", Scheme::isotropic, CodePath::baseline, 1}};
+    std::vector<Variant> variants{{"G", Scheme::isotropic, base::fastestCodePath(), 1},
+                                  {"G plain", Scheme::plainIsotropic, base::fastestCodePath(), 1},
+                                  {"G baseline x86-64", Scheme::isotropic, base::CodePath::baseline, 1}};
     for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
-        variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, CodePath::automatic, threads});
+        variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, base::fastestCodePath(), threads});
     }
     csv.note("a field in which all sand moves; CPU time of one thread, wall time of several threads");
     csv.note(

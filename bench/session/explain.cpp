@@ -9,6 +9,7 @@
 #include "bench/curves.hpp"
 #include "bench/sand/relaxations.hpp"
 #include "bench/timing.hpp"
+#include "sand/grid/erosion.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"

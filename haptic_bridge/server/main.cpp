@@ -229,7 +229,7 @@ void serve(const Options& options) {
     Listener listener(std::move(service), std::move(acceptor));
     // The sand and force threads end before the link they report to.
     const host::WorkerPool pool(options.sandThreads);
-    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), {.executor = pool.lend()});
+    SandThread sandThread(scene, options.pace, hand, channel, listener.output(), pool.lend());
     const auto loop = options.pace == Pace::realtime
                           ? std::make_unique<ForceLoop>(hand, channel, options.device, aboutToBeKilled())
                           : nullptr;

@@ -22,10 +22,10 @@ std::unique_ptr<HandFeed> feedFor(Pace pace, HapticTick& hand, HandChannel& chan
 }  // namespace
 
 SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-                       const sand::grid::Erosion::Options& sweeps)
+                       const base::Executor* executor)
     : pace_(pace),
       feed_(feedFor(pace, hand, channel, scene.rules.stepsPerSecond)),
-      maker_(scene, *feed_, std::move(output), sweeps) {
+      maker_(scene, *feed_, std::move(output), executor) {
     thread_ = std::thread([this, &channel] { channel.failure.run("the sand thread", [this] { run(); }); });
 }
 

@@ -34,7 +34,7 @@ public:
     /// Under Pace::fast this thread runs the ticks of `hand`, and no other thread may use it. The channel gets an
     /// exception of this thread.
     SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
-               const sand::grid::Erosion::Options& sweeps = {});
+               const base::Executor* executor = nullptr);
     ~SandThread();
     SandThread(const SandThread&) = delete;
     SandThread& operator=(const SandThread&) = delete;

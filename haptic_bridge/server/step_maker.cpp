@@ -23,11 +23,11 @@ std::string whyNot(const Decode& decode) {
 
 }  // namespace
 
-StepMaker::StepMaker(const scene::Scene& scene, HandFeed& hand, Output output,
-                     const sand::grid::Erosion::Options& sweeps, Clock clock)
+StepMaker::StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const base::Executor* executor,
+                     Clock clock)
     : hand_(hand),
       output_(std::move(output)),
-      terrain_(scene, sweeps),
+      terrain_(scene, executor),
       path_(scene.rules.stepsPerSecond),
       now_(std::move(clock)),
       clock_(scene.rules.stepsPerSecond) {}

@@ -39,8 +39,8 @@ public:
 
     using Clock = std::function<std::int64_t()>;  // [ns], monotonic
 
-    /// `hand` must outlive this object. `sweeps` configures the erosion of the replica.
-    StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const sand::grid::Erosion::Options& sweeps = {},
+    /// `hand` must outlive this object. `executor` shares out the work of its replica; see sand::Replica.
+    StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const base::Executor* executor = nullptr,
               Clock clock = host::monotonicNs);
 
     /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and

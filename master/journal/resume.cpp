@@ -156,8 +156,8 @@ void requireScene(const JournalReader& reader, const std::string& file) {
     };
     const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
     // Refuses a scene of another size before its heights are made.
-    const auto otherSize = [&, rules = rulesOf(reader)](int columns, int rows, bool tin) {
-        if (columns != rules.columns || rows != rules.rows || tin != (rules.tin != 0)) {
+    const auto otherSize = [&, recorded = sand::FieldSize::of(rulesOf(reader))](const sand::FieldSize& size) {
+        if (size != recorded) {
             fail();
         }
     };
@@ -202,7 +202,7 @@ void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& re
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
     const JournalReader head(journal);
-    const sand::Replica start(sceneOf(head), how.sweeps);
+    const sand::Replica start(sceneOf(head), how.executor);
     const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         if (at > std::min(step, how.newestCheckpoint)) {
@@ -226,8 +226,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
     return restored;
 }
 
-std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene,
-                                          const sand::grid::Erosion::Options& sweeps) {
+std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene) {
     std::error_code none;
     if (!fs::exists(journal, none)) {
         return std::nullopt;
@@ -250,8 +249,7 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     }
     session.place = reader.place();
     session.cutBytes = reader.tornBytes();
-    RestoredSand restored =
-        restoreSand(journal, session.step, {.sweeps = sweeps, .newestCheckpoint = newestCheckpointFor(walk.doubted)});
+    RestoredSand restored = restoreSand(journal, session.step, {.newestCheckpoint = newestCheckpointFor(walk.doubted)});
     session.outvoted = restored.outvoted;
     session.hash = restored.terrain.stateHash();
     session.state = restored.terrain.encodeState();

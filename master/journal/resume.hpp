@@ -32,7 +32,7 @@ struct RestoredSand {
 
 /// How the sand is computed from a journal.
 struct Restoring {
-    sand::grid::Erosion::Options sweeps{};
+    const base::Executor* executor = nullptr;  // see sand::Replica
     // Uses no checkpoint of a later step.
     std::uint64_t newestCheckpoint = std::numeric_limits<std::uint64_t>::max();
     // Another thread writes the journal. So nothing behind the wanted step is read, because it may be half written.
@@ -82,7 +82,6 @@ struct ResumedSession {
 /// Reads the session in `journal` without changing it. Returns nullopt if the file does not exist. If the file `scene`
 /// is named, it must describe the session's scene. Throws base::InputError if the session cannot be continued; the text
 /// says what can be done with the journal.
-[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene,
-                                                        const sand::grid::Erosion::Options& sweeps = {});
+[[nodiscard]] std::optional<ResumedSession> readSession(const std::filesystem::path& journal, const std::string& scene);
 
 }  // namespace master

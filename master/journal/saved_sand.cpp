@@ -18,7 +18,6 @@
 #include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/file_origin.hpp"
-#include "sand/grid/snapshot.hpp"
 #include "sand/model/step.hpp"
 
 namespace master {
@@ -140,7 +139,7 @@ private:
 
 SandPlace SandPlace::of(const scene::Scene& scene) {
     return {scene.name,         scene.rules.columns,      scene.rules.rows,
-            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.ground ^ scene.rules.tin};
+            scene.rules.aspect, scene.terrain.cellSize(), scene.rules.siteDigest()};
 }
 
 bool isSaveName(std::string_view name) {

@@ -17,7 +17,7 @@ struct SandPlace {
     std::string scene;
     std::int32_t columns = 0, rows = 0, aspect = 0;
     double cellSize = 0;       // [scene unit]
-    std::uint64_t ground = 0;  // Rules::ground of a height field, combined with Rules::tin
+    std::uint64_t ground = 0;  // Rules::siteDigest()
 
     static SandPlace of(const scene::Scene& scene);
 };

@@ -64,18 +64,16 @@ std::string pathText(const sand::Step& step, double unit) {
 
 void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes) {
     const JournalReader reader(journal);
-    const sand::Rules rules = rulesOf(reader);
-    if (rules.tin != 0) {
-        // A journal holds only a TIN's vertices, a small part of what a replica takes, so the scene may be decoded.
+    const sand::FieldSize size = sand::FieldSize::of(rulesOf(reader));
+    if (!size.bytesOfReplica()) {
         if (use == DecodedFor::replica) {
             scene::requireReplica(sceneOf(reader), journal.string(), freeBytes);
         }
     } else if (use == DecodedFor::replica) {
-        scene::requireReplica(rules.columns, rules.rows, journal.string(), freeBytes);
+        scene::requireReplica(size, journal.string(), freeBytes);
     } else {
-        scene::requireBytes(std::int64_t{sizeof(std::int32_t)} * rules.columns * rules.rows, freeBytes,
-                            journal.string(), fmt::format("{} x {} heights", rules.columns, rules.rows),
-                            "take a machine with more memory");
+        scene::requireBytes(size.bytesOfHeights(), freeBytes, journal.string(),
+                            fmt::format("{} x {} heights", size.columns, size.rows), "take a machine with more memory");
     }
 }
 

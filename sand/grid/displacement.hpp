@@ -32,9 +32,10 @@ struct Obstacle {
 /// underside and puts it down ahead.
 class Displacement {
 public:
-    /// `v3` selects code with the instructions of x86-64-v3. The results are the same without it.
-    explicit Displacement(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
-        : shape_(shape, heading, v3), v3_(v3) {}
+    /// The results are the same with every `path`.
+    explicit Displacement(const ToolShape& shape, const Heading& heading = {},
+                          base::CodePath path = base::fastestCodePath())
+        : shape_(shape, heading, path), path_(path) {}
 
     /// Effect of one drag on the sand.
     struct Work {
@@ -63,7 +64,7 @@ private:
     void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;
 
     TurnedShape shape_;
-    bool v3_;
+    base::CodePath path_;
 };
 
 }  // namespace sand::grid

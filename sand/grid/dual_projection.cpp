@@ -33,10 +33,10 @@ CellRect domainOf(const HeightField& field, Rim rim) {
 
 }  // namespace
 
-DualProjection::DualProjection(const HeightField& field, const Rules& rules, CodePath path)
+DualProjection::DualProjection(const HeightField& field, const Rules& rules, base::CodePath path)
     : field_(field),
       rules_(rules),
-      v3_(path == CodePath::automatic && base::machineHasV3()),
+      path_(path),
       northing_(static_cast<double>(kUnitsPerCell) / rules.aspect),
       twist_(std::max(northing_, 1.0)),
       domain_(domainOf(field, rules.rim)) {
@@ -124,7 +124,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
                                   .gap = sums_[1].data(),
                                   .moved = sums_[2].data(),
                                   .excess = sums_[3].data()};
-    v3_ ? v3::iterateDual(iteration) : baseline::iterateDual(iteration);
+    path_ == base::CodePath::v3 ? v3::iterateDual(iteration) : baseline::iterateDual(iteration);
     std::swap(now_, before_);
     const auto sum = [&](const std::vector<double>& sums, int count) {
         return std::accumulate(sums.begin(), sums.begin() + count, 0.0);

@@ -32,7 +32,7 @@ public:
 
     /// Prepares the projection of `field`, which must outlive it. Heights at an open rim must not be below 0, because
     /// sand falls out of the field there and never into it.
-    DualProjection(const HeightField& field, const Rules& rules, CodePath path = CodePath::automatic);
+    DualProjection(const HeightField& field, const Rules& rules, base::CodePath path = base::fastestCodePath());
 
     /// Returns whether no quad is too steep at the start.
     [[nodiscard]] bool atRest() const { return box_.empty(); }
@@ -76,7 +76,7 @@ private:
 
     const HeightField& field_;
     Rules rules_;
-    bool v3_;
+    base::CodePath path_;
     double northing_;  // slope north per difference, divided by slope east per difference
     double twist_;     // weight of the twist: the most that does not change the slope's norm, and with it the step
     CellRect domain_;  // the field, with a ring around it if the rim is open

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <optional>
 
-#include "base/code_path.hpp"
 #include "sand/grid/erosion_kernel.hpp"
 #include "sand/grid/flux_limits.hpp"
 #include "sand/model/momentum.hpp"
@@ -44,7 +43,6 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       blockSize_(std::clamp(options.blockSize, 2, kMaxBlock)),
       across_((field.columns() + blockSize_ - 1) / blockSize_),
       down_((field.rows() + blockSize_ - 1) / blockSize_),
-      v3_(options.path == CodePath::automatic && base::machineHasV3()),
       east_(field.columns(), field.rows()),
       north_(field.columns(), field.rows()),
       marked_(across_, down_),
@@ -55,8 +53,6 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
     findSliding();
     wakeAll();
 }
-
-const char* Erosion::codePath() const { return v3_ ? "x86-64-v3" : "baseline"; }
 
 std::size_t Erosion::bytes() const {
     return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + movedNow_.size() +
@@ -132,7 +128,7 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& bloc
         .slidingStride = sliding_ ? sliding_->stride() : 0,
         .room = limits ? limits->room.data() : nullptr,
         .sand = grounded ? limits->sand.data() : nullptr};
-    return v3_ ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
+    return options_.path == base::CodePath::v3 ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
 }
 
 void Erosion::balance(HeightField& field, const CellRect& blocks) {
@@ -147,7 +143,7 @@ void Erosion::balance(HeightField& field, const CellRect& blocks) {
                              .blockSize = blockSize_,
                              .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
                              .blocksAcross = across_};
-    v3_ ? v3::balance(patch) : baseline::balance(patch);
+    options_.path == base::CodePath::v3 ? v3::balance(patch) : baseline::balance(patch);
 }
 
 void Erosion::addFluxes(NetFlux& sum) const {
@@ -240,7 +236,7 @@ void Erosion::findSliding() {
                            .blockSize = blockSize_,
                            .moved = nullptr,
                            .blocksAcross = across_};
-    v3_ ? v3::markSliding(all) : baseline::markSliding(all);
+    options_.path == base::CodePath::v3 ? v3::markSliding(all) : baseline::markSliding(all);
 }
 
 void Erosion::changeRules(const Rules& rules) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/code_path.hpp"
 #include "base/executor.hpp"
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
@@ -17,9 +18,6 @@
 namespace sand::grid {
 
 struct FluxPatch;
-
-/// Instruction set of the sweeps. The heights are the same with each; `automatic` takes the fastest that the CPU has.
-enum class CodePath : std::uint8_t { automatic, baseline };
 
 /// Thermal erosion: sand slides wherever it is steeper than the talus, until all sand is at rest.
 ///
@@ -56,7 +54,7 @@ public:
     /// Choices of how to sweep. None of them changes the heights, except `ground`.
     struct Options {
         int blockSize = kDefaultBlock;  // side of a block [cell], clamped to [2, kMaxBlock]
-        CodePath path = CodePath::automatic;
+        base::CodePath path = base::fastestCodePath();
         /// Rock and wall cells, which must outlive the Erosion. Null: sand of unlimited depth without walls.
         const Ground* ground = nullptr;
         /// Threads for the sweeps, which must outlive the Erosion. Null: the calling thread does all work.
@@ -106,8 +104,6 @@ public:
     /// within one row of blocks. They are disjoint and ordered row by row from the south-west.
     [[nodiscard]] std::vector<CellRect> takeMoved();
 
-    /// Returns the instruction set in use: "x86-64-v3" or "baseline".
-    [[nodiscard]] const char* codePath() const;
     /// Returns the memory that is kept between sweeps [byte].
     [[nodiscard]] std::size_t bytes() const;
 
@@ -147,7 +143,6 @@ private:
     Options options_;
     int blockSize_;
     int across_, down_;  // size of the field [block]
-    bool v3_;
     // Fluxes of the last sweep from each cell to the east and to the north [unit]. Column -1 and row -1 are the fluxes
     // across the western and the southern rim. All fluxes of a block that is not active are 0.
     CellArray east_, north_;

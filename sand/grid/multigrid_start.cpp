@@ -94,7 +94,7 @@ double DualProjection::pressureBeyond(std::size_t component, int column, int row
     return pressure(component, column, row);
 }
 
-void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules, CodePath path) {
+void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules, base::CodePath path) {
     if (std::max(field.columns(), field.rows()) <= kLeastSide) {
         return;
     }

@@ -25,7 +25,7 @@ Extremes extremesOf(const HeightField& field) {
     return result;
 }
 
-bool isAtRest(const HeightField& field, const Rules& rules, CodePath path) {
+bool isAtRest(const HeightField& field, const Rules& rules, base::CodePath path) {
     HeightField swept = field;
     Erosion(field, rules, {.path = path}).sweep(swept, 1);
     return sameHeights(swept, field);
@@ -147,7 +147,7 @@ private:
 };
 
 /// Replaces the field by its projection, or leaves it unchanged if that is not possible.
-void project(HeightField& field, const Rules& rules, NetFlux* flux, CodePath path, Settled& result) {
+void project(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path, Settled& result) {
     Extremes extremes = extremesOf(field);
     const bool open = rules.rim == Rim::open;
     if (open && extremes.least < 0) {
@@ -170,7 +170,7 @@ void project(HeightField& field, const Rules& rules, NetFlux* flux, CodePath pat
 
 }  // namespace
 
-Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, CodePath path) {
+Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path) {
     Settled result;
     if (isAtRest(field, rules, path)) {
         return result;

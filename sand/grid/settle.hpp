@@ -29,6 +29,7 @@ struct Settled {
 /// ends too, but takes O(side²) sweeps. The function knows neither bedrock nor walls. The result does not depend on
 /// `path`. The flux through every face is added to `flux` unless that is null. Memory: 75 bytes per cell of the box in
 /// which sand moves.
-Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr, CodePath path = CodePath::automatic);
+Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr,
+               base::CodePath path = base::fastestCodePath());
 
 }  // namespace sand::grid

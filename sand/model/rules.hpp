@@ -66,6 +66,10 @@ struct Rules {
     /// Replaces the rules that an operator may change.
     void tune(const Tuning& tuning);
 
+    /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a
+    /// TIN.
+    [[nodiscard]] std::uint64_t siteDigest() const { return ground ^ tin; }
+
     void encode(base::ByteWriter& writer) const;
     /// Reads what encode() wrote. Throws base::FormatError for an unknown scheme or numbers out of range.
     static Rules decode(base::ByteReader& reader);

@@ -28,10 +28,10 @@ constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
 
 std::span<const SolePiece> solePieces() { return kSole; }
 
-TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, bool v3)
+TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, base::CodePath path)
     : shape_(shape),
       heading_(heading),
-      v3_(v3),
+      path_(path),
       length_(shape.radius),
       width_(shape.halfWidth),
       ring_(kRing + (shape.kind == ToolKind::sphere ? 0 : (isRound(shape.kind) ? shape.radius : shape.halfWidth) / 4)),
@@ -62,7 +62,8 @@ void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std:
                               .first = first.x,
                               .centre = std::int64_t{z} * kUnitsPerProbe,
                               .count = static_cast<int>(row.size())};
-        v3_ ? v3::undersidesOfSphere(cells, row.data()) : baseline::undersidesOfSphere(cells, row.data());
+        path_ == base::CodePath::v3 ? v3::undersidesOfSphere(cells, row.data())
+                                    : baseline::undersidesOfSphere(cells, row.data());
         return;
     }
     Offset offset = first;

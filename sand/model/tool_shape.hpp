@@ -79,8 +79,9 @@ public:
     /// Underside of a place that is not below the tool.
     static constexpr std::int32_t kFree = std::numeric_limits<std::int32_t>::max();
 
-    /// `v3` selects code with the instructions of x86-64-v3. The results are the same without it.
-    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3());
+    /// The results are the same with every `path`.
+    explicit TurnedShape(const ToolShape& shape, const Heading& heading = {},
+                         base::CodePath path = base::fastestCodePath());
 
     /// Returns the height of the underside over a place [unit] while the tool's centre is at height `z` [probe unit].
     /// Returns kFree if the place is not below the tool.
@@ -178,7 +179,7 @@ private:
 
     ToolShape shape_;
     Heading heading_;
-    bool v3_;
+    base::CodePath path_;
     double length_, width_;      // half length and half width [probe unit]
     std::int64_t ring_;          // distance from the outline within which places take sand [probe unit]
     double scale_;               // 1 / length of the heading vector

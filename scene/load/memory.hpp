@@ -10,16 +10,12 @@
 /// scene that is refused cannot fit, and an accepted scene may still be too large for a busy machine.
 namespace scene {
 
-/// Returns the memory that a replica of a height field of this size takes [byte]. With `tin` the vertices are not known
-/// yet. The function then returns the memory of the heights from which they are chosen.
-[[nodiscard]] std::int64_t bytesOfField(int columns, int rows, bool tin);
-
 /// Returns the checks of a program that runs one replica of the scene in `file` and may take `freeBytes`.
 [[nodiscard]] SizeChecks checksOfOneReplica(const std::string& file, std::int64_t freeBytes);
-/// Throws base::InputError unless a replica of this scene fits. Counts the vertices of a TIN. `freeBytes` is the memory
-/// that was free before the scene was made. `file` names the scene in the message.
+/// Throws base::InputError unless a replica of this scene fits. `freeBytes` is the memory that was free before the
+/// scene was made. `file` names the scene in the message.
 void requireReplica(const Scene& scene, const std::string& file, std::int64_t freeBytes);
-/// Throws base::InputError unless a replica of a height field of this size fits.
-void requireReplica(int columns, int rows, const std::string& file, std::int64_t freeBytes);
+/// Throws base::InputError unless a scene of this size fits with a replica of it.
+void requireReplica(const sand::FieldSize& size, const std::string& file, std::int64_t freeBytes);
 
 }  // namespace scene

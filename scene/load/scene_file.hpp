@@ -13,13 +13,12 @@ namespace scene {
 struct SizeChecks {
     /// Receives the size of a raster file before its pixels are read. The program holds all pixels while it reads them.
     std::function<void(int columns, int rows)> raster{};
-    /// Receives the size of the height field before its heights are made. With `tin`, a TIN is made of that field, and
-    /// the cells are its nominal cells.
+    /// Receives the size of the field before its heights are made.
     ///
     /// It is called once, as soon as the size is known. For a raster whose header marks no data, that is before its
     /// pixels are read. For other rasters, it is after the edges without data have been cut off. It is not called for a
     /// terrain of points, which has no field.
-    std::function<void(int columns, int rows, bool tin)> field{};
+    std::function<void(const sand::FieldSize& size)> field{};
 };
 
 /// Reads a scene file. Throws base::InputError with file, line and key. An error in a DEM names the DEM's line.

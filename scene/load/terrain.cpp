@@ -29,7 +29,7 @@ sand::HeightField levelField(const host::TomlTable& file, const SizeChecks& chec
     const double width = field.numberOr("width", 2.0, host::kPositive);  // (-1, 1) as in Dorjgotov et al. 2007
     field.finish();
     if (checks.field) {
-        checks.field(columns, rows, file.has("tin"));
+        checks.field({columns, rows, file.has("tin")});
     }
     return {columns, rows, width / columns};
 }
@@ -87,7 +87,7 @@ public:
     /// Called with the size of the field. Returns at once if the size was checked before.
     void askOfField(int columns, int rows) {
         if (checks_.field && !std::exchange(asked_, true)) {
-            checks_.field(columns, rows, tin_);
+            checks_.field({columns, rows, tin_});
         }
     }
 

@@ -14,6 +14,7 @@
 #include "sand/grid/dunes.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "scene/scene.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -63,10 +64,12 @@ std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const scene::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Replica terrain(scene,
-                          {.blockSize = kBlocks.at(way % kBlocks.size()),
-                           .path = way % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline,
-                           .executor = team.lend()});
+    sand::Replica terrain =
+        kind == "tin"
+            ? sand::Replica(scene, team.lend())
+            : samples::replicaSwept(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
+                                            .path = way % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline,
+                                            .executor = team.lend()});
     std::mt19937 random(53);
     for (std::uint64_t before = 0; before < (wild ? kWildEdits : kEdits); before += kTogether) {
         std::vector<std::uint64_t> hashes;

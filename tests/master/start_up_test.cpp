@@ -90,24 +90,22 @@ TEST(StartUp, RefusesAGridThatDoesNotFitTheMemory) {
 
 TEST(StartUp, RefusesATinWhoseVerticesDoNotFitTheMemory) {
     EXPECT_EQ(refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 20)), "nothing");
-    EXPECT_EQ(
-        refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 22)),
-        "s.toml: a TIN of 4194304 vertices over 512 x 512 nominal cells needs at least 2.5 GiB for the 2 ranks on "
-        "a, where 1.0 GiB are free; use fewer of either, or more hosts");
+    EXPECT_EQ(refusal({{"a", kGiB}, {"a", kGiB}}, tinOf(512, 1 << 22)),
+              "s.toml: a TIN's 4194304 vertices over 512 x 512 nominal cells need at least 2.5 GiB for the 2 ranks on "
+              "a, where 1.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesATinWhoseNominalCellsDoNotFitTheMemoryOfThoseThatDraw) {
     EXPECT_EQ(refusal({{"a", kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)), "nothing");
-    EXPECT_EQ(
-        refusal({{"a", kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)),
-        "s.toml: a TIN of 4 vertices over 16384 x 16384 nominal cells needs at least 3.0 GiB for the 3 ranks on b, "
-        "where 2.0 GiB are free; use fewer of either, or more hosts");
+    EXPECT_EQ(refusal({{"a", kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}, {"b", 2 * kGiB}}, tinOf(16384, 4)),
+              "s.toml: a TIN's 4 vertices over 16384 x 16384 nominal cells need at least 3.0 GiB for the 3 ranks on b, "
+              "where 2.0 GiB are free; use fewer of either, or more hosts");
 }
 
 TEST(StartUp, RefusesTheHeightsThatATinIsMadeOf) {
     const auto refusalOn = [](std::int64_t free) {
         return test::refusalOf([free] {
-            master::requireMemory({{"a", free}, {"b", 8 * kGiB}}, 16384, 16384, true, "s.toml");
+            master::requireMemory({{"a", free}, {"b", 8 * kGiB}}, sand::FieldSize{16384, 16384, true}, "s.toml");
         });
     };
     EXPECT_EQ(refusalOn(kGiB), "nothing") << "the heights alone are 1 GiB";

@@ -272,7 +272,7 @@ TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
     threaded.executor = pool.lend();
     threaded.blockSize = 8;
     Replica plain(scene);
-    Replica blocks(scene, threaded);
+    Replica blocks = samples::replicaSwept(scene, threaded);
     Replica joined(scene);
     std::mt19937 random(59);
     for (std::uint64_t i = 1; i <= 150; ++i) {

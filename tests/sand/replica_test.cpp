@@ -279,4 +279,19 @@ TEST(Replica, EverythingMayHaveChangedUntilSomebodyAsks) {
     EXPECT_FALSE(terrain.takeChange().whole);
 }
 
+TEST(Start, OfAHeightFieldAnswersForItsCells) {
+    scene::Scene scene = samples::flatScene(40, 24);
+    std::mt19937 random(43);
+    scene.terrain = samples::randomField(40, 24, sand::kUnitsPerCell, random);
+    ASSERT_NE(scene.terrain.volume(), 0);
+    EXPECT_EQ(scene.volume(), scene.terrain.volume());
+    EXPECT_EQ(scene.volume(), Replica(scene).volume());
+    EXPECT_EQ(scene.leastBytes(), 16 * 40 * 24);
+    EXPECT_EQ(scene.bytesToDraw(), 0) << "the cells of the replica are drawn";
+    EXPECT_EQ(scene.sizeText().what, "40 x 24 cells");
+    EXPECT_EQ(&std::get<sand::GridData>(scene.data()).field, &scene.terrain);
+    EXPECT_EQ(sand::FieldSize::of(scene.rules), (sand::FieldSize{40, 24}));
+    EXPECT_EQ(sand::FieldSize::of(scene.rules).bytesOfReplica(), scene.leastBytes());
+}
+
 }  // namespace

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "sand/replica.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -63,7 +64,7 @@ protected:
         }
     }
     [[nodiscard]] Replica replicaOn(const base::Executor* executor) const {
-        return Replica(scene_, {.blockSize = kBlock, .executor = executor});
+        return samples::replicaSwept(scene_, {.blockSize = kBlock, .executor = executor});
     }
     /// Returns step `number` of a hand that digs from step 1 to 2, lifts in step 3 and digs again from step 4 on.
     static sand::Step digging(std::uint64_t number) {

@@ -30,8 +30,8 @@ protected:
             write("s.toml", text),
             {.raster = [&](int columns, int rows) { all.push_back(fmt::format("raster {} x {}", columns, rows)); },
              .field =
-                 [&](int columns, int rows, bool tin) {
-                     all.push_back(fmt::format("{} {} x {}", tin ? "TIN" : "field", columns, rows));
+                 [&](const sand::FieldSize& size) {
+                     all.push_back(fmt::format("{} {} x {}", size.nominal ? "TIN" : "field", size.columns, size.rows));
                  }});
         return all;
     }
@@ -55,14 +55,15 @@ TEST_F(SceneMemory, OfATinIsThatOfItsVertices) {
     scene::Scene scene;
     sand::tin::TinStart start;
     start.places.resize(1 << 20);
+    scene.rules.columns = scene.rules.rows = 512;
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     const auto refusal = [&](std::int64_t free) {
         return test::refusalOf([&] { scene::requireReplica(scene, "s.toml", free); });
     };
     EXPECT_EQ(refusal(kGigabyte), "nothing");
     EXPECT_EQ(refusal(kGigabyte / 4),
-              "s.toml: a TIN's 1048576 vertices need at least 0.3 GiB, and 0.2 GiB are free: fewer vertices, or a "
-              "machine with more memory");
+              "s.toml: a TIN's 1048576 vertices over 512 x 512 nominal cells need at least 0.3 GiB, and 0.2 GiB are "
+              "free: fewer of either, or a machine with more memory");
 }
 
 // The file has a word where a pixel should be. Reading the word would be refused with another message.
@@ -82,14 +83,13 @@ TEST_F(SceneMemory, OfTheFieldIsAskedBeforeThePixelsWhereTheHeaderMarksNoData) {
     const auto refused = [&](const std::string& grid, const std::string& more) {
         write("t.asc", grid + "1 word\n");
         return test::refusalOf([&] {
-            (void)scene::loadScene(write("s.toml", text + more), {.field = [](int columns, int rows, bool tin) {
-                                       throw base::InputError(fmt::format("{} x {} {}", columns, rows, tin));
-                                   }});
+            (void)scene::loadScene(write("s.toml", text + more),
+                                   {.field = [](const sand::FieldSize& size) { throw base::InputError(size.text()); }});
         });
     };
     const std::string head = "ncols 4096\nnrows 4096\ncellsize 1\n";
-    EXPECT_EQ(refused(head, ""), "4096 x 4096 false");
-    EXPECT_EQ(refused(head, "[tin]\n"), "4096 x 4096 true");
+    EXPECT_EQ(refused(head, ""), "4096 x 4096 cells");
+    EXPECT_EQ(refused(head, "[tin]\n"), "4096 x 4096 nominal cells of a TIN");
     const std::string masked = refused(head + "NODATA_value -1\n", "");
     EXPECT_NE(masked.find("t.asc:5: a height must be"), std::string::npos)
         << "edges without data may be cut off, so that the size is still unknown: " << masked;

@@ -39,9 +39,9 @@ TEST_F(SceneFile, ItsSizeIsLookedAtBeforeItsHeightsAreMade) {
     const long before = residentKilobytes();
     for (const char* kind : {"[terrain]\n", "[terrain]\nkind = \"dunes\"\n", "[terrain]\nkind = \"dunes\"\n[tin]\n"}) {
         bool isTin = false;
-        const auto tooLarge = [&](int columns, int rows, bool tin) {
-            isTin = tin;
-            throw base::InputError(fmt::format("{} x {} are too many", columns, rows));
+        const auto tooLarge = [&](const sand::FieldSize& size) {
+            isTin = size.nominal;
+            throw base::InputError(fmt::format("{} are too many", size.text()));
         };
         EXPECT_THROW((void)scene::loadScene(write("s.toml", huge + kind), {.field = tooLarge}), base::InputError)
             << kind;
@@ -54,12 +54,11 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
     write("t.asc", "ncols 3\nnrows 2\ncellsize 1\n0 0 0\n0 0 0\n");
     const std::string raster = "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
     for (const std::string& text : {kFlat, kFlat + "[tin]\n", raster, raster + "[tin]\n"}) {
-        std::vector<std::array<int, 3>> asked;
-        (void)scene::loadScene(write("s.toml", text), {.field = [&](int columns, int rows, bool tin) {
-                                   asked.push_back({columns, rows, tin ? 1 : 0});
-                               }});
+        std::vector<sand::FieldSize> asked;
+        (void)scene::loadScene(write("s.toml", text),
+                               {.field = [&](const sand::FieldSize& size) { asked.push_back(size); }});
         const bool flat = text.starts_with(kFlat);
-        const std::array<int, 3> wanted{flat ? 512 : 3, flat ? 512 : 2, text.ends_with("[tin]\n") ? 1 : 0};
+        const sand::FieldSize wanted{flat ? 512 : 3, flat ? 512 : 2, text.ends_with("[tin]\n")};
         EXPECT_EQ(asked, std::vector{wanted}) << text;
     }
 }

@@ -236,8 +236,8 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     (void)terrain.stateHash();
     const std::size_t after = taken();
     ASSERT_GT(after, 0U);
-    EXPECT_GE(after - before, static_cast<std::size_t>(sand::Replica::leastBytes(received)));
-    EXPECT_LE(after - before, static_cast<std::size_t>(sand::Replica::leastBytes(received)) * 3 / 2);
+    EXPECT_GE(after - before, static_cast<std::size_t>(received.leastBytes()));
+    EXPECT_LE(after - before, static_cast<std::size_t>(received.leastBytes()) * 3 / 2);
 }
 #endif
 

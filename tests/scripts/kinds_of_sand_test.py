@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that few places ask whether sand is a height field or a TIN, and that a further place is found.
+"""Tests that few files know whether sand is a height field or a TIN, and that a further file is found.
 
-Sand is read as sand::SurfaceData. The four listed places select one of its two alternatives, to make something of the
-sand
-or to take something from it. All other code calls Surface, Replica or DrawnSurface. Another question is the start of a
-scene: code that reads, checks or encodes a scene asks for its table [tin].
+Sand is read as sand::SurfaceData. The four files in PLACES select one of its two alternatives, to make something of the
+sand or to take something from it. All other code calls Surface, Replica, Start, FieldSize, Rules or DrawnSurface.
+
+Outside sand/ and the two folders that draw it, a file knows a kind if it names something of one kind: a folder, a
+namespace, a class, the table [tin], or anything with the word tin. KNOWING lists these files one by one, with reasons.
+A HeightField is no kind of sand: it is a raster of heights, from which a TIN is made, too.
 
 usage: kinds_of_sand_test.py
 """
@@ -32,20 +34,39 @@ KINDS = {
     "render_node/grid/": "Grid|Cell",
     "render_node/tin/": "Tin",
 }
-# Files, and folders that end in a slash, that ask whether a scene has a table [tin].
+# Files of sand that belong to no kind, and ask whether a Start is a TIN.
 STARTS = {
-    "haptic_bridge/hand/hand_mapping.cpp": "interpolates a height field between its cells",
-    "master/": "the memory that ranks need, and the volume that a session begins with",
-    "sand/replica.cpp": "the memory that a replica needs",
-    "sand/start.cpp": "the mean height",
+    "sand/start.cpp": "memory, volume, mean height and bytes of the sand",
     "sand/surface_factory.cpp": "makes the sand",
-    "scene/load/memory.cpp": "the memory that a scene needs",
-    "scene/load/scene_file.cpp": "refuses a scheme that a TIN does not have",
-    "scene/load/terrain.cpp": "columns and rows",
-    "scene/load/tin_settings.cpp": "the spacing of points",
-    "scene/load/tin_table.cpp": "reads the table",
-    "scene/scene.cpp": "encodes the scene",
 }
+# Files outside sand/ and its drawing that know a kind of sand.
+KNOWING = {
+    "haptic_bridge/hand/hand_mapping.cpp": "interpolates a height field between its cells",
+    "haptic_bridge/hand/hand_mapping.hpp": "holds the surface of a TIN for that",
+    "render_node/surface_factory.cpp": "makes the object that draws it",
+    "scene/export/results.cpp": "takes rasters and triangles from it",
+    "scene/export/tin_raster.cpp": "samples a TIN for a raster",
+    "scene/export/tin_raster.hpp": "declares this",
+    "scene/load/scene_file.cpp": "calls the readers of [tin], and refuses a scheme that a TIN does not have",
+    "scene/load/terrain.cpp": "dunes; points need [tin]; the size that is checked is that of a TIN's cells",
+    "scene/load/tin_settings.cpp": "reads the numbers in [tin]",
+    "scene/load/tin_settings.hpp": "declares this",
+    "scene/load/tin_table.cpp": "makes a TIN of a field or of points",
+    "scene/load/tin_table.hpp": "declares this",
+    "scene/relax/main.cpp": "calls the program for rasters or the one for TINs",
+    "scene/relax/options.hpp": "declares both",
+    "scene/relax/raster_thinning.cpp": "chooses the vertices of a TIN",
+    "scene/relax/relax_grid.cpp": "brings a raster to rest",
+    "scene/relax/relax_tin.cpp": "brings a TIN to rest",
+    "scene/relax/relaxation.cpp": "sweeps of a height field, with their certificate",
+    "scene/relax/relaxation.hpp": "declares this",
+    "scene/relax/slivers.cpp": "finds thin triangles",
+    "scene/relax/slivers.hpp": "declares this",
+    "scene/relax/steepness.cpp": "slopes by the flux limits of a height field",
+    "scene/relax/tin_sand.cpp": "makes a TIN of a file",
+    "scene/relax/tin_sand.hpp": "declares this",
+}
+MOST_KNOWING = 24
 
 ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Grid|Tin)(?:Data|Change)\b|"
                          r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Cell)Change\b")
@@ -56,6 +77,10 @@ ANY_VARIANT = re.compile(r"\bstd::(?:visit\s*\(|get_if\s*<\s*\d|get\s*<\s*\d)|\b
 CLASS = re.compile(r"\b(?:GridSurface|TinSurface|SandMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
 START = re.compile(r"\btin\s*(?:==|!=)\s*nullptr|\bnullptr\s*(?:==|!=)\s*[\w.>-]*\btin\b|"
                    r"(?:\bif\s*\(|&&|\|\||!|\()\s*!?(?:\w+(?:\.|->))+tin\s*(?:\)|&&|\|\||\?)")
+# Anything of one kind: a header, a namespace, a class, FieldSize::nominal, or the word tin in a name or in a text. The
+# other words that begin with Grid are rasters and walls.
+KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Surface)\b|\bCellChange\b|\bSandMesh\b|"
+                  r"\b(?:is|has)Grid\b|(?:\.|->)nominal\b|\b[tT]in(?![a-z])\w*|\b\w*[a-z0-9_]Tin(?![a-z])\w*|\b\w+_tin(?![a-z])\w*")
 
 
 def without_comments(text):
@@ -85,10 +110,14 @@ def asking(files):
 
 
 def starting(files):
-    """Returns the files that ask for the TIN of a start, or the listed folders that hold them."""
-    folders = [path for path in STARTS if path.endswith("/")]
-    return {next((folder for folder in folders if path.startswith(folder)), path)
-            for path, text in files.items() if START.search(text)}
+    """Returns the files that ask for the TIN of a start."""
+    return {path for path, text in files.items() if START.search(text)}
+
+
+def knowing(files):
+    """Returns the files outside sand/ and its drawing that know a kind of sand."""
+    return {path for path, text in files.items()
+            if not path.startswith(("sand/", "render_node/grid/", "render_node/tin/")) and KIND.search(text)}
 
 
 class KindsOfSand(unittest.TestCase):
@@ -100,8 +129,15 @@ class KindsOfSand(unittest.TestCase):
         self.assertEqual(more, {}, "call Surface, Replica or DrawnSurface, which know the kind of sand")
         self.assertEqual(sorted(found), sorted(PLACES), "remove a place that no longer asks from the list PLACES")
 
-    def test_a_scene_is_asked_for_its_tin_where_it_is_read_or_begins(self):
-        self.assertEqual(sorted(starting(self.files)), sorted(STARTS))
+    def test_few_files_outside_sand_know_a_kind(self):
+        self.assertEqual(sorted(knowing(self.files)), sorted(KNOWING),
+                         "ask Start, FieldSize, Rules, Surface or Replica; remove a file that no longer knows")
+        self.assertLessEqual(len(KNOWING), MOST_KNOWING)
+
+    def test_two_files_of_sand_ask_for_the_tin_of_a_start(self):
+        of_none = {path: text for path, text in self.files.items()
+                   if path.startswith("sand/") and not path.startswith(("sand/grid/", "sand/tin/"))}
+        self.assertEqual(sorted(starting(of_none)), sorted(STARTS))
 
     def test_a_fifth_place_is_found_however_it_asks(self):
         for path, text in {
@@ -127,11 +163,27 @@ class KindsOfSand(unittest.TestCase):
             "host/event.cpp": "return std::visit(Print{}, value);",
         }), set())
 
-    def test_a_further_question_to_a_scene_is_found(self):
+    def test_a_further_question_to_a_start_is_found(self):
         for text in ("if (scene.tin != nullptr) {", "return nullptr == scene.tin;", "const bool tin = !(scene->tin);",
                      "return (scene.tin ? 1 : 2);", "if (scene.tin && more) {"):
             with self.subTest(text):
-                self.assertEqual(starting({"walls/wall.cpp": text}), {"walls/wall.cpp"})
+                self.assertEqual(starting({"sand/replica.cpp": text}), {"sand/replica.cpp"})
+
+    def test_a_further_file_that_knows_a_kind_is_found(self):
+        for text in ("#include \"sand/grid/erosion.hpp\"", "#include \"render_node/tin/mesh.hpp\"",
+                     "const sand::grid::Erosion::Options& sweeps", "using namespace sand::tin;  tin::Mesh mesh;",
+                     "if (rules.tin == 0) {", "return scene->tin;", "file.has(\"tin\")", "void check(int rows, bool tin);",
+                     "bool isTin() const;", "const bool has_tin = true;", "sand::TinStart start;", "TinMesh mesh;", "bool tin_;",
+                     "sand::GridData{scene.terrain}", "if (size.nominal) {", "std::get<sand::CellChange>(parts)"):
+            for path in ("master/start_up.cpp", "scene/load/memory.hpp", "render_node/sand_box.cpp"):
+                with self.subTest(text, path=path):
+                    self.assertEqual(knowing({path: text}), {path})
+
+    def test_other_words_are_free(self):
+        for text in ("const walls::Grid& grid = *wall.grid;", "EsriGrid grid;", "MaterialGrid grid() const;", "drawGrid(target);",
+                     "Pattern::grid", "int setting = min(latin, tint, hinting);", "kTinted", "sand::HeightField field;"):
+            with self.subTest(text):
+                self.assertEqual(knowing({"walls/wall.cpp": text}), set())
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
+
 #include "sand/grid/surface.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
@@ -8,6 +10,11 @@
 /// Access to the sand of a replica, for tests that know its kind. Each function throws if the sand is of the other
 /// kind.
 namespace samples {
+
+/// Returns a replica of a height field that is swept with these options.
+inline sand::Replica replicaSwept(const sand::Start& start, const sand::grid::Erosion::Options& options) {
+    return {start, std::make_unique<sand::grid::GridSurface>(start.rules, start.terrain, start.ground, options)};
+}
 
 inline const sand::HeightField& fieldOf(const sand::Replica& terrain) {
     return std::get<sand::GridData>(terrain.surface().data()).field;

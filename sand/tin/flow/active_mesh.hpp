@@ -23,7 +23,8 @@ public:
     static constexpr double kFree = 0x1p40;  // underside without an obstacle, above all sand [unit]
 
     /// With `wide`, uses integers from the start, for tests.
-    explicit ActiveMesh(bool v3 = base::machineHasV3(), bool wide = false) : v3_(v3), alwaysWide_(wide) {}
+    explicit ActiveMesh(base::CodePath path = base::fastestCodePath(), bool wide = false)
+        : path_(path), alwaysWide_(wide) {}
 
     /// Adds a vertex and returns its number. `spills`: whether it is on an open rim, where each sweep lets all sand
     /// above height 0 fall. `moving`: whether sand flowed there in the last sweep.
@@ -94,7 +95,8 @@ private:
     void findHeld();
     SweepResult moveWide();
 
-    bool v3_, alwaysWide_;
+    base::CodePath path_;
+    bool alwaysWide_;
     bool isWide_ = alwaysWide_;
     double largestStar_ = 0, greatestHeight_ = 0;
     std::vector<double> volumes_, stars_, undersides_;  // by vertex

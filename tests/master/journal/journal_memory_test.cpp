@@ -83,7 +83,7 @@ TEST_F(JournalMemory, OfATinIsRefused) {
     const std::filesystem::path journal = journalOf(scene::loadScene(file).encode());
     EXPECT_EQ(test::refusalOf([&] { master::requireMemoryOfJournal({{"a", kGibibyte}}, journal); }), "nothing");
     const std::string refused = test::refusalOf([&] { master::requireMemoryOfJournal({{"a", 1000}}, journal); });
-    EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN of ")) << refused;
+    EXPECT_TRUE(refused.starts_with(journal.string() + ": a TIN's ")) << refused;
     const std::string replayed =
         test::refusalOf([&] { master::requireMemory(journal, master::DecodedFor::replica, 1000); });
     EXPECT_TRUE(replayed.starts_with(journal.string() + ": a TIN's ")) << replayed;

@@ -10,6 +10,7 @@
 #include "sand/grid/dunes.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/relaxing.hpp"
+#include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ class Cover : public testing::TestWithParam<std::size_t> {};
 
 struct Way {
     int threads, block;
-    sand::grid::CodePath path;
+    base::CodePath path;
 };
 
 // Pairwise cover: each number of threads meets each size of block in one of the three kinds of build. scripts/test.sh
@@ -35,7 +36,7 @@ constexpr std::array kBlocks{16, 32, 64};
 
 Way wayOf(std::size_t i) {
     return {kThreads[i], kBlocks[(i + kBuild) % kBlocks.size()],
-            i % 2 == 0 ? sand::grid::CodePath::automatic : sand::grid::CodePath::baseline};
+            i % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline};
 }
 
 /// Dunes on a field of odd size with an open rim.
@@ -56,7 +57,8 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     const Way way = wayOf(GetParam());
     host::WorkerPool team(way.threads);
     const base::Executor executor = team.executor();
-    sand::Replica terrain(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
+    sand::Replica terrain =
+        samples::replicaSwept(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
     std::uint64_t all = 0;  // combines every step's hash, so that each of them counts
     for (std::uint64_t edit = 1; edit <= (samples::kSlowBuild ? kFew : kEdits); ++edit) {

@@ -11,10 +11,10 @@
 
 namespace {
 
+using base::CodePath;
 using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
-using sand::grid::CodePath;
 using sand::grid::Erosion;
 
 /// Returns a plane that rises in the direction (3, 4) or one of its mirror images, just below 45 degrees. It is
@@ -75,7 +75,7 @@ TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
         HeightField expected = start;
         const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, kSweeps);
         for (const int block : {2, 16, 31, 32, 64}) {
-            for (const auto path : {CodePath::automatic, CodePath::baseline}) {
+            for (const auto path : {base::fastestCodePath(), CodePath::baseline}) {
                 for (const base::Executor* threads : {static_cast<const base::Executor*>(nullptr), &executor}) {
                     HeightField field = start;
                     Erosion erosion(field, rules, {.blockSize = block, .path = path, .executor = threads});

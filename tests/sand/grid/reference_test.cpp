@@ -16,11 +16,11 @@
 
 namespace {
 
-using sand::grid::CodePath;
+using base::CodePath;
 using sand::grid::Erosion;
 
 constexpr std::array kBlocks{2, 8, 13, 32, 128};
-constexpr std::array kPaths{CodePath::automatic, CodePath::baseline};
+const std::array kPaths{base::fastestCodePath(), CodePath::baseline};
 
 /// Random case: a field, its laws, its ground and a tool.
 class World {
@@ -120,7 +120,7 @@ public:
           expected_(field_, world_.rules, world_.ground.get()) {}
 
     [[nodiscard]] std::string text() const {
-        return fmt::format("{}; blocks of {}, {}", world_.text(), options_.blockSize, erosion_.codePath());
+        return fmt::format("{}; blocks of {}, {}", world_.text(), options_.blockSize, base::nameOf(options_.path));
     }
 
     void sweep() {

@@ -240,7 +240,7 @@ TEST(Settle, InstructionSetChangesNothing) {
     HeightField baseline = start;
     const Rules rules = settlingRules(start);
     sand::grid::settle(automatic, rules);
-    sand::grid::settle(baseline, rules, nullptr, sand::grid::CodePath::baseline);
+    sand::grid::settle(baseline, rules, nullptr, base::CodePath::baseline);
     EXPECT_TRUE(sameHeights(automatic, baseline));
 }
 

@@ -356,8 +356,8 @@ TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
         const auto z = static_cast<std::int32_t>(anyOf(-sand::kMaxProbe, sand::kMaxProbe) >> (i % 3 * 6));
         const sand::Offset first{anyOf(-radius, radius), anyOf(-radius, radius)};
         std::array<std::int32_t, 37> row{};
-        for (const bool v3 : {false, base::machineHasV3()}) {
-            const sand::TurnedShape tool(shape, {}, v3);
+        for (const base::CodePath path : {base::CodePath::baseline, base::fastestCodePath()}) {
+            const sand::TurnedShape tool(shape, {}, path);
             tool.undersides(z, first, row);
             for (std::int64_t x = 0; x < std::ssize(row); ++x) {
                 ASSERT_EQ(row[static_cast<std::size_t>(x)], tool.underside(z, {first.x + x * kProbePerCell, first.y}))

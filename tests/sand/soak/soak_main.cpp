@@ -42,10 +42,10 @@ int run(const Options& options) {
     host::WorkerPool team(options.threads);
     const base::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
-    sand::Replica terrain(dunes(options),
-                          {.blockSize = options.block,
-                           .path = options.baseline ? sand::grid::CodePath::baseline : sand::grid::CodePath::automatic,
-                           .executor = options.threads > 1 ? &executor : nullptr});
+    sand::Replica terrain = samples::replicaSwept(
+        dunes(options), {.blockSize = options.block,
+                         .path = options.baseline ? base::CodePath::baseline : base::fastestCodePath(),
+                         .executor = options.threads > 1 ? &executor : nullptr});
     const std::int64_t volume = samples::fieldOf(terrain).volume();
     std::mt19937 random(options.seed);
     std::uint64_t all = 0;

@@ -55,9 +55,9 @@ std::vector<std::int64_t> volumesOf(const ActiveMesh& sand) {
 }
 
 void expectTheSameSand(const VertexSand& layer, bool held, bool band, bool open) {
-    ActiveMesh doubles = everythingOf(layer, held, open, ActiveMesh(false));
-    ActiveMesh integers = everythingOf(layer, held, open, ActiveMesh(false, true));
-    ActiveMesh fast = everythingOf(layer, held, open, ActiveMesh(base::machineHasV3()));
+    ActiveMesh doubles = everythingOf(layer, held, open, ActiveMesh(base::CodePath::baseline));
+    ActiveMesh integers = everythingOf(layer, held, open, ActiveMesh(base::CodePath::baseline, true));
+    ActiveMesh fast = everythingOf(layer, held, open, ActiveMesh(base::fastestCodePath()));
     std::int64_t fell = 0;
     for (int done = 0; done < 200; ++done) {
         const double momentum = done % 40 < 20 ? 0 : 0.9;  // with and without momentum while much sand moves

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "base/float_environment.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
@@ -103,6 +104,21 @@ TEST_F(TinTerrain, TravelsWholeWithItsScene) {
     EXPECT_EQ(read.tin->settings, start.tin->settings);
     EXPECT_EQ(Replica(read).stateHash(), Replica(start).stateHash());
     EXPECT_EQ(read.referenceHeight(), start.referenceHeight());
+}
+
+TEST_F(TinTerrain, AStartAnswersForItsVerticesAndItsNominalCells) {
+    const scene::Scene start = scene();
+    EXPECT_EQ(start.volume(), Replica(start).volume());
+    const std::int64_t vertices = static_cast<std::int64_t>(start.tin->places.size());
+    EXPECT_EQ(start.leastBytes(), 320 * vertices);
+    EXPECT_EQ(start.bytesToDraw(), 4 * 64 * 64) << "a height per nominal cell";
+    EXPECT_EQ(start.sizeText().what, fmt::format("a TIN's {} vertices over 64 x 64 nominal cells", vertices));
+    const sand::FieldSize size = sand::FieldSize::of(start.rules);
+    EXPECT_EQ(size, (sand::FieldSize{64, 64, true}));
+    EXPECT_NE(size, (sand::FieldSize{64, 64}));
+    EXPECT_FALSE(size.bytesOfReplica().has_value()) << "the rules do not say how many vertices there are";
+    EXPECT_EQ(size.leastBytes(), 4 * 64 * 64) << "the heights of which the TIN is made";
+    EXPECT_THROW((void)start.data(), std::logic_error);
 }
 
 TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {

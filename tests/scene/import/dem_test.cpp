@@ -236,7 +236,7 @@ TEST_F(Import, ARastersSizeIsLookedAtBeforeItsPixelsAreRead) {
     bool asked = false;
     const std::string file = write("s.toml", text(kDem));
     EXPECT_THROW((void)scene::loadScene(file, {.field =
-                                                   [&](int, int, bool) {
+                                                   [&](const sand::FieldSize&) {
                                                        asked = true;
                                                        throw base::InputError("too many");
                                                    }}),

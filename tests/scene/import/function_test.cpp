@@ -23,12 +23,10 @@ TEST_F(Import, AFunctionIsEvaluatedInTheMiddleOfEveryCell) {
 // The function has no finite value anywhere. Evaluating it first would give another message.
 TEST_F(Import, AFunctionsSizeIsLookedAtBeforeItIsEvaluated) {
     const std::string file = write("s.toml", text(function("sqrt(-1)", "columns = 400")));
-    const auto tooLarge = [](int columns, int rows, bool) {
-        throw std::length_error(std::to_string(columns) + " x " + std::to_string(rows));
-    };
+    const auto tooLarge = [](const sand::FieldSize& size) { throw std::length_error(size.text()); };
     EXPECT_THROW((void)scene::loadScene(file, {.field = tooLarge}), std::length_error);
     int asked = 0;
-    (void)scene::loadScene(write("s.toml", text(function("x"))), {.field = [&](int, int, bool) { ++asked; }});
+    (void)scene::loadScene(write("s.toml", text(function("x"))), {.field = [&](const sand::FieldSize&) { ++asked; }});
     EXPECT_EQ(asked, 1);
 }
 
