@@ -88,17 +88,17 @@ TEST(JsonFields, AreWrittenInTheirOrderUnderTheirNames) {
     All all;
     all.other = printed::Place{-1, 0};
     all.later = 4;
-    const ordered_json json = host::jsonOf(all);
-    EXPECT_EQ(json.at("other"), (ordered_json{{"x", -1}, {"y", 0.0}}));
-    EXPECT_EQ(json.at("later"), 4);
+    const ordered_json written = host::jsonOf(all);
+    EXPECT_EQ(written.at("other"), (ordered_json{{"x", -1}, {"y", 0.0}}));
+    EXPECT_EQ(written.at("later"), 4);
 }
 
 TEST(JsonFields, JoinTheFieldsOfAnObject) {
-    nlohmann::json json{{"place", {{"z", 1}}}, {"frame", 2}};
-    host::JsonWriter writer(json);
+    nlohmann::json written{{"place", {{"z", 1}}}, {"frame", 2}};
+    host::JsonWriter writer(written);
     All::fields(*std::make_unique<const All>(), writer);
-    EXPECT_EQ(json["place"], (nlohmann::json{{"x", 8}, {"y", 9.0}, {"sum", 17.0}, {"z", 1}}));
-    EXPECT_EQ(json["frame"], 2);
+    EXPECT_EQ(written["place"], (nlohmann::json{{"x", 8}, {"y", 9.0}, {"sum", 17.0}, {"z", 1}}));
+    EXPECT_EQ(written["frame"], 2);
 }
 
 TEST(JsonFields, ComeBackAsTheyWent) {
@@ -110,9 +110,9 @@ TEST(JsonFields, ComeBackAsTheyWent) {
 TEST(JsonFields, NameTheKeyAndTheValueThatIsNotAllowed) {
     const ordered_json good = host::jsonOf(Counts{1, {2, 3}, 4, 0.5, 6, "seven"});
     const auto refusal = [&good](const char* key, const ordered_json& value) {
-        ordered_json json = good;
-        json[ordered_json::json_pointer(key)] = value;
-        return test::refusalOf([&] { (void)host::fromJson<Counts>(json); });
+        ordered_json written = good;
+        written[ordered_json::json_pointer(key)] = value;
+        return test::refusalOf([&] { (void)host::fromJson<Counts>(written); });
     };
     const std::string count = " must be a whole number from 0 to 1000000000000";
     EXPECT_EQ(refusal("/all", 1'000'000'000'000U), "nothing");
@@ -134,9 +134,9 @@ TEST(JsonFields, NameTheKeyAndTheValueThatIsNotAllowed) {
 TEST(JsonFields, RefuseAKeyThatIsMissing) {
     const ordered_json good = host::jsonOf(Counts{1, {2, 3}, 4, 0.5, 6, "seven"});
     for (const char* key : {"all", "by", "rank", "seconds", "later", "text"}) {
-        ordered_json json = good;
-        json.erase(key);
-        EXPECT_EQ(test::refusalOf([&] { (void)host::fromJson<Counts>(json); }) == "nothing",
+        ordered_json written = good;
+        written.erase(key);
+        EXPECT_EQ(test::refusalOf([&] { (void)host::fromJson<Counts>(written); }) == "nothing",
                   key == std::string("later"))
             << key;
     }
