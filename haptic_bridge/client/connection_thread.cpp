@@ -154,7 +154,6 @@ void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && shelf.link() == Link::linked) {
             grant_.asked(request.edit);
-            connection_->expectLoads(grant_.awaitsLoad());  // a load comes back in a step
             connection_->send(request);
         }
     });

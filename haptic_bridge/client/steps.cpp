@@ -35,7 +35,6 @@ void Client::Session::take(Link link, StepMessage& message) {
                                RefusalCode::garbage);
             break;
         case Grant::Arrival::next:
-            connection_->expectLoads(grant_.awaitsLoad());
             if (shelf.add(
                     TimedStep{std::move(message.step), message.serverTimeNs, message.stateHash, host::monotonicNs()})) {
                 connection_->pause();

@@ -28,8 +28,7 @@ constexpr std::uint8_t typeOf() {
 }  // namespace
 
 bool MessageReader::mayBeLong(std::uint8_t type) const {
-    const bool load = type == typeOf<EditRequest>() || type == typeOf<StepMessage>();
-    return type == typeOf<State>() ? stateExpected_ : load && loadsExpected_;
+    return type == typeOf<State>() ? stateExpected_ : type == typeOf<EditRequest>() && loadsExpected_;
 }
 
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {

@@ -16,10 +16,10 @@ public:
     void add(sand::Edit edit) { edits_.push_back(std::move(edit)); }
     /// Returns edit `i`, counted from 0; no edit if fewer wait.
     [[nodiscard]] sand::Edit at(std::size_t i) const { return i < edits_.size() ? edits_[i] : sand::Edit(); }
-    /// Removes the edits that are in `steps`.
+    /// Removes the edits whose numbers are in `steps`.
     void removeThoseIn(const std::vector<haptic_bridge::TimedStep>& steps) {
         for (const haptic_bridge::TimedStep& timed : steps) {
-            if (timed.step.edit.any() && !edits_.empty() && timed.step.edit == edits_.front()) {
+            if (timed.step.edit.any() && !edits_.empty() && timed.step.edit.number == edits_.front().number) {
                 edits_.pop_front();
                 askedEpoch_ = 0;
             }
