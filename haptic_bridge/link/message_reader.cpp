@@ -66,7 +66,12 @@ std::optional<Message> MessageReader::next() {
     if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
         throw base::FormatError("a state that was not requested");
     }
-    return decode(stream.subspan(kLengthBytes, length));
+    Message message = decode(stream.subspan(kLengthBytes, length));
+    if (begin_ == buffer_.size() && buffer_.capacity() > kMaxKept) {  // frees the memory of a long message
+        buffer_ = {};
+        begin_ = 0;
+    }
+    return message;
 }
 
 }  // namespace haptic_bridge

@@ -43,7 +43,7 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
     if (edit.kind == Edit::tune) {
         edit.tuning.encode(writer);
     } else if (edit.kind == Edit::load) {
-        writer.putBlock(edit.sand ? *edit.sand : base::Bytes());
+        writer.putBlock(edit.sand ? std::span(*edit.sand) : std::span<const std::uint8_t>());
     }
 }
 
