@@ -99,6 +99,8 @@ void Measurements::describe(nlohmann::json& status, const std::vector<std::strin
 void Measurements::fill(Summary& summary) const {
     summary.frameMs = frameMs_;
     summary.lateFrames = lateFrames_;
+    summary.hand.frames = framesWithHand_;
+    summary.hand.atEnd = handed_;
     summary.pausedSeconds = pausedSeconds_;
     summary.fullDiskSeconds = fullDiskSeconds_;
     summary.skewUs = skewUs_;

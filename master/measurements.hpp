@@ -36,6 +36,12 @@ public:
     void add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
              const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset);
 
+    /// Adds whether a frame has a hand that moves the tool.
+    void addHand(bool handed) {
+        handed_ = handed;
+        framesWithHand_ += handed ? 1 : 0;
+    }
+
     /// Prints the line of progress and emits the event `progress`, at most once per second, and always if `last` is
     /// true.
     void sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
@@ -61,7 +67,8 @@ private:
     lockstep::RankStatistics ranks_;
     lockstep::Statistics frameMs_, skewUs_, broadcastBytes_;
     Latency latency_;
-    std::uint64_t lateFrames_ = 0;
+    std::uint64_t lateFrames_ = 0, framesWithHand_ = 0;
+    bool handed_ = false;  // whether the last frame had a hand
     double pausedSeconds_ = 0, fullDiskSeconds_ = 0;
     double lastFrameMs_ = 0, lastSkewUs_ = 0;
     double fps_ = 0;                 // over about the last second

@@ -45,6 +45,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       input_(options.readInput),
       captures_(out_),
       force_(options.force),
+      lastEdit_(options.lastEdit),
       pointer_(options.pointer) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
@@ -185,6 +186,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
+    edit.number = ++lastEdit_;
     session_.requests->request(edit);
     edits_.add({std::move(edit), client, material});
 }
@@ -266,7 +268,7 @@ void OperatorDesk::tellWhoWaitsForRoom() {
 
 void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
     for (const haptic_bridge::TimedStep& timed : steps) {
-        if (const auto client = edits_.shown(timed.step.edit)) {
+        if (const auto client = edits_.shown(timed.step.edit.number)) {
             control_->answer(*client, line({{"ok", true}, {"step", timed.step.number}}));
         }
     }

@@ -31,6 +31,7 @@ struct DeskOptions {
     lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // source of the head's pose
     std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
+    std::uint64_t lastEdit = 0;   // last number of an edit in the resumed session; 0 in a new one
     bool pointer = false;  // the hand is the pointer, so that keys in the windows are commands (pointer_keys.hpp)
 };
 
@@ -112,6 +113,7 @@ private:
     BackgroundJobs jobs_;
     Captures captures_;
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
+    std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool pointer_;
     bool paused_ = false;
 };

@@ -23,9 +23,6 @@ namespace {
 
 using host::monotonicNs;
 
-// The launcher kills a session 120 s after it was asked to stop, and pictures take time, too.
-constexpr std::int64_t kLongestWaitNs = 90'000'000'000;
-
 std::vector<sand::Step> untimed(const std::vector<haptic_bridge::TimedStep>& steps) {
     std::vector<sand::Step> result;
     result.reserve(steps.size());
@@ -39,8 +36,7 @@ std::vector<sand::Step> untimed(const std::vector<haptic_bridge::TimedStep>& ste
 
 Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
                  SessionOptions options)
-    : cluster_(cluster),
-      scene_(scene),
+    : scene_(scene),
       wall_(wall),
       options_(completed(std::move(options))),
       labels_(RankLabels::of(cluster, wall)),
@@ -48,8 +44,6 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
                [this](int rank, const std::string& line) {
                    (void)writeFailure(labels_.failure("hung", rank, line), options_.out);
                }),
-      ranks_(barrier_),
-      viewProof_(wall.encode()),
       frame_(options_.record.resumed ? options_.record.resumed->frame : 0),
       clock_(options_.refreshHz.value_or(wall.refreshHz), options_.pace),
       sand_(sandOf(options_, scene)),
@@ -61,13 +55,16 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
-      agreement_(ranks_, labels_, options_.out, counted_, measure_.ranks(),
-                 {[this] { return record_.journalFile(); },
-                  [this] { return record_.sandOfJournal(sand_, options_.executor); }}),
-      compared_(sand_.allTiles(), record_.before().firstDifference),
-      check_({[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
-              [this](const JournalChecked& checked) { record_.checked(checked); }},
-             options_.out, counted_) {
+      check_(wall, labels_, options_.out,
+             {barrier_,
+              counted_,
+              measure_.ranks(),
+              {[this] { return record_.journalFile(); },
+               [this] { return record_.sandOfJournal(sand_, options_.executor); }},
+              {[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
+               [this](const JournalChecked& checked) { record_.checked(checked); }},
+              sand_.allTiles(),
+              record_.before().firstDifference}) {
     if (options_.record.resumed && options_.record.resumed->outvoted) {
         check_.tellResumed(*options_.record.resumed->outvoted);
     }
@@ -116,12 +113,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     const std::uint64_t shownThen = sand_.replica().stepNumber() + steps.size();
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
     const bool last = ends() || shownThen >= options_.steps;
-    if (last && check_.pending() && endsSince_ == 0) {
-        endsSince_ = now;
-        host::printLine("the session ends when its journal has been replayed; the replay is at step {} of {}",
-                        check_.step(), shownThen);
-    }
-    frame.stop = last && (!check_.pending() || now - endsSince_ > kLongestWaitNs);
+    frame.stop = last && check_.mayEnd(now, shownThen);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.wantsCapture());
     // The last frame compares the whole sand, because no later frame finds what is wrong now.
     frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
@@ -172,12 +164,8 @@ bool Session::showFrame(bool& more) {
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
     tellLeftOut();
-    if (auto right = check_.rightSand(sand_.replica().stepNumber())) {
-        agreement_.overrule(std::move(right));
-    }
-    const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
-                                 0,           sand_.hash(),  viewProof_.hash(frame.view)};
-    if (!agree(frame, mine)) {
+    check_.applied(sand_.replica().stepNumber());
+    if (!agree(frame)) {
         return false;
     }
     const Swap swap = clock_.swapped(monotonicNs());
@@ -188,53 +176,27 @@ bool Session::showFrame(bool& more) {
         desk_.takeCapture(frame.frame, barrier_);
     }
     steps_->shown(sand_.replica().stepNumber(), swap.interval, held);
-    handed_ = steps_->handed();
-    framesWithHand_ += handed_ ? 1 : 0;
+    measure_.addHand(steps_->handed());
     if (!steps_->proveServer(steps, sand_.hash())) {
-        ++counted_.serverDivergences;
-        compared_.differed(frame.frame);
+        check_.serverDiffered(frame.frame);
     }
-    followCheck(frame.frame);
+    check_.shown(frame.frame, shownSand());
     record_.shown(swap, frame.frame, sand_, steps_->epoch());
     record_.keepIncidents(incidents(), swap.at);
     more = !frame.stop;
     return true;
 }
 
-bool Session::agree(const lockstep::FrameMessage& frame, const lockstep::Arrival& mine) {
-    const std::uint64_t before = counted_.divergences;
-    const bool agreed = agreement_.reach(mine, sand_, *steps_, clock_.next(held()));
-    const bool differed = counted_.divergences != before;
-    if (differed) {
-        compared_.differed(frame.frame);
-    }
-    if (agreed) {
-        // Ranks that differed have hashed the whole sand again.
-        compared_.agreed(frame.frame, differed ? sand_.allTiles() : frame.auditTiles);
-    }
-    agreedToEnd_ = agreed && frame.stop;
-    return agreed;
-}
-
-void Session::followCheck(std::uint64_t frame) {
-    if (check_.taking()) {
-        check_.taken(frame, shownSand());
-    }
-    // Begins before it looks, so that a confirmation in this frame does not cover a newer decision.
-    const auto decided = agreement_.takeDecision();
-    if (decided) {
-        check_.begin(frame, *decided);
-    }
-    check_.look(frame, shownSand());
-    if (!decided && !check_.pending()) {
-        agreement_.confirmed();
-    }
+bool Session::agree(const lockstep::FrameMessage& frame) {
+    const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
+                                 0,           sand_.hash(),  check_.viewHash(frame.view)};
+    return check_.agree(frame, mine, sand_, *steps_, clock_.next(held()));
 }
 
 Incidents Session::incidents() const {
     Incidents all = counted_;
+    all.firstDifference = check_.firstDifference();
     all.stands += record_.stands();
-    all.firstDifference = compared_.firstDifference();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
     all.reconnects += link.reconnects;

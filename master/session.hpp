@@ -9,17 +9,13 @@
 
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
-#include "lockstep/view_agreement.hpp"
-#include "master/agreement.hpp"
-#include "master/compare_track.hpp"
 #include "master/film.hpp"
 #include "master/frame_clock.hpp"
-#include "master/journal_check.hpp"
 #include "master/master_sand.hpp"
 #include "master/measurements.hpp"
 #include "master/operator_desk.hpp"
 #include "master/rank_labels.hpp"
-#include "master/ranks.hpp"
+#include "master/sand_check.hpp"
 #include "master/session_options.hpp"
 #include "master/session_record.hpp"
 #include "master/steps/step_source.hpp"
@@ -37,7 +33,7 @@ namespace master {
 /// usually 60 Hz. Main thread only.
 class Session {
 public:
-    /// `cluster`, `scene` and `wall` must outlive the session.
+    /// `scene` and `wall` must outlive the session.
     Session(const lockstep::Cluster& cluster, const scene::Scene& scene, const walls::Wall& wall,
             SessionOptions options);
 
@@ -60,8 +56,6 @@ private:
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
     void startDrills();
     void keep(const lockstep::FrameMessage& frame);
-    /// Starts and ends the comparison of a majority's decision with the journal. Called when frame `frame` is shown.
-    void followCheck(std::uint64_t frame);
     /// Returns whether the session shows no steps after the present one.
     [[nodiscard]] bool ends() const;
     /// Returns whether the session takes no steps, because it is paused, the disk is full, or the journal is replayed.
@@ -74,8 +68,8 @@ private:
                : record_.full() ? haptic_bridge::Held::disk
                                 : haptic_bridge::Held::no;
     }
-    /// Meets the ranks at the barrier of `frame`, and heals sand that differs. Returns whether all ranks agreed.
-    [[nodiscard]] bool agree(const lockstep::FrameMessage& frame, const lockstep::Arrival& mine);
+    /// Meets the ranks at the barrier of `frame`. Returns whether all ranks agreed.
+    [[nodiscard]] bool agree(const lockstep::FrameMessage& frame);
     [[nodiscard]] JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
     /// Returns why the session's sand cannot be trusted at its end; an empty text if it can.
     [[nodiscard]] std::string doubtAbout(const Summary& told) const;
@@ -84,33 +78,23 @@ private:
     void sayProgress(bool last);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
-    void tellComparison(Summary& summary) const;
     void tellHand(Summary& summary) const;
 
-    const lockstep::Cluster& cluster_;
     const scene::Scene& scene_;
     const walls::Wall& wall_;
     const SessionOptions options_;
     const RankLabels labels_;
     lockstep::FrameBarrier barrier_;
-    BarrierRanks ranks_;
-    const lockstep::ViewProof viewProof_;
     std::uint64_t frame_ = 0;
     FrameClock clock_;
     MasterSand sand_;
     std::unique_ptr<StepSource> steps_;
     SessionRecord record_;
-    Incidents counted_;  // since the session began; incidents() adds what the link, the disk and compared_ have counted
+    Incidents counted_;  // since the session began; incidents() adds what the link, the disk and check_ have counted
     OperatorDesk desk_;
     Measurements measure_;
-    Agreement agreement_;
-    CompareTrack compared_;
-    JournalCheck check_;
-    std::int64_t endsSince_ = 0;  // [ns], since when the end of the session waits for check_; 0: it does not wait
+    SandCheck check_;
     std::optional<Film> film_;
-    std::uint64_t framesWithHand_ = 0;  // since this process started
-    bool handed_ = false;               // whether the frame before had a hand
-    bool agreedToEnd_ = false;          // whether all ranks have agreed on the last frame
 };
 
 }  // namespace master

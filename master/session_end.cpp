@@ -17,8 +17,7 @@ Summary Session::finish(bool agreed) {
     const lockstep::Watched watched(barrier_.watchdog());
     steps_->stop();
     if (steps_->serverAtEnd() == false) {
-        ++counted_.serverDivergences;
-        compared_.differed(frame_);
+        check_.serverDiffered(frame_);
     }
     try {
         record_.keepTicks(steps_->ticks());  // the last ticks arrive at the end of the link
@@ -64,7 +63,9 @@ Summary Session::summary() {
     }
     summary.pace = options_.recording ? "replay" : options_.pace == Pace::fast ? "fast" : "realtime";
     summary.refreshHz = 1 / clock_.period();
-    tellComparison(summary);
+    check_.fill(summary);
+    summary.unhealed += (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);
+    summary.compared.serverAtEnd = steps_->serverAtEnd();
     tellHand(summary);
     if (const tracking::TrackedViewer& viewer = desk_.views().viewer(); viewer.tracked()) {
         summary.tracking = viewer.counters();
@@ -82,27 +83,18 @@ Summary Session::summary() {
     return summary;
 }
 
-void Session::tellComparison(Summary& summary) const {
-    summary.unhealed = agreement_.unhealed() + (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);
-    summary.compared.atEnd = agreedToEnd_;
-    summary.compared.serverAtEnd = steps_->serverAtEnd();
-    summary.compared.lastWhole = compared_.lastWhole();
-}
-
 void Session::tellHand(Summary& summary) const {
     summary.hand.asked = options_.recording ? "none"
                          : options_.server  ? "server"
                          : options_.pointer ? "pointer"
                                             : "none";
-    summary.hand.frames = framesWithHand_;
-    summary.hand.atEnd = handed_;
     if (const std::string why = steps_->lastRefusal(); !why.empty()) {
         summary.hand.lastRefusal = why;
     }
 }
 
 std::string Session::doubtAbout(const Summary& told) const {
-    if (check_.failed()) {
+    if (!check_.doubt().empty()) {
         return fmt::format(
             "the session ends with sand that its journal does not confirm, because {}; sandwall-replay {} computes the "
             "right sand, and --resume continues with it",

@@ -29,6 +29,9 @@ SessionOptions completed(SessionOptions options) {
     if (!options.desk.force && options.record.resumed) {
         options.desk.force = options.record.resumed->forceShare;
     }
+    if (options.record.resumed) {
+        options.desk.lastEdit = options.record.resumed->lastEdit;
+    }
     return options;
 }
 

@@ -86,15 +86,15 @@ void Client::Session::take(Link link, const PositionGreeting& greeting) {
                RefusalCode::protocol);
         return;
     }
-    if (!handshake_->accepts(greeting)) {
-        refuse("refused: " + handshake_->because().text, handshake_->because().code);
+    if (!greeter_.accepts(greeting)) {
+        refuse("refused: " + greeter_.because().text, greeter_.because().code);
         return;
     }
     countLink();
     shelf.dropPositions();
-    linkedNs_ = host::monotonicNs();
+    retryPause_.linked(host::monotonicNs());
     shelf.tell(Link::streaming, fmt::format("{}: connected, '{}' streams positions; the master numbers the steps",
-                                            peer_, greeting.name));
+                                            peer(), greeting.name));
 }
 
 void Client::Session::take(Link link, const Position& position) {
@@ -129,16 +129,12 @@ void Client::Session::drill(LinkDrill drill, std::chrono::milliseconds length) {
             return;
         }
         connection_->pause();
-        silentUntil_ = std::chrono::steady_clock::now() + length;
-        drillTimer_.expires_at(silentUntil_);
-        drillTimer_.async_wait([this](boost::system::error_code error) {
-            if (!error && connection_) {
+        drill_.start(length, [this] {
+            if (connection_) {
                 connection_->resume();
             }
         });
     });
 }
-
-bool Client::Session::silent() const { return std::chrono::steady_clock::now() < silentUntil_; }
 
 }  // namespace haptic_bridge

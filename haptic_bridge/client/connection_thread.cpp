@@ -6,7 +6,6 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
-#include "haptic_bridge/link/link_options.hpp"
 #include "host/clock.hpp"
 
 namespace haptic_bridge {
@@ -31,11 +30,9 @@ bool greets(const Message& message, Link link) {
 
 Client::Session::Session(Address address, Offer offer, LinkSecurity security, LinkClock clock)
     : address_(std::move(address)),
-      offer_(std::move(offer)),
-      security_(std::move(security)),
-      now_(clock ? std::move(clock) : host::monotonicNs) {
-    backOff_ = kFirstBackOff;
-    shelf.tell(Link::connecting, "haptic server " + address_.text() + ": connecting");
+      greeter_(std::move(offer), std::move(security)),
+      silence_(io_, clock ? std::move(clock) : host::monotonicNs) {
+    shelf.tell(Link::connecting, peer() + ": connecting");
     asio::post(io_, [this] { connect(); });
     thread_ = std::thread([this] { run(); });
 }
@@ -64,64 +61,38 @@ void Client::Session::stop() {
     }
     asio::post(io_, [this] {
         stopping_ = true;
-        resolver_.cancel();
-        retryTimer_.cancel();
+        connector_.cancel();
+        retryPause_.cancel();
         const auto connection = connection_;  // a copy, because a message that was held back may close the connection
         if (connection) {
             connection->resume();
         }
-        if (connection_ && handshake_) {  // not during the TLS handshake
+        const bool greeted = connection_ && greeter_.greeted();  // false during the TLS handshake
+        if (greeted) {
             connection_->send(Bye{"the master has ended"});
         }
-        goodbyeTimer_.expires_after(connection_ && handshake_ ? kGoodbye : Milliseconds(0));
+        goodbyeTimer_.expires_after(greeted && connection_ ? kGoodbye : std::chrono::milliseconds(0));
         goodbyeTimer_.async_wait([this](error_code) { io_.stop(); });
     });
     thread_.join();
-    shelf.tell(Link::stopped, "haptic server " + address_.text() + ": link closed");
+    shelf.tell(Link::stopped, peer() + ": link closed");
 }
 
 void Client::Session::greet() {
-    if (!security_.proves() && !isLoopback(connection_->address())) {
+    if (!greeter_.greets(connection_->address())) {
         refuse("is not on this machine: a link over a network needs --secret-file on both sides (docs/security.md)",
                RefusalCode::secret);
         return;
     }
-    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
-    handshake_.emplace(security_, mine, Role::move, connection_->binding());
-    connection_->send(handshake_->hello());
+    connection_->send(greeter_.greet(connection_->binding()));
 }
 
-void Client::Session::watch() {
-    watchTimer_.expires_after(Milliseconds(500));
-    watchTimer_.async_wait([this](error_code error) {
-        if (error || !connection_) {
-            return;
-        }
-        const std::int64_t now = now_();
-        heardNs_ = shelf.full() ? now : heardNs_;
-        if (now - heardNs_ > kSilenceNs) {
-            if (!up()) {  // the server accepted the connection and never greeted
-                countRefusal(RefusalCode::limit);
-            }
-            connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
-            return;
-        }
-        watch();
-    });
-}
-
-void Client::Session::ping() {
-    // Pings are frequent at first, so that the clock offset is known within the first frames.
-    pingTimer_.expires_after(pings_ < 8 ? Milliseconds(10) : Milliseconds(250));
-    pingTimer_.async_wait([this](error_code error) {
-        if (!error && connection_) {
-            ++pings_;
-            if (!silent()) {
-                connection_->send(Ping{host::monotonicNs()});
-            }
-            ping();
-        }
-    });
+/// Ends the link, because the server has been silent for too long.
+void Client::Session::fallSilent() {
+    if (!up()) {  // the server accepted the connection and never greeted
+        countRefusal(RefusalCode::limit);
+    }
+    connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
 }
 
 void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
@@ -134,8 +105,7 @@ void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
         }
         grant_ = std::move(grant);
         start.force = force_;
-        started_ = true;
-        shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer_, start.stepNumber));
+        shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer(), start.stepNumber));
         connection_->send(start);
     });
 }
@@ -144,7 +114,7 @@ void Client::Session::shareForce(const ForceShare& share) {
     asio::post(io_, [this, share] {
         force_ = share;
         const Link link = shelf.link();
-        if (connection_ && (link == Link::linked || (link == Link::granting && started_))) {
+        if (connection_ && grant_ && (link == Link::linked || link == Link::granting)) {
             connection_->send(share);
         }
     });
@@ -153,21 +123,20 @@ void Client::Session::shareForce(const ForceShare& share) {
 void Client::Session::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && shelf.link() == Link::linked) {
-            grant_.asked(request.edit);
-            connection_->expectLoads(grant_.awaitsLoad());  // a load comes back in a step
+            grant_->asked(request.edit);
             connection_->send(request);
         }
     });
 }
 
 void Client::Session::receive(Message&& message) {
-    heardNs_ = now_();
+    silence_.heard();
     shelf.count([this](LinkCounters& counters) {
         counters.bytesIn = connection_->bytesIn();
         counters.bytesOut = connection_->bytesOut();
     });
     const bool ends = std::holds_alternative<Refusal>(message) || std::holds_alternative<Bye>(message);
-    if (!handshake_ && !ends) {
+    if (!greeter_.greeted() && !ends) {
         outOfTurn();
         return;
     }
@@ -191,10 +160,10 @@ void Client::Session::take(Link, const Bye& bye) { connection_->close("it says g
 void Client::Session::take(Link link, const Challenge& challenge) {
     if (isUp(link)) {
         outOfTurn();
-    } else if (const auto proof = handshake_->answer(challenge)) {
+    } else if (const auto proof = greeter_.answer(challenge)) {
         connection_->send(*proof);
     } else {
-        refuse("refused: " + handshake_->because().text, handshake_->because().code);
+        refuse("refused: " + greeter_.because().text, greeter_.because().code);
     }
 }
 
@@ -203,46 +172,39 @@ void Client::Session::take(Link link, const Welcome& greeting) {
         outOfTurn();
         return;
     }
-    const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, offer_.rulesDigest, offer_.sceneName};
-    // The server compares as well. The client does not rely on that, because the wall must not show other sand than the
-    // hand feels.
-    if (const auto refusal = refusalFor(greeting.server, mine)) {
+    if (const auto refusal = greeter_.refusalOf(greeting)) {
         refuse("refused: " + refusal->text, refusal->code);
-        return;
-    }
-    if (!handshake_->accepts(greeting)) {
-        refuse("refused: " + handshake_->because().text, handshake_->because().code);
         return;
     }
     connection_->limit(kMaxMessage);
     countLink();
     shelf.setStepsPerSecond(greeting.stepsPerSecond);
-    clock_ = ClockOffset();
-    shelf.tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer_, greeting.stepsPerSecond));
-    ping();
+    shelf.tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer(), greeting.stepsPerSecond));
+    pings_.start([this] {
+        if (!drill_.active()) {
+            connection_->send(Ping{host::monotonicNs()});
+        }
+    });
 }
 
 void Client::Session::countLink() {
     shelf.linked();
-    shelf.count([again = std::exchange(everWelcomed_, true)](LinkCounters& counters) {
+    shelf.count([](LinkCounters& counters) {
+        counters.reconnects += counters.links > 0 ? 1 : 0;
         ++counters.links;
-        counters.reconnects += again ? 1 : 0;
     });
 }
 
-void Client::Session::take(Link, const Pong& pong) {
-    clock_.add(pong.masterNs, pong.serverNs, host::monotonicNs());
-    shelf.setClockOffset(clock_.offsetNs());
-}
+void Client::Session::take(Link, const Pong& pong) { shelf.setClockOffset(pings_.answered(pong, host::monotonicNs())); }
 
 void Client::Session::take(Link, const Report& report) { shelf.keep(report); }
 
 void Client::Session::take(Link link, const NeedState& need) {
-    if (link != Link::granting || !grant_.mayHandOver()) {
+    if (link != Link::granting || !grant_ || !grant_->mayHandOver()) {
         outOfTurn();
         return;
     }
-    const std::vector<Message> answer = grant_.handOver(need);
+    const std::vector<Message> answer = grant_->handOver(need);
     const bool whole = std::holds_alternative<State>(answer.front());
     shelf.count([whole](LinkCounters& counters) { ++(whole ? counters.snapshots : counters.catchUps); });
     const auto connection = connection_;  // a copy, because sending may close the connection
@@ -252,15 +214,15 @@ void Client::Session::take(Link link, const NeedState& need) {
 }
 
 void Client::Session::take(Link link, const Ready&) {
-    if (link != Link::granting) {
+    if (link != Link::granting || !grant_) {
         outOfTurn();
         return;
     }
-    grant_.begun();
-    linkedNs_ = host::monotonicNs();
-    const Start& start = grant_.start();
+    grant_->begun();
+    retryPause_.linked(host::monotonicNs());
+    const Start& start = grant_->start();
     shelf.tell(Link::linked,
-               fmt::format("{}: linked, epoch {} from step {}", peer_, start.epoch, start.stepNumber + 1));
+               fmt::format("{}: linked, epoch {} from step {}", peer(), start.epoch, start.stepNumber + 1));
 }
 
 }  // namespace haptic_bridge

@@ -3,17 +3,19 @@
 #pragma once
 
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
-#include "haptic_bridge/client/clock_offset.hpp"
+#include "haptic_bridge/client/connector.hpp"
 #include "haptic_bridge/client/grant.hpp"
+#include "haptic_bridge/client/greeter.hpp"
+#include "haptic_bridge/client/link_timers.hpp"
 #include "haptic_bridge/client/shelf.hpp"
 #include "haptic_bridge/link/connection.hpp"
 
@@ -41,10 +43,6 @@ public:
     Shelf shelf;
 
 private:
-    using Timer = boost::asio::steady_timer;
-    using Milliseconds = std::chrono::milliseconds;
-    static constexpr Milliseconds kFirstBackOff{100}, kLastBackOff{2000};
-
     void run();
     void connect();
     void connected(Connection::Socket socket);
@@ -55,12 +53,11 @@ private:
     void countRefusal(RefusalCode code);
     void countLink();
     void retry();
-    void watch();
-    void ping();
+    void fallSilent();
+    [[nodiscard]] std::string peer() const { return "haptic server " + address_.text(); }
     [[nodiscard]] bool up() const { return isUp(shelf.link()); }
     [[nodiscard]] static bool isUp(Link link) { return link >= Link::offered && link <= Link::streaming; }
     void resumeReading();
-    [[nodiscard]] bool silent() const;  // returns whether a drill keeps the client silent
 
     void receive(Message&& message);
     void outOfTurn() { connection_->close("it sent a message out of turn", RefusalCode::garbage); }
@@ -84,27 +81,19 @@ private:
     }
 
     const Address address_;
-    const Offer offer_;
-    const LinkSecurity security_;
-    const LinkClock now_;
-    std::optional<MasterHandshake> handshake_;
+    Greeter greeter_;
     boost::asio::io_context io_;
-    boost::asio::ip::tcp::resolver resolver_{io_};
-    Timer retryTimer_{io_}, pingTimer_{io_}, watchTimer_{io_}, drillTimer_{io_};
+    Connector connector_{io_};
+    RetryPause retryPause_{io_};
+    SilenceWatch silence_;
+    Pings pings_{io_};
+    SilenceDrill drill_{io_};
     // A timer of its own, because a handler of another timer that is already due must not delay the end.
-    Timer goodbyeTimer_{io_};
+    boost::asio::steady_timer goodbyeTimer_{io_};
     std::shared_ptr<Connection> connection_;
-    std::string peer_;
-    Grant grant_;
-    ClockOffset clock_;
-    Milliseconds backOff_{};
-    std::int64_t heardNs_ = 0;   // [ns], on the clock now_
-    std::int64_t linkedNs_ = 0;  // [ns], on the host's clock: begin of the last link
-    std::chrono::steady_clock::time_point silentUntil_;
-    int pings_ = 0;
-    ForceShare force_;      // of the next Start
-    bool started_ = false;  // whether this connection has carried a Start
-    bool everWelcomed_ = false, stopping_ = false;
+    std::optional<Grant> grant_;  // of this connection; nullopt before its Start
+    ForceShare force_;            // of the next Start
+    bool stopping_ = false;
     std::thread thread_;
 };
 

@@ -24,7 +24,7 @@ std::vector<Message> Grant::handOver(const NeedState& need) {
     return answer;
 }
 
-Grant::Arrival Grant::arrived(const sand::Step& step) {
+Grant::Arrival Grant::arrived(sand::Step& step) {
     if (step.epoch != start_.epoch) {
         return Arrival::foreign;
     }
@@ -35,10 +35,12 @@ Grant::Arrival Grant::arrived(const sand::Step& step) {
         return Arrival::afterGap;
     }
     if (step.edit.any()) {
-        const auto edit = std::find(asked_.begin(), asked_.end(), step.edit);
-        if (edit == asked_.end()) {
+        const auto edit = std::find_if(asked_.begin(), asked_.end(),
+                                       [&](const sand::Edit& one) { return one.number == step.edit.number; });
+        if (edit == asked_.end() || edit->kind != step.edit.kind) {
             return Arrival::unasked;
         }
+        step.edit = std::move(*edit);
         asked_.erase(asked_.begin(), edit + 1);
     }
     lastStep_ = step.number;
@@ -50,11 +52,6 @@ void Grant::asked(const sand::Edit& edit) {
         asked_.pop_front();
     }
     asked_.push_back(edit);
-}
-
-bool Grant::awaitsLoad() const {
-    return std::any_of(asked_.begin(), asked_.end(),
-                       [](const sand::Edit& edit) { return edit.kind == sand::Edit::load; });
 }
 
 Shown Grant::bounded(const Shown& frame) const {

@@ -33,14 +33,14 @@ public:
     }
 
     enum class Arrival { next, stale, foreign, afterGap, unasked };
-    /// Classifies a step of the server by epoch, number and edit. `unasked` is the next step with an edit that asked()
-    /// does not know. If it is the next step, it counts as the last one from now on, and its edit as done.
-    [[nodiscard]] Arrival arrived(const sand::Step& step);
-    /// Notes that the server was asked for `edit`. One step may then hold it. The server may also replace it by an edit
-    /// that it is asked for later. Forgets the oldest of more than kMostAsked edits.
+    /// Classifies a step of the server by epoch, number and number of its edit. `unasked` is the next step with an edit
+    /// that asked() does not know. If it is the next step, it counts as the last one from now on, and its edit as done.
+    /// The step then gets the edit that was asked for, with its tuning or sand; what the server sent of these is
+    /// dropped.
+    [[nodiscard]] Arrival arrived(sand::Step& step);
+    /// Notes that the server was asked for `edit`. One step may then hold its number. The server may also replace it by
+    /// an edit that it is asked for later. Forgets the oldest of more than kMostAsked edits.
     void asked(const sand::Edit& edit);
-    /// Returns whether a step that loads sand may come.
-    [[nodiscard]] bool awaitsLoad() const;
 
     static constexpr std::size_t kMostAsked = 16;
     /// Limits the step number of `frame` to the steps of this grant. A frame that was drawn before the first step

@@ -15,12 +15,12 @@ namespace asio = boost::asio;
 
 void Client::Session::take(Link, const TimingTest& test) {
     connection_->send(TimingEcho{test.id, Leg::received});
-    shelf.addTest(test.id, grant_.lastStep());
+    shelf.addTest(test.id, grant_ ? grant_->lastStep() : 0);
 }
 
 void Client::Session::take(Link link, StepMessage& message) {
-    const std::uint64_t number = message.step.number, last = grant_.lastStep();
-    switch (link == Link::linked ? grant_.arrived(message.step) : Grant::Arrival::foreign) {
+    const std::uint64_t number = message.step.number, last = grant_ ? grant_->lastStep() : 0;
+    switch (grant_ && link == Link::linked ? grant_->arrived(message.step) : Grant::Arrival::foreign) {
         case Grant::Arrival::foreign:
             shelf.count([](LinkCounters& counters) { ++counters.stepsForeign; });
             break;
@@ -35,7 +35,6 @@ void Client::Session::take(Link link, StepMessage& message) {
                                RefusalCode::garbage);
             break;
         case Grant::Arrival::next:
-            connection_->expectLoads(grant_.awaitsLoad());
             if (shelf.add(
                     TimedStep{std::move(message.step), message.serverTimeNs, message.stateHash, host::monotonicNs()})) {
                 connection_->pause();
@@ -57,7 +56,7 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
 
 void Client::Session::resumeReading() {
     asio::post(io_, [this] {
-        if (connection_ && !silent()) {
+        if (connection_ && !drill_.active()) {
             connection_->resume();
         }
     });
@@ -65,11 +64,11 @@ void Client::Session::resumeReading() {
 
 void Client::Session::shown(const Shown& frame) {
     asio::post(io_, [this, frame, tests = shelf.takeTestsInFrame()] {
-        if (!connection_ || silent() || shelf.link() != Link::linked) {
+        if (!connection_ || drill_.active() || shelf.link() != Link::linked) {
             return;
         }
         const auto connection = connection_;  // a copy, because sending may close the connection
-        connection->send(grant_.bounded(frame));
+        connection->send(grant_->bounded(frame));
         for (const std::uint32_t id : tests) {
             connection->send(TimingEcho{id, Leg::shown});
         }

@@ -42,7 +42,7 @@ struct Reason {
 template <class Text>
 Reason(Text&) -> Reason<Text>;
 
-/// An edit that must be one: a byte of its kind, and its details.
+/// An edit that must be one: a byte of its kind, its number, which is not 0, and its details.
 template <class Edit>
 struct WholeEdit {
     Edit& value;
@@ -56,6 +56,9 @@ struct WholeEdit {
             throw base::FormatError("is " + std::to_string(kind) + ", which is unknown");
         }
         value = sand::decodeDetails(static_cast<sand::Edit::Kind>(kind), reader);
+        if (value.number == 0) {
+            throw base::FormatError("has number 0, which no edit has");
+        }
     }
 };
 template <class Edit>

@@ -28,8 +28,7 @@ constexpr std::uint8_t typeOf() {
 }  // namespace
 
 bool MessageReader::mayBeLong(std::uint8_t type) const {
-    const bool load = type == typeOf<EditRequest>() || type == typeOf<StepMessage>();
-    return type == typeOf<State>() ? stateExpected_ : load && loadsExpected_;
+    return type == typeOf<State>() ? stateExpected_ : type == typeOf<EditRequest>() && loadsExpected_;
 }
 
 void MessageReader::feed(std::span<const std::uint8_t> bytes) {
@@ -67,7 +66,12 @@ std::optional<Message> MessageReader::next() {
     if (stream[kLengthBytes] == typeOf<State>() && !std::exchange(stateExpected_, false)) {
         throw base::FormatError("a state that was not requested");
     }
-    return decode(stream.subspan(kLengthBytes, length));
+    Message message = decode(stream.subspan(kLengthBytes, length));
+    if (begin_ == buffer_.size() && buffer_.capacity() > kMaxKept) {  // frees the memory of a long message
+        buffer_ = {};
+        begin_ = 0;
+    }
+    return message;
 }
 
 }  // namespace haptic_bridge

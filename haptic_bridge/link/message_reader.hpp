@@ -19,7 +19,7 @@ public:
     [[nodiscard]] std::optional<Message> next();
     /// Sets whether a State of up to kMaxState bytes may come next.
     void expectState(bool expected) { stateExpected_ = expected; }
-    /// Sets whether messages with loaded sand, of up to kMaxState bytes, may come.
+    /// Sets whether an EditRequest that loads sand, of up to kMaxState bytes, may come.
     void expectLoads(bool expected) { loadsExpected_ = expected; }
     /// Sets the largest length of an ordinary message from now on [byte]; kMaxMessage at first.
     void limit(std::size_t most) { most_ = most; }

@@ -25,10 +25,10 @@ namespace haptic_bridge {
 inline constexpr std::uint16_t kDefaultPort = 7750;
 inline constexpr std::size_t kMaxMessage = 64 * 1024;  // [byte], type and payload of an ordinary message
 inline constexpr std::size_t kMaxGreeting = 1024;      // [byte], type and payload of a message before the Welcome
-// [byte], type and payload of a message with sand: a State, or an EditRequest or Step that loads sand. Accepted only
-// when such a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB.
+// [byte], type and payload of a message with sand: a State, or an EditRequest that loads sand. Accepted only when such
+// a message is expected. A field of 8192 × 8192 cells compresses to about 150 MiB.
 inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
-static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits, with the path of its step");
+static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits");
 inline constexpr std::size_t kMaxReason = 512;  // [byte] of the reason in a Refusal or a Bye; the rest is cut off
 inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step takes at most about 1.5 KiB
 
@@ -121,7 +121,7 @@ struct Ping {
     }
     friend bool operator==(const Ping&, const Ping&) = default;
 };
-/// Asks for an operator's edit. The server puts it into its next step.
+/// Asks for an operator's edit. The server puts it into its next step, with the edit's number and without its sand.
 struct EditRequest {
     sand::Edit edit;
     template <class Self, class Visit>
@@ -162,7 +162,7 @@ struct NeedState {
     }
     friend bool operator==(const NeedState&, const NeedState&) = default;
 };
-/// One step of the sand. The master gets all steps. Watchers get only the steps that load no sand.
+/// One step of the sand. A load in it has no sand, because the master has the sand and knows the edit by its number.
 struct StepMessage {
     std::int64_t serverTimeNs = 0;  // server's clock at the step's last hand sample, or when it made the step
     std::uint64_t stateHash = 0;    // of the server's replica after the step
@@ -178,7 +178,7 @@ struct StepMessage {
 /// Measures the round trip. The master answers it once for each Leg.
 struct TimingTest {
     std::uint32_t id = 0;
-    std::uint32_t padding = 0;  // [byte]; makes the test as long as the last step message without loaded sand
+    std::uint32_t padding = 0;  // [byte]; makes the test as long as the last step message
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("id", it.id);

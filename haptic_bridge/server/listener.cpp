@@ -36,8 +36,9 @@ SandThread::Output Listener::output() {
         [hand](std::uint32_t session, std::string why) {
             hand(session, [why = std::move(why)](Peer& peer) { peer.unusable(why); });
         },
-        [hand](std::uint32_t session, base::Bytes message) {
-            hand(session, [message = std::move(message)](Peer& peer) mutable { peer.step(std::move(message)); });
+        [hand](std::uint32_t session, base::Bytes message, std::uint64_t edit) {
+            hand(session,
+                 [message = std::move(message), edit](Peer& peer) mutable { peer.step(std::move(message), edit); });
         },
         [hand](std::uint32_t session, Audited result) {
             hand(session, [result](Peer& peer) { peer.audited(result); });

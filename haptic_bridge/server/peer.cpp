@@ -189,7 +189,8 @@ void Peer::take(EditRequest& request) {
         return;
     }
     // One long load at a time: until it is in a step, or until another edit has replaced it.
-    connection_->expectLoads(!isLong(request.edit));
+    grant_.longLoad = isLong(request.edit) ? request.edit.number : 0;
+    connection_->expectLoads(grant_.longLoad == 0);
     service_.sandThread->edit(std::move(request));
 }
 
@@ -269,28 +270,19 @@ void Peer::sendTicks(bool all) {
     }
 }
 
-void Peer::step(base::Bytes message) {
+void Peer::step(base::Bytes message, std::uint64_t edit) {
     sendTicks(false);
     ++sent_.steps;
-    // Leaves out a step that loads sand, because timing tests are as long as the last step.
-    if (message.size() <= kMaxMessage) {
-        sent_.bytes += message.size();
-        sent_.lastBytes = message.size();
-    }
-    if (message.size() > kMaxMessage) {  // the load that the master asked for
+    sent_.bytes += message.size();
+    sent_.lastBytes = message.size();
+    if (edit != 0 && edit == grant_.longLoad) {
+        grant_.longLoad = 0;
         connection_->expectLoads(true);
     }
     for (const auto& watcher : roster_.watchers()) {
-        watcher->watchStep(message);
+        watcher->connection_->sendBytes(base::Bytes(message));
     }
     connection_->sendBytes(std::move(message));
-}
-
-void Peer::watchStep(const base::Bytes& message) {
-    // Leaves out a step that loads sand, because only the master has asked for so much.
-    if (message.size() <= kMaxMessage) {
-        connection_->sendBytes(base::Bytes(message));
-    }
 }
 
 void Peer::tickTimingTest(double pause) {

@@ -23,7 +23,8 @@ public:
     void ready();
     void needState(const NeedState& need);
     void unusable(const std::string& why);
-    void step(base::Bytes message);
+    /// `edit` is the number of the edit in the step, or 0.
+    void step(base::Bytes message, std::uint64_t edit);
     /// Closes an unauthenticated connection at once.
     void makeRoom();
     /// Sends the last report and a goodbye, then closes. The end of a master's link waits for the audit of the sand, at
@@ -55,7 +56,6 @@ private:
         outOfTurn();
     }
     void welcome();
-    void watchStep(const base::Bytes& message);
     void refuse(const Refusal& refusal);
     void outOfTurn();
     void close(Audited result);
@@ -85,6 +85,7 @@ private:
         std::uint64_t firstStep = 0;
         std::size_t catchUpsLeft = 0;  // CatchUps that may still come
         bool askedForSteps = false;
+        std::uint64_t longLoad = 0;  // number of the long load that waits for its step; 0: none waits
     } grant_;
     struct Sent {
         std::uint64_t steps = 0, bytes = 0;

@@ -186,9 +186,11 @@ void StepMaker::makeStep() {
     }
     message.step.edit = std::exchange(edit_, {});
     const bool edited = message.step.edit.any();
+    const std::uint64_t edit = message.step.edit.number;
     terrain_.apply(message.step);
+    message.step.edit.sand.reset();  // up to 192 MiB, which the master has
     message.stateHash = terrain_.stateHash();
-    output_.step(session_, encode(std::move(message)));
+    output_.step(session_, encode(std::move(message)), edit);
     hand_.publish(terrain_, edited);
     clock_.advance(now_());
 }

@@ -30,10 +30,11 @@ public:
 
     /// Callbacks that send messages to a master. `session` is the number that start() got.
     struct Output {
-        std::function<void(std::uint32_t session)> ready;                          // Ready
-        std::function<void(std::uint32_t session, NeedState need)> needState;      // NeedState
-        std::function<void(std::uint32_t session, std::string why)> unusable;      // a Refusal: its sand does not fit
-        std::function<void(std::uint32_t session, base::Bytes stepMessage)> step;  // an encoded StepMessage
+        std::function<void(std::uint32_t session)> ready;                      // Ready
+        std::function<void(std::uint32_t session, NeedState need)> needState;  // NeedState
+        std::function<void(std::uint32_t session, std::string why)> unusable;  // a Refusal: its sand does not fit
+        // An encoded StepMessage. `edit` is the number of the edit in it, or 0.
+        std::function<void(std::uint32_t session, base::Bytes stepMessage, std::uint64_t edit)> step;
         std::function<void(std::uint32_t session, Audited result)> audited = [](auto, auto) {};  // answers audit()
     };
 

@@ -128,6 +128,7 @@ struct Walk {
             session.step = step.number;
             session.epoch = std::max(session.epoch, step.epoch);
             session.edits += step.edit.any() ? 1 : 0;
+            session.lastEdit = std::max(session.lastEdit, step.edit.number);
         }
     }
     void operator()(const scene::Material& material) { pending = material; }

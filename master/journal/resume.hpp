@@ -71,6 +71,7 @@ struct ResumedSession {
     std::uint64_t frame = 0;   // last frame in the journal
     std::uint32_t epoch = 0;   // last epoch in the journal
     std::uint64_t edits = 0;
+    std::uint64_t lastEdit = 0;        // highest number of an edit in the journal; 0 without edits
     std::optional<double> forceShare;  // share of the force that an operator has set, 0 to 1; nullopt: none has
     std::uint64_t step = 0, hash = 0;  // last step, and the state hash after it
     base::Bytes state;                 // sand::Replica::encodeState() after this step

@@ -35,21 +35,25 @@ std::int64_t EditQueue::sandBytes(const sand::Edit& more) const {
 std::vector<scene::Material> EditQueue::materialsOf(const std::vector<sand::Step>& steps) const {
     std::vector<scene::Material> materials;
     for (const sand::Step& step : steps) {
-        const auto made = std::find_if(asked_.begin(), asked_.end(),
-                                       [&](const Asked& asked) { return asked.material && asked.edit == step.edit; });
-        if (made != asked_.end()) {
+        const auto made = find(step.edit.number);
+        if (made != asked_.end() && made->material) {
             materials.push_back(*made->material);
         }
     }
     return materials;
 }
 
-std::optional<ControlSocket::Client> EditQueue::shown(const sand::Edit& edit) {
-    if (!edit.any() || asked_.empty() || !(asked_.front().edit == edit)) {
+std::deque<EditQueue::Asked>::const_iterator EditQueue::find(std::uint64_t number) const {
+    return std::find_if(asked_.begin(), asked_.end(), [&](const Asked& asked) { return asked.edit.number == number; });
+}
+
+std::optional<ControlSocket::Client> EditQueue::shown(std::uint64_t number) {
+    const auto asked = find(number);
+    if (asked == asked_.end()) {
         return std::nullopt;
     }
-    const std::optional<ControlSocket::Client> client = asked_.front().client;
-    asked_.pop_front();
+    const std::optional<ControlSocket::Client> client = asked->client;
+    asked_.erase(asked);
     return client;
 }
 

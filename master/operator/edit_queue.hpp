@@ -33,17 +33,19 @@ public:
     [[nodiscard]] std::size_t size() const { return asked_.size(); }
     /// Returns the size of the sand that the waiting edits and `more` load [byte].
     [[nodiscard]] std::int64_t sandBytes(const sand::Edit& more = {}) const;
-    /// Returns the materials that the edits of `steps` set.
+    /// Returns the materials that the edits of `steps` set. Finds edits by their numbers.
     [[nodiscard]] std::vector<scene::Material> materialsOf(const std::vector<sand::Step>& steps) const;
 
-    /// Removes the first edit if it equals `edit`, because the wall shows a step with it. Returns the client that waits
-    /// for the answer; nullopt without one.
-    [[nodiscard]] std::optional<ControlSocket::Client> shown(const sand::Edit& edit);
+    /// Removes the edit with this number, because the wall shows a step with it. Returns the client that waits for the
+    /// answer; nullopt without one, or if no such edit waits.
+    [[nodiscard]] std::optional<ControlSocket::Client> shown(std::uint64_t number);
     /// Returns the clients that wait, and removes them from the queue, because the caller answers them at once. Their
     /// edits stay.
     [[nodiscard]] std::vector<ControlSocket::Client> releaseClients();
 
 private:
+    [[nodiscard]] std::deque<Asked>::const_iterator find(std::uint64_t number) const;
+
     std::deque<Asked> asked_;
 };
 

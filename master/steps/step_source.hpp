@@ -30,7 +30,8 @@ constexpr auto valuesOf(Pace) {
 class StepRequests {
 public:
     virtual ~StepRequests() = default;
-    /// Asks for an edit. It becomes part of a step that StepSource::next() returns, after all earlier edits.
+    /// Asks for an edit, whose number is higher than those of all earlier edits. It becomes part of a step that
+    /// StepSource::next() returns, after all earlier edits.
     virtual void request(sand::Edit edit) = 0;
     /// Sets the share of the server's forces that the hand feels from now on, 0 to 1, as an operator asked. Servers
     /// that link later get it, too.

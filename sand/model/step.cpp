@@ -33,30 +33,34 @@ Edit Edit::loaded(base::Bytes sand) {
 
 bool operator==(const Edit& a, const Edit& b) {
     const bool sameSand = a.sand == b.sand || (a.sand && b.sand && *a.sand == *b.sand);
-    return a.kind == b.kind && a.tuning == b.tuning && sameSand;
+    return a.number == b.number && a.kind == b.kind && a.tuning == b.tuning && sameSand;
 }
 
 void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
+    if (edit.any()) {
+        writer.putVarint(edit.number);
+    }
     if (edit.kind == Edit::tune) {
         edit.tuning.encode(writer);
     } else if (edit.kind == Edit::load) {
-        writer.putBlock(edit.sand ? *edit.sand : base::Bytes());
+        writer.putBlock(edit.sand ? std::span(*edit.sand) : std::span<const std::uint8_t>());
     }
 }
 
 Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
+    Edit edit = kind;
+    edit.number = edit.any() ? reader.getVarint() : 0;
     if (kind == Edit::tune) {
-        return Edit::tuned(Tuning::decode(reader));
-    }
-    if (kind == Edit::load) {
+        edit.tuning = Tuning::decode(reader);
+    } else if (kind == Edit::load) {
         // Replica::apply() checks the sand itself, because only the replica knows the field.
         const auto sand = reader.getBlock();
         if (sand.size() > kMaxSandBytes) {
             throw base::FormatError("sand of " + std::to_string(sand.size()) + " bytes");
         }
-        return Edit::loaded({sand.begin(), sand.end()});
+        edit.sand = std::make_shared<const base::Bytes>(sand.begin(), sand.end());
     }
-    return kind;
+    return edit;
 }
 
 void Step::put(base::ByteWriter& writer) const {

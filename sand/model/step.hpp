@@ -29,7 +29,7 @@ inline constexpr std::int32_t kMaxProbe = 1 << 24;
 /// Largest size of the compressed sand in a load [byte].
 inline constexpr std::size_t kMaxSandBytes = 192U << 20;
 
-/// An operator's change to the sand: the kind of the edit and its data.
+/// An operator's change to the sand: its number, kind and data.
 struct Edit {
     enum class Kind : std::uint8_t {
         none,
@@ -41,6 +41,10 @@ struct Edit {
     };
     using enum Kind;
 
+    /// Given by the master when an operator asks for the edit. It counts from 1 over a whole session, also over resumes
+    /// and epochs; 0 for no edit. An edit has the same number in every message and in the journal. So it is found again
+    /// without comparing its sand. The sand and its state hash never depend on the number.
+    std::uint64_t number = 0;
     Kind kind = Kind::none;
     Tuning tuning;  // only for Kind::tune
     /// Only for Kind::load: bytes from SurfaceCopy::encode(). Copies of a step share them.
@@ -56,10 +60,10 @@ struct Edit {
 };
 inline constexpr int kEdits = 6;  // number of kinds
 
-/// Writes the data of an edit, without its kind.
+/// Writes number and data of an edit, without its kind.
 void encodeDetails(const Edit& edit, base::ByteWriter& writer);
-/// Reads the data of an edit of this `kind`. Throws base::FormatError for an invalid tuning, truncated bytes, or more
-/// than kMaxSandBytes of sand. Replica::apply() checks the sand itself, because only it knows the field.
+/// Reads number and data of an edit of this `kind`. Throws base::FormatError for an invalid tuning, truncated bytes, or
+/// more than kMaxSandBytes of sand. Replica::apply() checks the sand itself, because only it knows the field.
 [[nodiscard]] Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader);
 
 /// The only thing that changes sand: the path of the hand since the step before, and an operator's edit.

@@ -6,6 +6,7 @@
 
 #include "haptic_bridge/link/protocol.hpp"
 #include "master/journal/checkpoint.hpp"
+#include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -29,6 +30,18 @@ protected:
             return !steps.empty() && steps.front() > after;
         })) << "no checkpoint was written in time";
     }
+    /// Returns the numbers of all edits in the journal.
+    [[nodiscard]] std::vector<std::uint64_t> edits() const {
+        std::vector<std::uint64_t> numbers;
+        for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
+            for (const sand::Step& step : frame.steps) {
+                if (step.edit.any()) {
+                    numbers.push_back(step.edit.number);
+                }
+            }
+        }
+        return numbers;
+    }
     static pid_t masterOf(const support::ChildProcess& session) {
         return support::findProgram(session.family(), "sandwall-master").value();
     }
@@ -49,6 +62,8 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     ask("tool ellipse radius=0.05 width=0.5");
     const std::uint64_t tuned = ask("status")["step"];
     awaitCheckpoint(*session, tuned);
+    ask("pause");
+    EXPECT_EQ(ask("settle")["waits_for"], "resume") << "this edit is in no step when the session is killed";
     kill(masterOf(*session), SIGKILL);
     EXPECT_NE(session->wait(kLong).value_or(0), 0) << session->output();
     std::ofstream(journal(), std::ios::app | std::ios::binary) << "torn off";
@@ -89,6 +104,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     const nlohmann::json told = summary();
     EXPECT_EQ(told["steps"], end);
     EXPECT_EQ(told["edits"], 2);
+    EXPECT_EQ(edits(), (std::vector<std::uint64_t>{1, 2})) << "no number is given twice";
     EXPECT_EQ(told["divergences"], 3) << "the divergences of the earlier runs must count, too";
     EXPECT_EQ(told["healed"], 2);
     EXPECT_EQ(told["outvoted"], 1);

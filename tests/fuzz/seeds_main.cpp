@@ -62,7 +62,7 @@ void writeWire(Folder folder) {
                                    Pong{5, 6},
                                    Report{},
                                    Bye{"enough"},
-                                   EditRequest{sand::Edit::undo}};
+                                   EditRequest{samples::withNumber(1, sand::Edit::undo)}};
     Bytes stream;
     for (const Message& message : all) {
         const Bytes one = encode(message);

@@ -3,6 +3,8 @@
 
 #include <limits>
 
+#include "tests/support/sand_samples.hpp"
+
 namespace hostile {
 
 using namespace haptic_bridge;
@@ -11,32 +13,33 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
     sand::Step step{.epoch = 1, .number = 7, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}}};
     sand::Step loaded = step;
     loaded.edit = sand::Edit::loaded(base::Bytes(300, 9));
-    for (const Message& message : std::vector<Message>{Hello{identity_, Role::move, true, false, {1}},
-                                                       Hello{identity_, Role::watch, false, false, {}},
-                                                       Challenge{identity_, {2}},
-                                                       Proof{{3}},
-                                                       Welcome{identity_, 60},
-                                                       Refusal{RefusalCode::scene, "no"},
-                                                       Start{1, 0, 3},
-                                                       Ready{},
-                                                       NeedState{},
-                                                       State{base::Bytes(200, 4)},
-                                                       StepMessage{1, 2, step},
-                                                       StepMessage{1, 2, loaded},
-                                                       TimingTest{1, 20},
-                                                       Shown{7, 16'000'000, Held::disk},
-                                                       TimingEcho{1},
-                                                       Ping{5},
-                                                       Pong{5, 6},
-                                                       Report{},
-                                                       Bye{"enough"},
-                                                       EditRequest{sand::Edit::undo},
-                                                       EditRequest{sand::Edit::loaded({1, 2, 3})},
-                                                       ForceShare{0},
-                                                       TickPiece{base::Bytes(50, 1)},
-                                                       PositionGreeting{kProtocolVersion, "glove"},
-                                                       Position{0, 0, 0, 0, true},
-                                                       CatchUp{true, {step, step}}}) {
+    for (const Message& message :
+         std::vector<Message>{Hello{identity_, Role::move, true, false, {1}},
+                              Hello{identity_, Role::watch, false, false, {}},
+                              Challenge{identity_, {2}},
+                              Proof{{3}},
+                              Welcome{identity_, 60},
+                              Refusal{RefusalCode::scene, "no"},
+                              Start{1, 0, 3},
+                              Ready{},
+                              NeedState{},
+                              State{base::Bytes(200, 4)},
+                              StepMessage{1, 2, step},
+                              StepMessage{1, 2, loaded},
+                              TimingTest{1, 20},
+                              Shown{7, 16'000'000, Held::disk},
+                              TimingEcho{1},
+                              Ping{5},
+                              Pong{5, 6},
+                              Report{},
+                              Bye{"enough"},
+                              EditRequest{samples::withNumber(1, sand::Edit::undo)},
+                              EditRequest{samples::withNumber(2, sand::Edit::loaded({1, 2, 3}))},
+                              ForceShare{0},
+                              TickPiece{base::Bytes(50, 1)},
+                              PositionGreeting{kProtocolVersion, "glove"},
+                              Position{0, 0, 0, 0, true},
+                              CatchUp{true, {step, step}}}) {
         real_.push_back(encode(message));
     }
     last_ = real_.front();

@@ -97,9 +97,44 @@ TEST_F(Desk, AnswersAnEditOnceItsStepIsShown) {
     EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
     EXPECT_EQ(desk_->edits().size(), 1U);
     EXPECT_EQ(answer.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "not shown yet";
-    show(sand::Edit::reset);
+    show(requests_.edits[0]);
     EXPECT_EQ(await(answer), (json{{"ok", true}, {"step", 1}}));
     EXPECT_EQ(desk_->edits().size(), 0U);
+}
+
+TEST_F(Desk, GivesEachEditANumberAndAnswersByIt) {
+    std::future<json> first = send("settle");
+    obeyUntil([&] { return requests_.edits.size() == 1; });
+    std::future<json> second = send("settle");
+    obeyUntil([&] { return requests_.edits.size() == 2; });
+    EXPECT_EQ(requests_.edits[0].number, 1U);
+    EXPECT_EQ(requests_.edits[1].number, 2U) << "it equals the first in all else";
+    show(samples::withNumber(7, sand::Edit::settle));
+    EXPECT_EQ(first.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "another edit was shown";
+    show(requests_.edits[0]);
+    EXPECT_EQ(await(first), (json{{"ok", true}, {"step", 2}}));
+    show(requests_.edits[0]);
+    EXPECT_EQ(second.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "a number twice";
+    show(requests_.edits[1]);
+    EXPECT_EQ(await(second), (json{{"ok", true}, {"step", 4}}));
+}
+
+// An edit that waited when the session stopped is not in the journal, and its client is gone.
+TEST_F(Desk, OfAResumedSessionCountsOnFromTheNumbersOfItsJournal) {
+    master::DeskOptions options;
+    options.lastEdit = 7;
+    open(&requests_, options);
+    std::future<json> answer = send("reset");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    EXPECT_EQ(requests_.edits[0].number, 8U);
+    show(requests_.edits[0]);
+    EXPECT_EQ(await(answer)["ok"], true);
+    EXPECT_EQ(ask("undo")["ok"], false);
+    std::future<json> later = send("settle");
+    obeyUntil([&] { return requests_.edits.size() == 2; });
+    EXPECT_EQ(requests_.edits[1].number, 9U) << "a refused edit takes no number";
+    show(requests_.edits[1]);
+    EXPECT_EQ(await(later)["ok"], true);
 }
 
 TEST_F(Desk, SaysThatAnEditOfAPausedSessionWaits) {
@@ -121,7 +156,7 @@ TEST_F(Desk, RefusesEditsForWhichTheDiskHasNoRoom) {
     EXPECT_EQ(await(before), (json{{"ok", true}, {"waits_for", "room"}}));
     EXPECT_EQ(requests_.edits.size(), 1U);
     EXPECT_EQ(desk_->edits().size(), 1U) << "the server may have it already";
-    show(sand::Edit::reset);
+    show(requests_.edits[0]);
     EXPECT_EQ(desk_->edits().size(), 0U);
 }
 
@@ -132,7 +167,7 @@ TEST_F(Desk, RefusesSandThatIsTooLargeForTheDiskAndAnswersNobodyElse) {
     most_ = 8;  // no sand is so small
     EXPECT_EQ(ask("load large")["ok"], false);
     EXPECT_EQ(before.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "the sand is not stopped";
-    show(sand::Edit::reset);
+    show(requests_.edits[0]);
     EXPECT_EQ(await(before), (json{{"ok", true}, {"step", 1}}));
 }
 

@@ -44,6 +44,11 @@ TEST(StateHash, TellsThePlaceOfTheToolAndWhetherItIsEngaged) {
     const std::uint64_t plain = hashAfter([](Step&) {});
     hashes.add("plain", plain);
     EXPECT_EQ(hashAfter([](Step& step) { step.epoch = 7; }), plain) << "the state does not hold the epoch";
+    const auto reset = [](std::uint64_t number) {
+        return after([number](Step& step) { step.edit = samples::withNumber(number, Edit::reset); });
+    };
+    EXPECT_EQ(reset(7).stateHash(), reset(8).stateHash()) << "the state does not hold the number of an edit";
+    EXPECT_EQ(reset(7).encodeState(), reset(8).encodeState());
     hashes.add("x", hashAfter([](Step& step) { step.path[0].x ^= 1; }));
     hashes.add("y", hashAfter([](Step& step) { step.path[0].y ^= 1; }));
     hashes.add("z", hashAfter([](Step& step) { step.path[0].z ^= 1; }));

@@ -58,7 +58,7 @@ EVENTS = (
 MPIRUN = (b"mpirun noticed that process rank 2 with PID 0 on node node02 exited on signal 9 (Killed).",
           b"  Process name: [[5156,1],2]\n  Exit code:    3", b"-" * 74, b"[node02:12345] *** Process received signal ***")
 STATUS = {"ok": True, "step": 12, "material": {"talus": 34.0}}
-VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 7}
+VERSION = {"program": "sandwall-master", "version": "0.2.0", "build": "0123456789abcdef", "protocol": 8}
 PROBE = {"backend": "egl", "renderer": "llvmpipe", "shortcomings": ["the screen has 60 Hz"], "version": "4.5"}
 HOSTS = b"node01 slots=2\nnode02 slots=1 # the left one\nnode03 slots=4 spare\n"
 

@@ -58,6 +58,12 @@ inline sand::HeightField randomField(int columns, int rows, std::int32_t range, 
     return field;
 }
 
+/// Returns `edit` with the number that a master gives to it.
+inline sand::Edit withNumber(std::uint64_t number, sand::Edit edit) {
+    edit.number = number;
+    return edit;
+}
+
 /// Returns a step of a hand that moves at random. About one step in five hovers.
 inline sand::Step randomStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     sand::Step step{.epoch = 1, .number = number, .engaged = random() % 5 != 0, .path = {}};

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "tests/haptic_bridge/client/linked_client.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
 using namespace haptic_bridge;
 using namespace test;
+using samples::withNumber;
 
 TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
     FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
@@ -84,9 +86,14 @@ StepMessage editOf(std::uint64_t number, const sand::Edit& edit) {
     return message;
 }
 
+std::uint64_t refusedForGarbage(const Client& client) {
+    return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
+}
+
 // Without this, a server could fill memory and journal with sand that no operator has loaded.
 TEST(Client, EndsTheLinkOverAnEditThatItHasNotAskedFor) {
-    const std::array<sand::Edit, 2> edits{sand::Edit::loaded(base::Bytes(60'000, 7)), sand::Edit(sand::Edit::settle)};
+    const std::array<sand::Edit, 2> edits{withNumber(1, sand::Edit::loaded(base::Bytes(60'000, 7))),
+                                          withNumber(2, sand::Edit::settle)};
     for (const sand::Edit& edit : edits) {
         FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
             if (linkUp(guest)) {
@@ -97,23 +104,24 @@ TEST(Client, EndsTheLinkOverAnEditThatItHasNotAskedFor) {
         }));
         Client client(server.address(), kOffer);
         grantWhenOffered(client, 1, 0);
-        const auto refused = [&] {
-            return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
-        };
-        EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+        EXPECT_TRUE(eventually([&] { return refusedForGarbage(client) == 1; }, 10000ms));
         const auto steps = client.drain(10);
         ASSERT_EQ(steps.size(), 1U);
         EXPECT_FALSE(steps[0].step.edit.any());
     }
 }
 
-TEST(Client, TakesALongLoadOnceForEachThatItAskedFor) {
-    const sand::Edit load = sand::Edit::loaded(base::Bytes(1'000'000, 7));
+TEST(Client, TakesALoadOnceByItsNumberAndKeepsOneCopyOfItsSand) {
+    const sand::Edit load = withNumber(41, sand::Edit::loaded(base::Bytes(1'000'000, 7)));
+    const sand::Edit again = withNumber(42, sand::Edit::loaded(base::Bytes(1'000'000, 7)));
+    const sand::Edit answer = withNumber(41, sand::Edit::load), answerToAgain = withNumber(42, sand::Edit::load);
     FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
         guest.reader.expectLoads(true);
         if (linkUp(guest) && guest.await<EditRequest>()) {
-            guest.send(editOf(1, load));
-            guest.send(editOf(2, load));
+            guest.send(editOf(1, answer));
+            guest.await<EditRequest>();
+            guest.send(editOf(2, answerToAgain));
+            guest.send(editOf(3, answerToAgain));
             guest.await<Bye>();
         }
     }));
@@ -121,11 +129,33 @@ TEST(Client, TakesALongLoadOnceForEachThatItAskedFor) {
     grantWhenOffered(client, 1, 0);
     ASSERT_TRUE(reaches(client, Link::linked)) << client.link().message;
     client.request(load);
-    const auto refused = [&] { return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1]; };
-    EXPECT_TRUE(eventually([&] { return refused() == 1; }, 10000ms));
+    ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 1; }));
+    client.request(again);
+    EXPECT_TRUE(eventually([&] { return refusedForGarbage(client) == 1; }, 10000ms)) << "a number twice";
     const auto steps = client.drain(10);
-    ASSERT_EQ(steps.size(), 1U);
-    EXPECT_EQ(steps[0].step.edit, load);
+    ASSERT_EQ(steps.size(), 2U);
+    EXPECT_EQ(steps[0].step.edit.number, 41U);
+    EXPECT_EQ(steps[0].step.edit.sand, load.sand) << "the same bytes in memory";
+    EXPECT_EQ(steps[1].step.edit.number, 42U) << "the same sand, loaded again";
+    EXPECT_EQ(steps[1].step.edit.sand, again.sand);
+}
+
+// The master has the sand of a load, so no server sends it back.
+TEST(Client, EndsTheLinkOverAStepAsLongAsALoad) {
+    const sand::Edit load = withNumber(1, sand::Edit::loaded(base::Bytes(100'000, 7)));
+    FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
+        guest.reader.expectLoads(true);
+        if (linkUp(guest) && guest.await<EditRequest>()) {
+            guest.send(editOf(1, load));
+            guest.await<Bye>();
+        }
+    }));
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    ASSERT_TRUE(reaches(client, Link::linked)) << client.link().message;
+    client.request(load);
+    EXPECT_TRUE(eventually([&] { return refusedForGarbage(client) == 1; }, 10000ms));
+    EXPECT_TRUE(client.drain(10).empty());
 }
 
 TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {

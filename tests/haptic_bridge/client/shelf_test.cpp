@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "haptic_bridge/client/grant.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
@@ -128,13 +129,15 @@ sand::Step numbered(std::uint64_t number, std::uint32_t epoch = 1) {
     return step;
 }
 
+Grant::Arrival arrival(Grant& grant, sand::Step step) { return grant.arrived(step); }
+
 TEST(Grant, JudgesStepsByEpochAndNumber) {
     Grant grant({3, 10, 0}, {}, {});
-    EXPECT_EQ(grant.arrived(numbered(11, 2)), Grant::Arrival::foreign);
-    EXPECT_EQ(grant.arrived(numbered(10, 3)), Grant::Arrival::stale);
-    EXPECT_EQ(grant.arrived(numbered(12, 3)), Grant::Arrival::afterGap);
-    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::next);
-    EXPECT_EQ(grant.arrived(numbered(11, 3)), Grant::Arrival::stale) << "a step that came twice";
+    EXPECT_EQ(arrival(grant, numbered(11, 2)), Grant::Arrival::foreign);
+    EXPECT_EQ(arrival(grant, numbered(10, 3)), Grant::Arrival::stale);
+    EXPECT_EQ(arrival(grant, numbered(12, 3)), Grant::Arrival::afterGap);
+    EXPECT_EQ(arrival(grant, numbered(11, 3)), Grant::Arrival::next);
+    EXPECT_EQ(arrival(grant, numbered(11, 3)), Grant::Arrival::stale) << "a step that came twice";
     EXPECT_EQ(grant.lastStep(), 11U);
     EXPECT_EQ(grant.bounded({9, 1}).stepNumber, 10U) << "a frame drawn before the grant";
     EXPECT_EQ(grant.bounded({10, 1, haptic_bridge::Held::disk}),
@@ -148,30 +151,63 @@ sand::Step withEdit(std::uint64_t number, const sand::Edit& edit) {
     return step;
 }
 
-// A step may hold 192 MiB of sand, and every step goes into the journal.
+/// Returns how `grant` classifies step `number` with edit `edit`.
+Grant::Arrival arrival(Grant& grant, std::uint64_t number, const sand::Edit& edit) {
+    return arrival(grant, withEdit(number, edit));
+}
+
+using samples::withNumber;
+
+// An edit goes into the journal, and may be 192 MiB of sand.
 TEST(Grant, TakesAnEditOnceAndOnlyIfItWasAskedFor) {
     Grant grant({1, 0, 0}, {}, {});
-    const sand::Edit load = sand::Edit::loaded({1, 2, 3});
-    EXPECT_EQ(grant.arrived(withEdit(1, load)), Grant::Arrival::unasked);
-    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::settle)), Grant::Arrival::unasked);
+    const sand::Edit load = withNumber(5, sand::Edit::loaded({1, 2, 3}));
+    EXPECT_EQ(arrival(grant, 1, load), Grant::Arrival::unasked);
+    EXPECT_EQ(arrival(grant, 1, withNumber(1, sand::Edit::settle)), Grant::Arrival::unasked);
     EXPECT_EQ(grant.lastStep(), 0U);
     grant.asked(load);
-    EXPECT_TRUE(grant.awaitsLoad());
-    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::loaded({1, 2, 4}))), Grant::Arrival::unasked) << "other sand";
-    EXPECT_EQ(grant.arrived(numbered(1)), Grant::Arrival::next) << "a step made before the request came";
-    EXPECT_TRUE(grant.awaitsLoad());
-    EXPECT_EQ(grant.arrived(withEdit(2, load)), Grant::Arrival::next);
-    EXPECT_FALSE(grant.awaitsLoad());
-    EXPECT_EQ(grant.arrived(withEdit(3, load)), Grant::Arrival::unasked) << "it was done already";
+    EXPECT_EQ(arrival(grant, 1, withNumber(6, load)), Grant::Arrival::unasked) << "a number that was not given";
+    EXPECT_EQ(arrival(grant, 1, withNumber(0, load)), Grant::Arrival::unasked);
+    EXPECT_EQ(arrival(grant, 1, withNumber(5, sand::Edit::settle)), Grant::Arrival::unasked) << "another kind";
+    EXPECT_EQ(arrival(grant, 1, {}), Grant::Arrival::next) << "a step made before the request came";
+    EXPECT_EQ(arrival(grant, 2, load), Grant::Arrival::next);
+    EXPECT_EQ(arrival(grant, 3, load), Grant::Arrival::unasked) << "it was done already";
+}
+
+// So no server can change an edit, and 192 MiB are never compared.
+TEST(Grant, GivesAStepTheEditThatWasAskedFor) {
+    Grant grant({1, 0, 0}, {}, {});
+    const sand::Edit load = withNumber(7, sand::Edit::loaded({1, 2, 3}));
+    const sand::Edit tune = withNumber(8, sand::Edit::tuned({7, 11, 13, 17}));
+    grant.asked(load);
+    grant.asked(tune);
+    sand::Step loads = withEdit(1, withNumber(7, sand::Edit::loaded({6, 6, 6})));
+    ASSERT_EQ(grant.arrived(loads), Grant::Arrival::next);
+    EXPECT_EQ(loads.edit.sand, load.sand) << "the same bytes in memory";
+    EXPECT_EQ(loads.edit.number, 7U);
+    sand::Step tunes = withEdit(2, withNumber(8, sand::Edit::tuned({1, 1, 1, 1})));
+    ASSERT_EQ(grant.arrived(tunes), Grant::Arrival::next);
+    EXPECT_EQ(tunes.edit, tune);
+}
+
+TEST(Grant, TellsEqualEditsApart) {
+    Grant grant({1, 0, 0}, {}, {});
+    for (const std::uint64_t number : {1, 2, 3}) {
+        grant.asked(withNumber(number, sand::Edit::loaded({1})));
+    }
+    EXPECT_EQ(arrival(grant, 1, withNumber(2, sand::Edit::loaded({1}))), Grant::Arrival::next);
+    EXPECT_EQ(arrival(grant, 2, withNumber(1, sand::Edit::loaded({1}))), Grant::Arrival::unasked)
+        << "the second has replaced it";
+    EXPECT_EQ(arrival(grant, 2, withNumber(2, sand::Edit::loaded({1}))), Grant::Arrival::unasked);
+    EXPECT_EQ(arrival(grant, 2, withNumber(3, sand::Edit::loaded({1}))), Grant::Arrival::next);
 }
 
 TEST(Grant, LetsAnEditReplaceTheOneBeforeIt) {
     Grant grant({1, 0, 0}, {}, {});
-    grant.asked(sand::Edit::loaded({1}));
-    grant.asked(sand::Edit::settle);
-    EXPECT_EQ(grant.arrived(withEdit(1, sand::Edit::settle)), Grant::Arrival::next);
-    EXPECT_FALSE(grant.awaitsLoad());
-    EXPECT_EQ(grant.arrived(withEdit(2, sand::Edit::loaded({1}))), Grant::Arrival::unasked);
+    grant.asked(withNumber(1, sand::Edit::loaded({1})));
+    grant.asked(withNumber(2, sand::Edit::settle));
+    EXPECT_EQ(arrival(grant, 1, withNumber(2, sand::Edit::settle)), Grant::Arrival::next);
+    EXPECT_EQ(arrival(grant, 2, withNumber(1, sand::Edit::loaded({1}))), Grant::Arrival::unasked);
 }
 
 TEST(Grant, HandsOverTheStepsThatAreLackedOnceAndThenTheSand) {

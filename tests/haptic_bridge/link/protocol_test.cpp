@@ -11,6 +11,7 @@
 
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/message_reader.hpp"
+#include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
@@ -54,7 +55,7 @@ std::vector<Message> oneOfEach() {
             Pong{123, -9},
             report,
             Bye{"good night"},
-            EditRequest{sand::Edit::undo},
+            EditRequest{samples::withNumber(300, sand::Edit::undo)},
             ForceShare{0.25, true},
             TickPiece{{4, 5}},
             PositionGreeting{kProtocolVersion, "glove", {5}},
@@ -196,7 +197,9 @@ TEST(Protocol, RefusesAShareOfTheForceThatNoOperatorCanSet) {
 }
 
 TEST(Protocol, AnEditTakesItsDetailsAlong) {
-    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
+    for (sand::Edit edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
+        EXPECT_THROW((void)decode(withoutLength(encode(EditRequest{edit}))), base::FormatError) << "it has no number";
+        edit.number = 1;
         const base::Bytes framed = encode(EditRequest{edit});
         EXPECT_EQ(decode(withoutLength(framed)), Message(EditRequest{edit}));
         for (std::size_t length = 0; length < framed.size() - 4; ++length) {
@@ -207,26 +210,25 @@ TEST(Protocol, AnEditTakesItsDetailsAlong) {
 
 // A peer that is not linked, or was not asked for sand, cannot make this side hold more than an ordinary message.
 TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
-    const base::Bytes sand(100'000, 7);
     sand::Step step = someStep();
-    step.edit = sand::Edit::loaded(sand);
-    for (const Message& message : {Message(EditRequest{step.edit}), Message(StepMessage{-5, 17, step})}) {
-        const base::Bytes framed = encode(message);
-        MessageReader expecting;
-        expecting.expectLoads(true);
-        expecting.feed(framed);
-        EXPECT_EQ(expecting.next(), message);
-        for (const bool state : {false, true}) {
-            MessageReader other;
-            other.expectState(state);
-            other.feed(framed);
-            EXPECT_THROW((void)other.next(), base::FormatError);
-        }
-    }
+    step.edit = samples::withNumber(3, sand::Edit::loaded(base::Bytes(100'000, 7)));
+    const Message load = EditRequest{step.edit};
     MessageReader expecting;
     expecting.expectLoads(true);
-    expecting.feed(encode(Bye{std::string(100'000, 'x')}));
-    EXPECT_THROW((void)expecting.next(), base::FormatError);
+    expecting.feed(encode(load));
+    EXPECT_EQ(expecting.next(), load);
+    for (const bool state : {false, true}) {
+        MessageReader other;
+        other.expectState(state);
+        other.feed(encode(load));
+        EXPECT_THROW((void)other.next(), base::FormatError);
+    }
+    for (const Message& other : {Message(Bye{std::string(100'000, 'x')}), Message(StepMessage{-5, 17, step})}) {
+        MessageReader reader;
+        reader.expectLoads(true);
+        reader.feed(encode(other));
+        EXPECT_THROW((void)reader.next(), base::FormatError);
+    }
 }
 
 TEST(Protocol, SurvivesRandomMutations) {

@@ -103,7 +103,7 @@ TEST_F(LetGo, AFailedSandThreadEndsTheServerWithZero) {
     SandThread sandThread(
         scene_, Pace::realtime, *hand_, *channel_,
         {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
-         [this](std::uint32_t, const base::Bytes&) {
+         [this](std::uint32_t, const base::Bytes&, std::uint64_t) {
              if (pushed_.pressed) {
                  throw std::runtime_error("no memory for a step");
              }

@@ -109,7 +109,7 @@ private:
     [[nodiscard]] haptic_bridge::StepMaker::Output output() {
         return {[](std::uint32_t) {}, [](std::uint32_t, haptic_bridge::NeedState) {},
                 [](std::uint32_t, const std::string&) {},
-                [this](std::uint32_t, const base::Bytes& step) {
+                [this](std::uint32_t, const base::Bytes& step, std::uint64_t) {
                     if (onStep) {
                         onStep(step);
                     }

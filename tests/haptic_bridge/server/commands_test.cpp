@@ -60,7 +60,7 @@ public:
                        busy_.set_value();
                        goOn_.get_future().wait();
                    },
-                   [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}}) {
+                   [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&, std::uint64_t) {}}) {
         thread_.start(1, {1, 7, 7});
         busy_.get_future().wait();
     }

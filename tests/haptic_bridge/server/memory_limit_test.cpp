@@ -6,6 +6,7 @@
 #include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/hostile_sand.hpp"
 #include "tests/support/run_program.hpp"
+#include "tests/support/sand_samples.hpp"
 
 #ifdef SANDWALL_RELEASE
 namespace {
@@ -114,11 +115,12 @@ TEST_F(HostileMaster, WhoseStateClaimsTooMuchIsRefused) {
 
 TEST_F(HostileMaster, WhoseLoadClaimsTooMuchIsRefused) {
     using namespace haptic_bridge;
-    ASSERT_LT(encode(EditRequest{sand::Edit::loaded(dead_)}).size(), kMaxMessage) << "an ordinary message";
+    const EditRequest load{samples::withNumber(1, sand::Edit::loaded(dead_))};
+    ASSERT_LT(encode(load).size(), kMaxMessage) << "an ordinary message";
     {
         test::RawPeer master(server_.port());
         grant<Ready>(master, {1, 0, sand::Replica(scene_).stateHash()});
-        master.send(EditRequest{sand::Edit::loaded(dead_)});
+        master.send(load);
         EXPECT_EQ(waitFor<Refusal>(master).code, RefusalCode::state);
     }
     expectGoesOn("a load does not fit this scene");

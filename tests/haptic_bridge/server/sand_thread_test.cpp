@@ -34,7 +34,7 @@ public:
           hand_(scene, std::move(device), HandSettings::Datum::surface, Guards::Mode::literal),
           thread_(scene, pace, hand_, *channel_,
                   {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
-                   [this](std::uint32_t, const base::Bytes& message) { take(message); }}) {}
+                   [this](std::uint32_t, const base::Bytes& message, std::uint64_t) { take(message); }}) {}
 
     /// Links a master whose sand is that of all steps so far.
     void link() {
@@ -154,9 +154,10 @@ TEST(SandThread, WhatIsFeltDoesNotAgeWhileStepsAreWithheld) {
     const scene::Scene scene = scene::loadScene(folder.write("small.toml", kSmallScene));
     HapticTick hand(scene, openDevice("script:gis", HandSettings::parse({}), scene), HandSettings::Datum::surface);
     HandChannel channel;
-    SandThread sandThread(scene, Pace::realtime, hand, channel,
-                          {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {},
-                           [](std::uint32_t, const std::string&) {}, [](std::uint32_t, const base::Bytes&) {}});
+    SandThread sandThread(
+        scene, Pace::realtime, hand, channel,
+        {[](std::uint32_t) {}, [](std::uint32_t, NeedState) {}, [](std::uint32_t, const std::string&) {},
+         [](std::uint32_t, const base::Bytes&, std::uint64_t) {}});
     sandThread.start(1, {1, 0, sand::Replica(scene).stateHash()});
     const auto withheld = [&](std::uint64_t steps) {
         return eventually([&] { return inAll(sandThread.withheld()) >= steps; });

@@ -12,6 +12,7 @@ namespace {
 using namespace test;
 using haptic_bridge::Client;
 using haptic_bridge::Link;
+using samples::withNumber;
 
 class HapticServer : public testing::Test {
 protected:
@@ -184,8 +185,10 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     sliding.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
     const base::Bytes roughSand = sliding.copySand()->encode();
     ASSERT_GT(roughSand.size(), haptic_bridge::kMaxMessage);
-    const std::vector<sand::Edit> asked{sand::Edit::tuned(tuning), sand::Edit::loaded(roughSand),
-                                        sand::Edit::loaded(sand::Replica(scene_).copySand()->encode())};
+    const std::vector<sand::Edit> asked{
+        withNumber(11, sand::Edit::tuned(tuning)), withNumber(12, sand::Edit::loaded(roughSand)),
+        withNumber(13, sand::Edit::loaded(roughSand)),  // the same once more: the server takes the next long load
+        withNumber(14, sand::Edit::loaded(sand::Replica(scene_).copySand()->encode()))};
     for (const sand::Edit& edit : asked) {
         client.request(edit);
         ASSERT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 40)) << client.link().message;

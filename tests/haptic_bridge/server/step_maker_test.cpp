@@ -75,9 +75,10 @@ protected:
                      {[this](std::uint32_t session) { ready_.push_back(session); },
                       [this](std::uint32_t, NeedState need) { needs_.push_back(need); },
                       [this](std::uint32_t, std::string why) { unusable_.push_back(std::move(why)); },
-                      [this](std::uint32_t, const base::Bytes& message) {
+                      [this](std::uint32_t, const base::Bytes& message, std::uint64_t edit) {
                           constexpr std::size_t kLength = sizeof(std::uint32_t);
                           steps_.push_back(std::get<StepMessage>(decode(std::span(message).subspan(kLength))));
+                          EXPECT_EQ(edit, steps_.back().step.edit.number);
                       },
                       [this](std::uint32_t, Audited result) { audits_.push_back(result); }},
                      {},
@@ -221,9 +222,9 @@ TEST_F(StepMakerTest, FindsInAnAuditThatItsMemoryHasChanged) {
 
 TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
     maker_.start(1, grantOf(sand::Replica(scene_)));
-    maker_.edit({sand::Edit(sand::Edit::settle)});
+    maker_.edit({samples::withNumber(9, sand::Edit::settle)});
     step(2);
-    EXPECT_EQ(steps_[0].step.edit.kind, sand::Edit::settle);
+    EXPECT_EQ(steps_[0].step.edit, samples::withNumber(9, sand::Edit::settle));
     EXPECT_FALSE(steps_[1].step.edit.any());
     maker_.edit({sand::Edit(sand::Edit::reset)});
     maker_.release();
@@ -241,10 +242,27 @@ TEST_F(StepMakerTest, RefusesALoadThatIsNoSandOfItsScene) {
     EXPECT_EQ(unusable_.size(), 1U);
     step();
     EXPECT_FALSE(steps_[0].step.edit.any());
-    maker_.edit({sand::Edit::loaded(maker_.sand().copySand()->encode())});
+    maker_.edit({samples::withNumber(5, sand::Edit::loaded(maker_.sand().copySand()->encode()))});
     step();
     EXPECT_EQ(unusable_.size(), 1U);
     EXPECT_EQ(steps_[1].step.edit.kind, sand::Edit::load);
+}
+
+TEST_F(StepMakerTest, SendsTheNumberOfALoadAndNotItsSand) {
+    sand::Replica master(scene_);
+    master.apply(engagedStep(1));
+    maker_.start(1, grantOf(sand::Replica(scene_)));
+    const sand::Edit load = samples::withNumber(5, sand::Edit::loaded(master.copySand()->encode()));
+    maker_.edit({load});
+    step();
+    ASSERT_EQ(steps_[0].step.edit.number, 5U);
+    ASSERT_EQ(steps_[0].step.edit.kind, sand::Edit::load);
+    EXPECT_TRUE(steps_[0].step.edit.sand->empty());
+    sand::Replica wall(scene_);
+    sand::Step whole = steps_[0].step;
+    whole.edit = load;
+    wall.apply(whole);
+    EXPECT_EQ(wall.stateHash(), steps_[0].stateHash) << "its own replica has loaded it";
 }
 
 TEST_F(StepMakerTest, LiftsAToolThatTheMasterBeforeLeftInTheSand) {

@@ -319,6 +319,28 @@ TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
     EXPECT_EQ(std::filesystem::file_size(journal()), size);
 }
 
+// The first new edit gets a higher number than all edits that are in a step. The torn step was never shown.
+TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
+    const auto append = [this](std::uint64_t number, std::uint32_t epoch) {
+        const auto session = master::readSession(journal(), "");
+        master::JournalWriter writer(session->place, "test");
+        master::JournalFrame frame{++frame_, terrain_.stateHash(), {}};
+        frame.steps.push_back(samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_));
+        frame.steps.back().epoch = epoch;
+        frame.steps.back().edit = samples::withNumber(number, sand::Edit::settle);
+        terrain_.apply(frame.steps.back());
+        writer.append(frame);
+        writer.sync();
+    };
+    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 0U) << "these edits came from no operator";
+    append(7, 2);
+    append(300, 3);
+    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 300U);
+    append(301, 3);
+    std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 5);
+    EXPECT_EQ(master::readSession(journal(), "")->lastEdit, 300U);
+}
+
 // The operator's material is written before the step with its edit.
 TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
     const scene::Material before = master::readSession(journal(), "")->material;

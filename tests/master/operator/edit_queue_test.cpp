@@ -4,26 +4,31 @@
 #include <gtest/gtest.h>
 
 #include "base/input_error.hpp"
+#include "tests/support/sand_samples.hpp"
 
 namespace {
 
 using master::EditQueue;
 using sand::Edit;
 
+using samples::withNumber;
+
 Edit loadOf(std::size_t bytes) { return Edit::loaded(base::Bytes(bytes)); }
 
-TEST(EditQueue, TellsWhoseEditIsShownInTheOrderOfAsking) {
+TEST(EditQueue, TellsWhoseEditIsShownByItsNumber) {
     EditQueue queue;
-    queue.add({Edit::reset, 7, {}});
-    queue.add({Edit::settle, {}, {}});
-    queue.add({Edit::reset, 8, {}});
-    EXPECT_EQ(queue.shown({}), std::nullopt) << "a step without an edit";
-    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "the first edit has not been shown";
+    queue.add({withNumber(4, Edit::reset), 7, {}});
+    queue.add({withNumber(5, Edit::settle), {}, {}});
+    queue.add({withNumber(6, Edit::reset), 8, {}});
+    EXPECT_EQ(queue.shown(0), std::nullopt) << "a step without an edit";
+    EXPECT_EQ(queue.shown(3), std::nullopt) << "an edit of an earlier process";
     EXPECT_EQ(queue.size(), 3U);
-    EXPECT_EQ(queue.shown(Edit::reset), 7U);
-    EXPECT_EQ(queue.shown(Edit::settle), std::nullopt) << "the edit came from standard input";
+    EXPECT_EQ(queue.shown(4), 7U);
+    EXPECT_EQ(queue.shown(4), std::nullopt) << "it was answered already, and the equal one waits";
+    EXPECT_EQ(queue.size(), 2U);
+    EXPECT_EQ(queue.shown(5), std::nullopt) << "the edit came from standard input";
     EXPECT_EQ(queue.size(), 1U);
-    EXPECT_EQ(queue.shown(Edit::reset), 8U);
+    EXPECT_EQ(queue.shown(6), 8U);
     EXPECT_EQ(queue.size(), 0U);
 }
 
@@ -46,25 +51,28 @@ TEST(EditQueue, KnowsTheMaterialThatAStepMakes) {
     steep.threshold = 1000;
     scene::Material material;
     material.dryTalus = 33;
-    queue.add({Edit::reset, {}, {}});
-    queue.add({Edit::tuned(steep), {}, material});
+    scene::Material nearly = material;
+    nearly.dryTalus = 33.00001;  // it gives the same tuning, because a tuning is in whole units
+    queue.add({withNumber(1, Edit::reset), {}, {}});
+    queue.add({withNumber(2, Edit::tuned(steep)), {}, material});
+    queue.add({withNumber(3, Edit::tuned(steep)), {}, nearly});
     std::vector<sand::Step> steps(3);
-    steps[0].edit = Edit::reset;
-    steps[2].edit = Edit::tuned(steep);
+    steps[0].edit = withNumber(1, Edit::reset);
+    steps[2].edit = withNumber(3, Edit::tuned(steep));
     const std::vector<scene::Material> made = queue.materialsOf(steps);
     ASSERT_EQ(made.size(), 1U);
-    EXPECT_EQ(made[0].dryTalus, 33);
+    EXPECT_EQ(made[0].dryTalus, 33.00001) << "and not that of the equal edit";
 }
 
 TEST(EditQueue, LetsThoseGoWhoWaitAndKeepsTheirEdits) {
     EditQueue queue;
-    queue.add({Edit::reset, 7, {}});
-    queue.add({Edit::settle, {}, {}});
-    queue.add({Edit::undo, 9, {}});
+    queue.add({withNumber(1, Edit::reset), 7, {}});
+    queue.add({withNumber(2, Edit::settle), {}, {}});
+    queue.add({withNumber(3, Edit::undo), 9, {}});
     EXPECT_EQ(queue.releaseClients(), (std::vector<master::ControlSocket::Client>{7, 9}));
     EXPECT_TRUE(queue.releaseClients().empty());
     EXPECT_EQ(queue.size(), 3U);
-    EXPECT_EQ(queue.shown(Edit::reset), std::nullopt) << "answered already";
+    EXPECT_EQ(queue.shown(1), std::nullopt) << "answered already";
 }
 
 }  // namespace

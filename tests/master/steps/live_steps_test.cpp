@@ -16,6 +16,7 @@
 namespace {
 
 using haptic_bridge::TimedStep;
+using samples::withNumber;
 using test::eventually;
 using test::FakeServer;
 using test::SandServer;
@@ -36,8 +37,9 @@ protected:
         std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
         for (const TimedStep& timed : steps) {
             wall_.apply(timed.step);
-            edits_ += timed.step.edit.any() ? 1 : 0;
-            lastEdit_ = timed.step.edit.any() ? timed.step.edit : lastEdit_;
+            if (timed.step.edit.any()) {
+                edits_.push_back(timed.step.edit);
+            }
         }
         live.shown(wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no);
         differed_ += live.proveServer(steps, wall_.stateHash()) ? 0 : 1;
@@ -62,8 +64,8 @@ protected:
     const scene::Scene scene_ = samples::flatScene(32, 24);
     sand::Replica wall_{scene_};
     std::atomic<std::int64_t> nowNs_{1'000'000'000};
-    int differed_ = 0, edits_ = 0;
-    sand::Edit lastEdit_;
+    int differed_ = 0;
+    std::vector<sand::Edit> edits_;  // of the steps that were shown
 };
 
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
@@ -284,40 +286,85 @@ TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
     SandServer server(scene_);
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
-    for (const sand::Edit::Kind kind : {sand::Edit::settle, sand::Edit::settle, sand::Edit::reset}) {
-        live.request(kind);
+    const base::Bytes sand = wall_.copySand()->encode();
+    const std::vector<sand::Edit> asked{withNumber(1, sand::Edit::settle), withNumber(2, sand::Edit::settle),
+                                        withNumber(3, sand::Edit::loaded(sand)),
+                                        withNumber(4, sand::Edit::loaded(sand)), withNumber(5, sand::Edit::reset)};
+    for (const sand::Edit& edit : asked) {
+        live.request(edit);
     }
-    ASSERT_TRUE(showUntil(live, [&] { return edits_ == 3; }));
-    EXPECT_EQ(lastEdit_, sand::Edit(sand::Edit::reset)) << "in the order in which they were asked for";
+    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 5; }));
+    EXPECT_EQ(edits_, asked) << "in the order in which they were asked for, also if two are equal";
+    EXPECT_EQ(edits_[2].sand, asked[2].sand) << "the same bytes in memory";
     const std::uint64_t then = wall_.stepNumber();
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));
-    EXPECT_EQ(edits_, 3);
-    EXPECT_EQ(server.requests(), 3);
+    EXPECT_EQ(edits_.size(), 5U);
+    EXPECT_EQ(server.requests(), 5);
     EXPECT_FALSE(server.crowded()) << "a server keeps one for its next step";
     EXPECT_EQ(differed_, 0);
 }
 
 TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
-    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
+    std::atomic<int> asked = 0;
+    FakeServer server([&](FakeServer::Guest& guest) {
         if (!guest.await<haptic_bridge::Hello>()) {
             return;
         }
         guest.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (guest.await<haptic_bridge::Start>()) {
-            guest.send(haptic_bridge::Ready{});
-            (void)guest.await<haptic_bridge::EditRequest>();  // the server then closes the link
+        const auto start = guest.await<haptic_bridge::Start>();
+        if (!start) {
+            return;
         }
-    }));
+        guest.send(haptic_bridge::Ready{});
+        if (server.guests() > 1) {  // it does the edit late, in the next epoch
+            guest.send(haptic_bridge::StepMessage{
+                1, 1, {start->epoch, start->stepNumber + 1, false, {}, withNumber(1, sand::Edit::settle)}});
+            guest.await<haptic_bridge::Bye>();
+        } else if (guest.await<haptic_bridge::EditRequest>()) {
+            ++asked;  // the server then closes the link
+        }
+    });
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    live.request(sand::Edit::settle);
-    ASSERT_TRUE(showUntil(live, [&] { return edits_ == 1; }));
+    live.request(withNumber(1, sand::Edit::settle));
+    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 1; }));
+    EXPECT_EQ(asked, 1);
     EXPECT_FALSE(live.linked());
+    EXPECT_EQ(edits_[0].number, 1U);
+    const auto garbage = [&] {
+        return live.counters().refused[static_cast<std::size_t>(haptic_bridge::RefusalCode::garbage) - 1];
+    };
+    ASSERT_TRUE(showUntil(live, [&] { return garbage() == 1; })) << "it was not asked for in this epoch";
     for (int frame = 0; frame < 20; ++frame) {
         show(live);
     }
-    EXPECT_EQ(edits_, 1);
+    EXPECT_EQ(edits_.size(), 1U) << "each number is in one step";
+}
+
+// The server of the first link is wrong from step 30 on. The master then numbers the steps until it is linked again.
+TEST_F(LiveStepsTest, EditsKeepTheirNumbersOverEpochs) {
+    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
+        return link == 1 && step >= 30 ? hash ^ 1 : hash;
+    });
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
+    live.request(withNumber(8, sand::Edit::settle));
+    ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
+    ASSERT_FALSE(live.linked());
+    live.request(withNumber(9, sand::Edit::settle));
+    live.request(withNumber(10, sand::Edit::settle));
+    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && live.linked(); }));
+    live.request(withNumber(11, sand::Edit::settle));
+    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 4; }));
+    const std::uint64_t then = wall_.stepNumber();
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));
+    std::vector<std::uint64_t> numbers;
+    for (const sand::Edit& edit : edits_) {
+        numbers.push_back(edit.number);
+    }
+    EXPECT_EQ(numbers, (std::vector<std::uint64_t>{8, 9, 10, 11}));
+    EXPECT_GE(live.epoch(), 3U);
 }
 
 // A server may send 50,000 messages a second, and each piece goes into the journal.

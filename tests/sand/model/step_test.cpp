@@ -37,6 +37,7 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
         } else if (edit.kind == sand::Edit::load) {
             edit = sand::Edit::loaded({3, 1, 4, 1, 5});
         }
+        edit.number = edit.any() ? ~std::uint64_t{0} - static_cast<std::uint64_t>(kind) : 0;
         for (const bool engaged : {false, true}) {
             const sand::Step step{1, 2, engaged, {{5, 6, 7}}, edit};
             const base::Bytes bytes = bytesOf(step);
@@ -51,8 +52,9 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
 
 // Journals and messages have exactly these bytes. A sphere is encoded as its radius alone.
 TEST(Step, OfASphereTakesTheseBytes) {
-    sand::Step step{3, 300, true, {{5, -6, 70}}, sand::Edit::tuned({7, 11, 13, 17})};
-    const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 17, 0, 0, 0};
+    sand::Step step{3, 300, true, {{5, -6, 70}}, samples::withNumber(200, sand::Edit::tuned({7, 11, 13, 17}))};
+    const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0,
+                               0, 11,   0, 0, 0, 13, 0,  0,    0, 17,   0, 0, 0};
     EXPECT_EQ(bytesOf(step), expected);
     base::ByteReader reader(expected);
     EXPECT_EQ(base::read<sand::Step>(reader), step);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/steps/own_steps.hpp"
+
+#include <cmath>
+
+#include "host/print_line.hpp"
+
+namespace master {
+
+std::size_t OwnSteps::due(std::int64_t nowNs) {
+    if (pace_ == Pace::fast) {
+        return 1;
+    }
+    owed_ += static_cast<double>(nowNs - lastNs_) * 1e-9 * stepsPerSecond_;
+    lastNs_ = nowNs;
+    // A pointer is read once per frame. Rounding gives each frame its step, although frames are never quite punctual.
+    const double due = std::floor(owed_ + (pointer_ ? 0.5 : 0));
+    owed_ -= due;
+    return static_cast<std::size_t>(due);
+}
+
+void OwnSteps::fill(haptic_bridge::TimedStep& own) {
+    if (!pointer_) {
+        positions_.fill(own.step);
+        return;
+    }
+    own.serverTimeNs = pointer_->fill(own.step);
+    own.receivedNs = pointedNs_;
+}
+
+void OwnSteps::followPositions(haptic_bridge::Client& client, haptic_bridge::Link link, const sand::Replica& sand,
+                               std::int64_t nowNs) {
+    if (link != haptic_bridge::Link::streaming) {
+        positions_.end();
+        return;
+    }
+    if (!positions_.streaming()) {
+        positions_.begin(sand);
+    }
+    positions_.add(client.drainPositions(), nowNs);
+    for (const std::string& line : positions_.troubles(client.floods(), nowNs)) {
+        host::printLine("{}", line);
+    }
+}
+
+void OwnSteps::pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand,
+                       std::int64_t receivedNs) {
+    if (!pointer_) {
+        pointer_.emplace(stepsPerSecond_, sand);
+    }
+    pointer_->take(reports, sand);
+    pointedNs_ = receivedNs;
+}
+
+}  // namespace master
