@@ -16,6 +16,14 @@ std::unique_ptr<Surface> makeSurface(const Start& start, const grid::Erosion::Op
     return std::make_unique<grid::GridSurface>(start.rules, start.terrain, start.ground, options);
 }
 
+HeightAt startHeights(const Start& start) {
+    if (start.tin != nullptr) {
+        const std::shared_ptr<const Surface> tin = makeSurface(start);
+        return [tin](double x, double y) { return tin->height(x, y); };
+    }
+    return [&field = start.terrain](double x, double y) { return field.interpolated(x, y); };  // it needs no copy
+}
+
 void startFrom(const Surface& surface, Start& start) {
     const SurfaceData data = surface.data();
     if (const auto* grid = std::get_if<GridData>(&data)) {

@@ -14,7 +14,7 @@ namespace haptic_bridge {
 namespace {
 
 /// Returns the size of one step of a quantised place [scene unit].
-double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
+double probeStep(const scene::Scene& scene) { return sand::probeUnit(scene.terrain.cellSize()); }
 
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
     const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;

@@ -2,16 +2,14 @@
 #include "master/steps/pointer_hand.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace master {
 namespace {
 
-/// Returns the height of a tool that is `above` the surface, within what a step can hold [probe unit].
-std::int32_t raised(std::int32_t surface, double above) {
-    return static_cast<std::int32_t>(
-        std::clamp<double>(surface + std::round(above), -sand::kMaxProbe, sand::kMaxProbe - 1));
+/// Returns `surface` raised by `above` [probe unit].
+sand::ProbePoint raised(const sand::ProbePoint& surface, double above) {
+    return {surface.x, surface.y, sand::probeCoordinate((surface.z + above) / sand::kProbePerCell)};
 }
 
 }  // namespace
@@ -25,18 +23,18 @@ void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica
     radius_ = sand.toolShape().radius;
     surface_.reset();
     if (sample.meets != 0) {
-        surface_ = sample.z;
-        last_ = {sample.x, sample.y, raised(sample.z, radius_ * (sample.pressed != 0 ? 1 - depth_ : kHover))};
+        surface_ = sample.probe.z;
+        last_ = raised(sample.probe, radius_ * (sample.pressed != 0 ? 1 - depth_ : kHover));
     }
     engaged_ = sample.meets != 0 && sample.pressed != 0;
-    lastNs_ = sample.at;
-    path_.add({sample.at, last_, engaged_});
+    lastNs_ = sample.readNs;
+    path_.add({sample.readNs, last_, engaged_});
 }
 
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
-    last_.z = raised(*surface_, kHover * radius_);
+    last_ = raised({last_.x, last_.y, *surface_}, kHover * radius_);
     path_.add({lastNs_, last_, false});
     resized_ = true;
 }
@@ -59,7 +57,7 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     if (former != hand && engaged_) {
         // Avoids a furrow from the former hand's place to that of the new one, which may rest for a while.
         const auto ended = reports[*former].places();
-        lift(!places.empty() ? places.front().at : !ended.empty() ? ended.back().at : lastNs_);
+        lift(!places.empty() ? places.front().readNs : !ended.empty() ? ended.back().readNs : lastNs_);
     }
     for (const lockstep::PointerSample& sample : places) {
         add(sample, sand);

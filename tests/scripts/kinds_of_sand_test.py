@@ -34,11 +34,10 @@ KINDS = {
 }
 # Files, and folders that end in a slash, that ask whether a scene has a table [tin].
 STARTS = {
-    "haptic_bridge/hand/hand_mapping.cpp": "interpolates a height field between its cells",
     "master/": "the memory that ranks need, and the volume that a session begins with",
     "sand/replica.cpp": "the memory that a replica needs",
     "sand/start.cpp": "the mean height",
-    "sand/surface_factory.cpp": "makes the sand",
+    "sand/surface_factory.cpp": "makes the sand, and the heights that a hand follows",
     "scene/load/memory.cpp": "the memory that a scene needs",
     "scene/load/scene_file.cpp": "refuses a scheme that a TIN does not have",
     "scene/load/terrain.cpp": "columns and rows",
