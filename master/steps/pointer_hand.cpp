@@ -15,34 +15,32 @@ sand::ProbePoint raised(const sand::ProbePoint& surface, double above) {
 }  // namespace
 
 PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
-    : path_(stepsPerSecond), last_(sand.probe()), radius_(sand.toolShape().radius), liftFirst_(sand.engaged()) {
-    path_.restart(last_, false);
+    : Hand(stepsPerSecond), radius_(sand.toolShape().radius) {
+    Hand::begin(sand);
 }
 
-void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica& sand) {
+void PointerHand::point(const lockstep::PointerSample& sample, const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
     surface_.reset();
-    if (sample.meets != 0) {
-        surface_ = sample.probe.z;
-        last_ = raised(sample.probe, radius_ * (sample.pressed != 0 ? 1 - depth_ : kHover));
+    if (sample.meets == 0) {
+        lift(sample.readNs);
+        return;
     }
-    engaged_ = sample.meets != 0 && sample.pressed != 0;
-    lastNs_ = sample.readNs;
-    path_.add({sample.readNs, last_, engaged_});
+    const bool pressed = sample.pressed != 0;
+    surface_ = sample.probe.z;
+    add({sample.readNs, raised(sample.probe, radius_ * (pressed ? 1 - depth_ : kHover)), pressed});
 }
 
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
-    last_ = raised({last_.x, last_.y, *surface_}, kHover * radius_);
-    path_.add({lastNs_, last_, false});
-    resized_ = true;
+    const haptic_bridge::HandSample& before = last();
+    add({.readNs = before.readNs,
+         .probe = raised({before.probe.x, before.probe.y, *surface_}, kHover * radius_),
+         .read = false});
 }
 
-void PointerHand::lift(std::int64_t at) {
-    engaged_ = false;
-    path_.add({at, last_, false});
-}
+void PointerHand::lift(std::int64_t at) { add({at, last().probe, false}); }
 
 void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
     for (const lockstep::PointerReport& report : reports) {
@@ -54,25 +52,17 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     }
     const auto places = reports[*hand].places();
     const std::optional<std::size_t> former = std::exchange(hand_, hand);
-    if (former != hand && engaged_) {
+    if (former != hand && last().engaged) {
         // Avoids a furrow from the former hand's place to that of the new one, which may rest for a while.
         const auto ended = reports[*former].places();
-        lift(!places.empty() ? places.front().readNs : !ended.empty() ? ended.back().readNs : lastNs_);
+        lift(!places.empty() ? places.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
     }
     for (const lockstep::PointerSample& sample : places) {
-        add(sample, sand);
+        point(sample, sand);
     }
-    if (surface_ && !engaged_ && sand.toolShape().radius != radius_) {
+    if (surface_ && !last().engaged && sand.toolShape().radius != radius_) {
         hoverAt(sand);
     }
-}
-
-std::int64_t PointerHand::fill(sand::Step& step) {
-    if (std::exchange(liftFirst_, false)) {
-        return 0;
-    }
-    const std::int64_t readNs = path_.take(step);
-    return std::exchange(resized_, false) ? 0 : readNs;
 }
 
 }  // namespace master

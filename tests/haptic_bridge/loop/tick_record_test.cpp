@@ -55,7 +55,7 @@ protected:
         hand_->restart();
         recorder_->begin();
         PathBuilder path(scene_.rules.stepsPerSecond);
-        path.restart(terrain_.probe(), false);
+        path.restart(terrain_.probe());
         for (int i = 0; i < steps; ++i) {
             takeSurface(terrain_, hand_->where(), surface_);
             for (int tick = 0; tick < 16; ++tick) {
