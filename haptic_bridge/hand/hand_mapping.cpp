@@ -37,8 +37,4 @@ std::optional<sand::ProbePoint> HandMapping::probe(const Pose& pose) const {
     return sand::probePoint(x, y, datumAt(x, y) + pose.z * radius_);
 }
 
-sand::force::Vec3 HandMapping::place(sand::ProbePoint at) const {
-    return sand::force::placeOf(at, sand::probeUnit(scene_.terrain.cellSize()));
-}
-
 }  // namespace haptic_bridge

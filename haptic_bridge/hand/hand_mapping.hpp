@@ -23,8 +23,6 @@ public:
     [[nodiscard]] static std::optional<sand::Heading> heading(const Pose& pose) {
         return pose.heading ? sand::headingOf(*pose.heading, pose.leftFoot) : std::nullopt;
     }
-    /// Returns the tool's centre at `at` [scene unit], measured from the south-west corner and from height 0.
-    [[nodiscard]] sand::force::Vec3 place(sand::ProbePoint at) const;
 
 private:
     [[nodiscard]] double datumAt(double x, double y) const;  // [cell], height of the datum at x, y [cell]

@@ -46,7 +46,7 @@ void ChannelHand::refresh(const sand::Replica& terrain) {
 /// hand has been. Later the hand may be ahead of its tool.
 void ChannelHand::copy(const sand::Replica& terrain) {
     FeltSand& next = channel_.surface.next();
-    takeSurface(terrain, hand_.where(), next);
+    takeSurface(terrain, hand_.probe(), next);
     next.edits = edits_;
     next.timeNs = copiedNs_ = now_();
     next.stepNs = stepNs_;
@@ -75,7 +75,7 @@ void VirtualHand::collect() {
 }
 
 void VirtualHand::publish(const sand::Replica& terrain, bool edited) {
-    takeSurface(terrain, hand_.where(), surface_);
+    takeSurface(terrain, hand_.probe(), surface_);
     surface_.edits += edited ? 1 : 0;
     surface_.stepNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
 }

@@ -112,7 +112,7 @@ TEST(HandTicks, CountTicksWithAForceAndTicksOfAFault) {
                     HandSettings::Datum::level);
     std::int64_t now = 0;  // [ns]
     FeltSand felt;
-    takeSurface(sand::Replica(scene), hand.where(), felt);
+    takeSurface(sand::Replica(scene), hand.probe(), felt);
     const auto ticks = [&](int count) {
         for (; count > 0; --count) {
             felt.timeNs = felt.stepNs = now += 1'000'000;
