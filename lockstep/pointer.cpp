@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "base/byte_stream.hpp"
-#include "sand/model/step.hpp"
 
 namespace lockstep {
 
@@ -27,10 +26,10 @@ void requireValid(const PointerReport& report) {
     }
     constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // [ns], so that sums and differences never overflow
     for (const PointerSample& sample : report.places()) {
-        if (sample.at < 0 || sample.at >= kLatest) {
-            throw base::FormatError(fmt::format("a pointer at the time {} ns", sample.at));
+        if (sample.readNs < 0 || sample.readNs >= kLatest) {
+            throw base::FormatError(fmt::format("a pointer at the time {} ns", sample.readNs));
         }
-        for (const std::int32_t number : {sample.x, sample.y, sample.z}) {
+        for (const std::int32_t number : {sample.probe.x, sample.probe.y, sample.probe.z}) {
             if (number < -sand::kMaxProbe || number >= sand::kMaxProbe) {
                 throw base::FormatError(fmt::format("a pointer at {}", number));
             }

@@ -7,12 +7,14 @@
 #include <span>
 #include <type_traits>
 
+#include "sand/model/probe_point.hpp"
+
 namespace lockstep {
 
 /// One place of the pointer: where its ray meets the sand.
 struct PointerSample {
-    std::int64_t at = 0;                 // [ns], when the rank read it, on the master's clock
-    std::int32_t x = 0, y = 0, z = 0;    // [probe unit], place on the sand's surface; meaningless unless `meets`
+    std::int64_t readNs = 0;             // [ns], when the rank read it, on the master's clock
+    sand::ProbePoint probe;              // place on the sand's surface; meaningless unless `meets`
     std::uint8_t pressed = 0;            // 1: the left button or a finger is down
     std::uint8_t meets = 0;              // 1: the ray meets sand
     std::array<std::uint8_t, 2> zero{};  // fills the gap, so that no byte of the message is indeterminate

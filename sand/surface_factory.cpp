@@ -17,6 +17,14 @@ std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* e
                                                grid::Erosion::Options{.executor = executor});
 }
 
+HeightAt startHeights(const Start& start) {
+    if (start.tin != nullptr) {
+        const std::shared_ptr<const Surface> tin = makeSurface(start);
+        return [tin](double x, double y) { return tin->height(x, y); };
+    }
+    return [&field = start.terrain](double x, double y) { return field.interpolated(x, y); };  // it needs no copy
+}
+
 void startFrom(const Surface& surface, Start& start) {
     const SurfaceData data = surface.data();
     if (const auto* grid = std::get_if<GridData>(&data)) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/executor.hpp"
+#include "sand/model/mean_height.hpp"
 #include "sand/model/surface.hpp"
 #include "sand/start.hpp"
 
@@ -12,6 +13,11 @@ namespace sand {
 /// Returns the sand that a replica begins with. `executor` shares out the work of a height field's sweeps, and must
 /// outlive the sand. If it is null, the calling thread does all work.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor = nullptr);
+
+/// Returns the height of the sand that `start` begins with, at each place. It is continuous: a height field is
+/// interpolated between its cells. Outside the field, it is the height of the nearest place in it. `start` must outlive
+/// the function.
+[[nodiscard]] HeightAt startHeights(const Start& start);
 
 /// Makes `start` begin with the current sand of `surface`, which makeSurface() made from `start`.
 void startFrom(const Surface& surface, Start& start);

@@ -130,7 +130,7 @@ Material withNumber(Material material, std::string_view word, double value, cons
 
 Material withTool(Material material, const ToolChange& change, const MaterialGrid& grid) {
     // A scene may begin with a very small tool. A tool must not vanish while a hand uses it.
-    const double least = grid.cellSize / sand::kProbePerCell;
+    const double least = sand::probeUnit(grid.cellSize);
     if (change.radius && !(*change.radius >= least)) {
         throw base::InputError(fmt::format("a tool's radius must be at least {:.3g}, got {}", least, *change.radius));
     }

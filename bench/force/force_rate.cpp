@@ -40,10 +40,8 @@ Vec3 handAt(double time /* [s] */, int side) {
 }
 
 sand::ProbePoint probeAt(Vec3 place) {
-    const auto probe = [](double at) {
-        return static_cast<std::int32_t>(std::lround(at / kRadius * kCells * sand::kProbePerCell));
-    };
-    return {probe(place.x), probe(place.y), probe(place.z)};
+    const Vec3 cells = kCells / kRadius * place;
+    return sand::probePoint(cells.x, cells.y, cells.z);
 }
 
 scene::Scene sceneOf(int side) {

@@ -34,10 +34,9 @@ scene::Scene sceneFor(const Stroke& stroke) {
 }
 
 sand::Step stepOf(const sand::Replica& terrain, const Stroke& stroke, int number) {
-    const auto probe = [](double cells) { return static_cast<std::int32_t>(std::lround(cells * sand::kProbePerCell)); };
     // The stroke is along the diagonal, because 480 cells and their banks then fit into a field of 512.
     const double at = stroke.side / 2.0 + stroke.speed * (number - kSteps / 2.0) / std::numbers::sqrt2;
-    return {1, terrain.stepNumber() + 1, true, {{probe(at), probe(at), 0}}};
+    return {1, terrain.stepNumber() + 1, true, {sand::probePoint(at, at, 0)}};
 }
 
 /// Digs one stroke and leaves the tool in the sand. Adds the time of each step to `seconds` [s]. Returns the last hash.

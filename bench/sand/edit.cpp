@@ -10,11 +10,6 @@ namespace {
 
 constexpr int kStepSweeps = 16;  // per step
 
-sand::ProbePoint probeAt(double x, double y, double z /* [cell] */) {
-    const auto probe = [](double cells) { return static_cast<std::int32_t>(cells * sand::kProbePerCell); };
-    return {probe(x), probe(y), probe(z)};
-}
-
 struct Costs {
     std::vector<double> step;    // [s], the press and kStepSweeps sweeps
     std::vector<double> toRest;  // [s], the press and all sweeps until nothing moves
@@ -24,7 +19,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
     const sand::HeightField level(side, side, 1.0);
     const sand::Rules rules = rulesFor(level, kTalus);
     const sand::grid::Displacement tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
-    const sand::ProbePoint at = probeAt(side / 2.0, side / 2.0, 0);
+    const sand::ProbePoint at = sand::probePoint(side / 2.0, side / 2.0, 0);
     sand::grid::Erosion::Options options;
     options.skipSettled = skipSettled;
     Costs costs;

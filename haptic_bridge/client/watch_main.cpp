@@ -108,7 +108,7 @@ private:
             }
             if (welcomed_) {
                 connection_->send(Ping{host::monotonicNs()});
-                constexpr double kUnits = 256;  // [probe unit/cell]
+                constexpr double kUnits = sand::kProbePerCell;
                 fmt::print("step {} {:016x}, probe at {:.2f} {:.2f} {:.2f} cells{}, {} steps/s, {} bytes/s\n",
                            last_.number, hash_, probe_.x / kUnits, probe_.y / kUnits, probe_.z / kUnits,
                            last_.engaged ? " in the sand" : "", steps_, connection_->bytesIn() - bytes_);

@@ -3,8 +3,8 @@
 
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/hand_settings.hpp"
+#include "sand/model/mean_height.hpp"
 #include "sand/model/step.hpp"
-#include "sand/model/surface.hpp"
 #include "scene/scene.hpp"
 
 namespace haptic_bridge {
@@ -23,18 +23,16 @@ public:
     [[nodiscard]] static std::optional<sand::Heading> heading(const Pose& pose) {
         return pose.heading ? sand::headingOf(*pose.heading, pose.leftFoot) : std::nullopt;
     }
-    /// Returns the tool's centre at `at` [scene unit], measured from the south-west corner and from height 0.
-    [[nodiscard]] sand::force::Vec3 place(sand::ProbePoint at) const;
 
 private:
-    [[nodiscard]] double surface(double x, double y) const;  // [cell], height of the datum at x, y [cell]
+    [[nodiscard]] double datumAt(double x, double y) const;  // [cell], height of the datum at x, y [cell]
 
     const scene::Scene& scene_;
     HandSettings::Datum datum_;
-    double halfSide_;                           // [cell], half of the shorter side
-    double radius_;                             // [cell], of the tool
-    double reference_;                          // [cell], mean height of the surface at the start
-    std::shared_ptr<const sand::Surface> tin_;  // surface at the start; null unless the hand follows a TIN
+    double halfSide_;         // [cell], half of the shorter side
+    double radius_;           // [cell], of the tool
+    double reference_;        // [cell], mean height of the surface at the start
+    sand::HeightAt surface_;  // surface at the start; empty unless the hand follows it
 };
 
 }  // namespace haptic_bridge

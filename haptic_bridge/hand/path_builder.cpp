@@ -50,7 +50,7 @@ void PathBuilder::letGoIfFarAhead() {
     dropped_ += all - waiting_.size();
     const HandSample now = waiting_.front();
     if (engaged_ && now.engaged) {  // avoids a furrow from the tool's last place to the hand
-        waiting_.push_front({now.timeNs, now.at, false});
+        waiting_.push_front({now.readNs, now.probe, false});
     }
 }
 
@@ -63,18 +63,18 @@ std::int64_t PathBuilder::take(sand::Step& step) {
     std::vector<sand::ProbePoint>& path = step.path;
     path.clear();
     std::int64_t readNs = 0;
-    const std::int64_t until = waiting_.front().timeNs + mostNs_;
+    const std::int64_t until = waiting_.front().readNs + mostNs_;
     const bool changed = waiting_.front().engaged != engaged_;
     engaged_ = waiting_.front().engaged;
-    while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().timeNs < until) {
+    while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().readNs < until) {
         const HandSample sample = waiting_.front();
         waiting_.pop_front();
-        readNs = sample.timeNs;
+        readNs = sample.read ? sample.readNs : readNs;
         step.heading = sample.heading ? sample.heading : step.heading;
         // A hand that engages where it hovers must press there, although it has not moved.
-        if (sample.at != last_ || (changed && path.empty())) {
-            path.push_back(sample.at);
-            last_ = sample.at;
+        if (sample.probe != last_ || (changed && path.empty())) {
+            path.push_back(sample.probe);
+            last_ = sample.probe;
         }
     }
     step.engaged = engaged_;
@@ -84,10 +84,10 @@ std::int64_t PathBuilder::take(sand::Step& step) {
     return readNs;
 }
 
-void PathBuilder::restart(sand::ProbePoint at, bool engaged) {
+void PathBuilder::restart(sand::ProbePoint probe) {
     waiting_.clear();
-    last_ = at;
-    engaged_ = engaged;
+    last_ = probe;
+    engaged_ = false;
 }
 
 void PathBuilder::dropWaiting() {

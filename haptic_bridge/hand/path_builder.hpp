@@ -12,10 +12,11 @@ namespace haptic_bridge {
 
 /// One reading of the hand.
 struct HandSample {
-    std::int64_t timeNs = 0;  // [ns], monotonic clock, or a virtual one
-    sand::ProbePoint at;
+    std::int64_t readNs = 0;  // [ns], monotonic clock, or a virtual one
+    sand::ProbePoint probe{};
     bool engaged = false;
     std::optional<sand::Heading> heading = std::nullopt;  // nullopt: the hand does not turn the tool
+    bool read = true;  // false: a place that was computed at `readNs`, and at which no hand was read
 };
 
 /// Gathers hand samples and cuts them into the paths of steps. Not thread-safe.
@@ -40,11 +41,11 @@ public:
 
     void add(const HandSample& sample);
     /// Fills `step.engaged`, `step.path` and the hand's last heading from waiting samples. Returns the time at which
-    /// the last sample was read [ns]. Returns 0 if no sample waits; the hand is then where it was, and the step is
-    /// engaged as the one before.
+    /// the last sample was read [ns], or 0 if the step has no sample that was read. If no sample waits, the hand is
+    /// where it was, and the step is engaged as the one before.
     std::int64_t take(sand::Step& step);
-    /// Forgets all waiting samples. The hand is now at `at`.
-    void restart(sand::ProbePoint at, bool engaged);
+    /// Forgets all waiting samples. The hand now hovers at `probe`.
+    void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.
     void dropWaiting();
     /// Returns the number of samples that were dropped: thinned out, too far ahead, or waiting when dropWaiting() was
@@ -53,7 +54,7 @@ public:
 
 private:
     void thinWaiting();
-    [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().timeNs - waiting_.front().timeNs; }
+    [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().readNs - waiting_.front().readNs; }
     void letGoIfFarAhead();
 
     std::int64_t mostNs_;  // [ns] of hand movement that a step may hold

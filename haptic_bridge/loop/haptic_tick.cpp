@@ -13,21 +13,19 @@
 namespace haptic_bridge {
 namespace {
 
-/// Returns the size of one step of a quantised place [scene unit].
-double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
-
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
     const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    const double unit = sand::probeUnit(scene.terrain.cellSize());
     const StepTiming steps{scene.force.between, static_cast<double>(scene.rules.stepsPerSecond)};
     if (const ArmPhysics* arm = device.physics()) {
-        return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale(), steps);
+        return ForceLimits::of(*arm, device.scale(), law, friction, unit / device.scale(), steps);
     }
     const double side = std::min(scene.rules.columns, scene.rules.rows) * scene.terrain.cellSize();
     const double scale = side / kTouchField;
     ArmPhysics touch = touchPreset();
     touch.name = "a recording, felt as with a Touch";
     touch.resolution = 0;
-    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, probeStep(scene) / scale, steps);
+    ForceLimits limits = ForceLimits::of(touch, scale, law, friction, unit / scale, steps);
     limits.fastestThing = std::numeric_limits<double>::infinity();  // a stroke list goes down within one tick
     return limits;
 }
@@ -61,12 +59,13 @@ HapticTick::HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device
       model_(scene.force),
       device_(std::move(device)),
       mapping_(scene, device_->physics() != nullptr ? HandSettings::Datum::level : datum),
+      probeUnit_(sand::probeUnit(scene.terrain.cellSize())),
       guards_(limitsOrLetGo(scene, *device_, law), mode),
       armVelocity_(guards_.limits().arm.resolution),
       velocity_(guards_.limits().resolution * guards_.limits().scale),
       words_(inWords(scene.force, guards_.limits(), law)) {
     restart();
-    tellWhere(tick_.sample);
+    setProbe(tick_.probe);
 }
 
 HapticTick::~HapticTick() { letGo(); }
@@ -84,12 +83,12 @@ void HapticTick::restart() {
     armVelocity_.restart();
     velocity_.restart();
     edits_.reset();
-    tick_.sample = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
+    tick_.probe = mapping_.probe(Pose{}).value_or(sand::ProbePoint{});
 }
 
 void HapticTick::rest(double deviceTime) {
     if (const auto probe = mapping_.probe(device_->read(deviceTime))) {
-        tellWhere(*probe);
+        setProbe(*probe);
     }
     push({});
 }
@@ -103,13 +102,13 @@ bool HapticTick::feelsEdit(const FeltSand& surface) {
     return edited;
 }
 
-void HapticTick::tellWhere(const sand::ProbePoint& at) {
-    const std::uint64_t x = static_cast<std::uint32_t>(at.x), y = static_cast<std::uint32_t>(at.y);
-    where_.store(x << 32U | y, std::memory_order_relaxed);
+void HapticTick::setProbe(const sand::ProbePoint& probe) {
+    const std::uint64_t x = static_cast<std::uint32_t>(probe.x), y = static_cast<std::uint32_t>(probe.y);
+    probe_.store(x << 32U | y, std::memory_order_relaxed);
 }
 
-sand::ProbePoint HapticTick::where() const {
-    const std::uint64_t both = where_.load(std::memory_order_relaxed);
+sand::ProbePoint HapticTick::probe() const {
+    const std::uint64_t both = probe_.load(std::memory_order_relaxed);
     return {static_cast<std::int32_t>(static_cast<std::uint32_t>(both >> 32U)),
             static_cast<std::int32_t>(static_cast<std::uint32_t>(both)), 0};
 }
@@ -129,9 +128,9 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
               .edited = feelsEdit(surface)};
     const bool present = input_.reading.present;
     const auto probe = mapping_.probe(pose);
-    tick_.sample = probe.value_or(tick_.sample);
-    tellWhere(tick_.sample);
-    const HandSample sample{nowNs, tick_.sample, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
+    tick_.probe = probe.value_or(tick_.probe);
+    setProbe(tick_.probe);
+    const HandSample sample{nowNs, tick_.probe, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
 
     const std::int64_t begin = host::monotonicNs();
     fillTick(sample.engaged);
@@ -172,7 +171,7 @@ void HapticTick::fillTick(bool engaged) {
     tick_.time = input_.time;
     tick_.armPlace = input_.reading.place;
     tick_.armVelocity = armVelocity_.add(input_.time, tick_.armPlace);
-    tick_.place = mapping_.place(tick_.sample);
+    tick_.place = sand::force::placeOf(tick_.probe, probeUnit_);
     tick_.velocity = velocity_.add(input_.time, tick_.place);
     tick_.surfaceStep = input_.surfaceStep;
     tick_.surfaceAge = static_cast<double>(input_.surfaceAgeNs) * 1e-9;

@@ -63,7 +63,7 @@ public:
     /// @param surface     Sand that the hand feels in this tick.
     HandSample tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface);
     /// Reads the device at `deviceTime` [s] and sends zero force. Called while no master is linked, so that the device
-    /// still counts its troubles and where() follows the hand.
+    /// still counts its troubles and probe() follows the hand.
     void rest(double deviceTime);
     /// Pushes 0, because an arm holds its last force until the next one. An exception of the device is dropped: it may
     /// be the reason why the hand lets go.
@@ -86,9 +86,9 @@ public:
     [[nodiscard]] const Guards& guards() const { return guards_; }
     [[nodiscard]] bool finished(double deviceTime) const { return device_->finished(deviceTime); }
 
-    /// Returns the place of the last reading, with z = 0; before the first reading, the centre of the field. Any
+    /// Returns the probe point of the last reading, with z = 0; before the first reading, the centre of the field. Any
     /// thread.
-    [[nodiscard]] sand::ProbePoint where() const;
+    [[nodiscard]] sand::ProbePoint probe() const;
     /// Returns how long the law and the guards took in each engaged tick [ns]. Any thread.
     [[nodiscard]] const base::LiveHistogram& forceCost() const { return forceCost_; }
     /// Returns the number of ticks in which each guard acted. Any thread.
@@ -101,18 +101,19 @@ private:
                const LawAtRadius& law);
     void fillTick(bool engaged);
     [[nodiscard]] bool feelsEdit(const FeltSand& surface);
-    void tellWhere(const sand::ProbePoint& at);
+    void setProbe(const sand::ProbePoint& probe);
     void push(sand::force::Vec3 force);
 
     const sand::ForceConstants constants_;
     sand::force::ForceModel model_;
     std::unique_ptr<Device> device_;
     HandMapping mapping_;
+    double probeUnit_;  // [scene unit]
     Guards guards_;
     VelocityWindow armVelocity_;  // [m/s], along the arm's own axes
     VelocityWindow velocity_;     // [scene unit/s]
     std::vector<std::string> words_;
-    std::atomic<std::uint64_t> where_{0};  // x and y, 32 bits each; one value, so that no thread reads half of a place
+    std::atomic<std::uint64_t> probe_{0};  // x and y, 32 bits each; one value, so that no thread reads half of it
     std::atomic<double> share_{1};
     std::optional<std::uint64_t> edits_;  // FeltSand::edits at the last tick; nullopt before the first
     TickInput input_;

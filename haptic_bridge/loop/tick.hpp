@@ -36,7 +36,7 @@ struct Tick {
     double share = 1;                         // TickInput::share
     double talus = 0;                         // TickInput::talus
     std::uint64_t surfaceStep = 0;            // number of the step whose sand was felt
-    sand::ProbePoint sample;                  // probe point that goes into the steps
+    sand::ProbePoint probe;                   // of the hand, as it goes into the steps
     bool engaged = false;
     bool edited = false;  // TickInput::edited
 };

@@ -12,11 +12,11 @@ namespace {
 
 constexpr std::int64_t kIdlePoll = 20'000'000;  // [ns], interval at which an idle sand thread empties the hand's queue
 
-std::unique_ptr<HandFeed> feedFor(Pace pace, HapticTick& hand, HandChannel& channel, int stepsPerSecond) {
+std::unique_ptr<DeviceHand> handFor(Pace pace, HapticTick& hand, HandChannel& channel, int stepsPerSecond) {
     if (pace == Pace::fast) {
-        return std::make_unique<VirtualFeed>(hand, channel, stepsPerSecond);
+        return std::make_unique<VirtualHand>(hand, channel, stepsPerSecond);
     }
-    return std::make_unique<ChannelFeed>(hand, channel);
+    return std::make_unique<ChannelHand>(hand, channel, stepsPerSecond);
 }
 
 }  // namespace
@@ -24,8 +24,8 @@ std::unique_ptr<HandFeed> feedFor(Pace pace, HapticTick& hand, HandChannel& chan
 SandThread::SandThread(const scene::Scene& scene, Pace pace, HapticTick& hand, HandChannel& channel, Output output,
                        const base::Executor* executor)
     : pace_(pace),
-      feed_(feedFor(pace, hand, channel, scene.rules.stepsPerSecond)),
-      maker_(scene, *feed_, std::move(output), executor) {
+      hand_(handFor(pace, hand, channel, scene.rules.stepsPerSecond)),
+      maker_(scene, *hand_, std::move(output), executor) {
     thread_ = std::thread([this, &channel] { channel.failure.run("the sand thread", [this] { run(); }); });
 }
 
@@ -101,7 +101,7 @@ bool SandThread::waitForWork() {
         }
         return true;
     }
-    const std::int64_t until = running ? std::min(maker_.due(), feed_->refreshDue()) : host::monotonicNs() + kIdlePoll;
+    const std::int64_t until = running ? std::min(maker_.due(), hand_->refreshDue()) : host::monotonicNs() + kIdlePoll;
     const std::chrono::steady_clock::time_point when{std::chrono::nanoseconds(until)};
     return !wake_.wait_until(lock, when, commanded) && running && host::monotonicNs() >= maker_.due();
 }

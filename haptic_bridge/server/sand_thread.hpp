@@ -26,7 +26,7 @@ constexpr auto valuesOf(Pace) {
 ///
 /// In real time the StepClock decides when a step is due. The step takes the samples that the force thread has queued.
 /// If the hand is far ahead of the wall, the step takes only a part of them (PathBuilder). Under the fast pace there is
-/// no clock: steps come as fast as the wall's window allows, with the samples of a VirtualFeed.
+/// no clock: steps come as fast as the wall's window allows, with the samples of a VirtualHand.
 class SandThread {
 public:
     using Output = StepMaker::Output;  // callbacks, called on the sand thread
@@ -65,7 +65,7 @@ private:
     void obey(Commands& commands);
 
     const Pace pace_;
-    const std::unique_ptr<HandFeed> feed_;
+    const std::unique_ptr<DeviceHand> hand_;
 
     std::mutex mutex_;
     std::condition_variable wake_;

@@ -23,12 +23,11 @@ std::string whyNot(const Decode& decode) {
 
 }  // namespace
 
-StepMaker::StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const base::Executor* executor,
-                     Clock clock)
+StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output,
+                     const sand::grid::Erosion::Options& sweeps, Clock clock)
     : hand_(hand),
       output_(std::move(output)),
       terrain_(scene, executor),
-      path_(scene.rules.stepsPerSecond),
       now_(std::move(clock)),
       clock_(scene.rules.stepsPerSecond) {}
 
@@ -122,7 +121,6 @@ void StepMaker::audit() {
 void StepMaker::release() {
     phase_ = Phase::idle;
     hand_.end();
-    path_.dropWaiting();
 }
 
 void StepMaker::begin() {
@@ -130,28 +128,20 @@ void StepMaker::begin() {
     edit_ = {};
     shown_ = start_.stepNumber;
     held_.reset();
-    // The process that numbered the steps before may have left the tool in the sand elsewhere. Lifting it avoids a
-    // furrow from there to the hand.
-    liftFirst_ = terrain_.engaged();
-    path_.restart(terrain_.probe(), false);
     clock_.start(now_());
     hand_.begin(terrain_);
     output_.ready(session_);
 }
 
 void StepMaker::collect() {
-    hand_.collect(running() ? &path_ : nullptr);
-    dropped_ = path_.dropped() + hand_.overflow();
+    hand_.drain();
+    dropped_ = hand_.dropped();
 }
 
 /// Returns the time at which the last sample of the step was read [ns, the host's clock]. Returns 0 if the step has no
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
-    if (std::exchange(liftFirst_, false)) {
-        return 0;
-    }
-    hand_.tickForStep(path_);
-    const std::int64_t readNs = path_.take(step);
+    const std::int64_t readNs = hand_.fill(step);
     if (sand::isRound(terrain_.toolShape().kind) || step.heading == terrain_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }

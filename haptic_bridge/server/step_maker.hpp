@@ -8,7 +8,7 @@
 #include <string>
 
 #include "haptic_bridge/link/protocol.hpp"
-#include "haptic_bridge/loop/hand_feed.hpp"
+#include "haptic_bridge/loop/device_hand.hpp"
 #include "haptic_bridge/server/step_clock.hpp"
 #include "host/clock.hpp"
 #include "sand/replica.hpp"
@@ -41,7 +41,7 @@ public:
     using Clock = std::function<std::int64_t()>;  // [ns], monotonic
 
     /// `hand` must outlive this object. `executor` shares out the work of its replica; see sand::Replica.
-    StepMaker(const scene::Scene& scene, HandFeed& hand, Output output, const base::Executor* executor = nullptr,
+    StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output, const base::Executor* executor = nullptr,
               Clock clock = host::monotonicNs);
 
     /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and
@@ -71,7 +71,8 @@ public:
     /// Makes the next step and sends it. Withholds it while blocked(); the hand then keeps feeling the same sand. Call
     /// this only while running().
     void makeStep();
-    /// Gives the hand the same sand again if it has not got any for HandFeed::kRefreshNs. Call this at least as often.
+    /// Gives the hand the same sand again if it has not got any for DeviceHand::kRefreshNs. Call this at least as
+    /// often.
     void refresh();
 
     [[nodiscard]] const sand::Replica& sand() const { return terrain_; }
@@ -92,10 +93,9 @@ private:
     void begin();
     [[nodiscard]] std::int64_t fill(sand::Step& step);
 
-    HandFeed& hand_;
+    DeviceHand& hand_;
     Output output_;
     sand::Replica terrain_;
-    PathBuilder path_;
     Clock now_;
     StepClock clock_;
     std::uint32_t session_ = 0;
@@ -104,7 +104,6 @@ private:
     bool asksForSand_ = false;  // steps did not lead to the sand of Start, and the whole sand was asked for
     sand::Edit edit_;           // of the next step
     std::uint64_t shown_ = 0;   // number of the step that the wall shows
-    bool liftFirst_ = false;    // the first step of an epoch lifts a tool that was left in the sand
     std::optional<Held> held_;  // of the last Shown; nullopt before the first of this epoch
     std::array<std::atomic<std::uint64_t>, valuesOf(Withheld{}).size()> withheld_{};
     std::atomic<std::uint64_t> dropped_{0};

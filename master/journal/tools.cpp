@@ -14,6 +14,7 @@
 #include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
+#include "sand/force/vec3.hpp"
 #include "scene/import/raster_memory.hpp"
 #include "scene/load/memory.hpp"
 #include "scene/scene.hpp"
@@ -27,9 +28,7 @@ constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "r
 class ExportedTool {
 public:
     explicit ExportedTool(const scene::Scene& scene)
-        : rules_(scene.rules),
-          heading_(scene.rules.toolHeading),
-          unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
+        : rules_(scene.rules), heading_(scene.rules.toolHeading), unit_(sand::probeUnit(scene.terrain.cellSize())) {}
 
     /// Takes the heading with which the hand moves in `step`.
     void begin(const sand::Step& step) { heading_ = step.heading.value_or(heading_); }
@@ -55,7 +54,8 @@ private:
 std::string pathText(const sand::Step& step, double unit) {
     std::string text;
     for (const sand::ProbePoint& point : step.path) {
-        text += fmt::format("{}{} {} {}", text.empty() ? "" : ";", point.x * unit, point.y * unit, point.z * unit);
+        const sand::force::Vec3 place = sand::force::placeOf(point, unit);
+        text += fmt::format("{}{} {} {}", text.empty() ? "" : ";", place.x, place.y, place.z);
     }
     return text;
 }

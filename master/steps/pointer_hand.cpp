@@ -2,49 +2,45 @@
 #include "master/steps/pointer_hand.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace master {
 namespace {
 
-/// Returns the height of a tool that is `above` the surface, within what a step can hold [probe unit].
-std::int32_t raised(std::int32_t surface, double above) {
-    return static_cast<std::int32_t>(
-        std::clamp<double>(surface + std::round(above), -sand::kMaxProbe, sand::kMaxProbe - 1));
+/// Returns `surface` raised by `above` [probe unit].
+sand::ProbePoint raised(const sand::ProbePoint& surface, double above) {
+    return {surface.x, surface.y, sand::probeCoordinate((surface.z + above) / sand::kProbePerCell)};
 }
 
 }  // namespace
 
 PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
-    : path_(stepsPerSecond), last_(sand.probe()), radius_(sand.toolShape().radius), liftFirst_(sand.engaged()) {
-    path_.restart(last_, false);
+    : Hand(stepsPerSecond), radius_(sand.toolShape().radius) {
+    Hand::begin(sand);
 }
 
-void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica& sand) {
+void PointerHand::point(const lockstep::PointerSample& sample, const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
     surface_.reset();
-    if (sample.meets != 0) {
-        surface_ = sample.z;
-        last_ = {sample.x, sample.y, raised(sample.z, radius_ * (sample.pressed != 0 ? 1 - depth_ : kHover))};
+    if (sample.meets == 0) {
+        lift(sample.readNs);
+        return;
     }
-    engaged_ = sample.meets != 0 && sample.pressed != 0;
-    lastNs_ = sample.at;
-    path_.add({sample.at, last_, engaged_});
+    const bool pressed = sample.pressed != 0;
+    surface_ = sample.probe.z;
+    add({sample.readNs, raised(sample.probe, radius_ * (pressed ? 1 - depth_ : kHover)), pressed});
 }
 
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
     radius_ = sand.toolShape().radius;
-    last_.z = raised(*surface_, kHover * radius_);
-    path_.add({lastNs_, last_, false});
-    resized_ = true;
+    const haptic_bridge::HandSample& before = last();
+    add({.readNs = before.readNs,
+         .probe = raised({before.probe.x, before.probe.y, *surface_}, kHover * radius_),
+         .read = false});
 }
 
-void PointerHand::lift(std::int64_t at) {
-    engaged_ = false;
-    path_.add({at, last_, false});
-}
+void PointerHand::lift(std::int64_t at) { add({at, last().probe, false}); }
 
 void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
     for (const lockstep::PointerReport& report : reports) {
@@ -56,25 +52,17 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     }
     const auto places = reports[*hand].places();
     const std::optional<std::size_t> former = std::exchange(hand_, hand);
-    if (former != hand && engaged_) {
+    if (former != hand && last().engaged) {
         // Avoids a furrow from the former hand's place to that of the new one, which may rest for a while.
         const auto ended = reports[*former].places();
-        lift(!places.empty() ? places.front().at : !ended.empty() ? ended.back().at : lastNs_);
+        lift(!places.empty() ? places.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
     }
     for (const lockstep::PointerSample& sample : places) {
-        add(sample, sand);
+        point(sample, sand);
     }
-    if (surface_ && !engaged_ && sand.toolShape().radius != radius_) {
+    if (surface_ && !last().engaged && sand.toolShape().radius != radius_) {
         hoverAt(sand);
     }
-}
-
-std::int64_t PointerHand::fill(sand::Step& step) {
-    if (std::exchange(liftFirst_, false)) {
-        return 0;
-    }
-    const std::int64_t readNs = path_.take(step);
-    return std::exchange(resized_, false) ? 0 : readNs;
 }
 
 }  // namespace master

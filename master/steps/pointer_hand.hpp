@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "haptic_bridge/hand/path_builder.hpp"
+#include "haptic_bridge/hand/hand.hpp"
 #include "lockstep/pointer.hpp"
 #include "master/steps/pointer_arbiter.hpp"
 #include "sand/replica.hpp"
@@ -17,42 +17,32 @@ namespace master {
 /// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is `depth()` below
 /// the sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves
 /// nothing. Used by one thread.
-class PointerHand {
+class PointerHand : public haptic_bridge::Hand {
 public:
     static constexpr double kHover = 1.3;          // [tool radius] from the surface to the centre of a tool that hovers
     static constexpr double kDepthPerNotch = 0.1;  // [tool radius]
     static constexpr double kDeepest = 2;          // [tool radius]
 
-    /// The tool is where `sand` has it. It is lifted first, because the process that made the steps before may have
-    /// left it in the sand.
+    /// Begins on `sand`.
     PointerHand(int stepsPerSecond, const sand::Replica& sand);
 
     /// Takes the reports of a frame, in order of rank. `sand` gives the size of the tool.
     void take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand);
-    /// Fills in the hand's path since the step before. Returns when its last place was read [ns, the master's clock],
-    /// or 0 if the hand has not moved.
-    std::int64_t fill(sand::Step& step);
 
     [[nodiscard]] double depth() const { return depth_; }  // [tool radius]
     /// Returns whether a pointer has moved or touched.
     [[nodiscard]] bool pointed() const { return hand_.has_value(); }
 
 private:
-    void add(const lockstep::PointerSample& sample, const sand::Replica& sand);
+    void point(const lockstep::PointerSample& sample, const sand::Replica& sand);
     void lift(std::int64_t at /* [ns] */);
     void hoverAt(const sand::Replica& sand);
 
     PointerArbiter arbiter_;
-    haptic_bridge::PathBuilder path_;
-    std::optional<std::size_t> hand_;  // rank of the frame before
-    sand::ProbePoint last_;
-    std::int64_t lastNs_ = 0;              // [ns, the master's clock], when `last_` was read
-    std::optional<std::int32_t> surface_;  // height of the sand under `last_` [probe unit]; none beside the sand
+    std::optional<std::size_t> hand_;      // rank of the frame before
+    std::optional<std::int32_t> surface_;  // height of the sand at the last place [probe unit]; none beside the sand
     std::int32_t radius_;                  // of the tool that the last place was computed for [probe unit]
-    bool resized_ = false;                 // the path has a place that was not read, because the tool changed its size
-    bool engaged_ = false;
     double depth_ = 0.5;
-    bool liftFirst_;
 };
 
 }  // namespace master

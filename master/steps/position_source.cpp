@@ -10,22 +10,17 @@ namespace master {
 using haptic_bridge::Trouble;
 
 PositionSource::PositionSource(const scene::Scene& scene)
-    : mapping_(scene, haptic_bridge::HandSettings::Datum::surface), path_(scene.rules.stepsPerSecond) {}
+    : Hand(scene.rules.stepsPerSecond), mapping_(scene, haptic_bridge::HandSettings::Datum::surface) {}
 
-void PositionSource::begin(const sand::Replica& terrain) {
-    streaming_ = true;
-    // The previous source of steps may have left the tool in the sand elsewhere. Lifting it first avoids a furrow from
-    // there.
-    liftFirst_ = terrain.engaged();
-    last_ = terrain.probe();
-    path_.restart(last_, false);
+void PositionSource::begin(const sand::Replica& sand) {
+    Hand::begin(sand);
     check_.emplace(kFarthest, counts_);
 }
 
 void PositionSource::add(const std::vector<haptic_bridge::TimedPosition>& positions, std::int64_t nowNs) {
     if (positions.empty()) {
         if (static_cast<double>(nowNs - heardNs_) * 1e-9 > kPatience) {
-            path_.add({nowNs, last_, false});
+            Hand::add({nowNs, last().probe, false});
             heardNs_ = nowNs;
         }
         return;
@@ -39,16 +34,8 @@ void PositionSource::add(const std::vector<haptic_bridge::TimedPosition>& positi
         if (!probe && !std::isfinite(position.z)) {
             counts_.count(Trouble::noNumber);
         }
-        last_ = probe.value_or(last_);
-        path_.add({timed.receivedNs, last_, probe.has_value() && position.engaged});
+        Hand::add({timed.receivedNs, probe.value_or(last().probe), probe.has_value() && position.engaged});
     }
-}
-
-void PositionSource::fill(sand::Step& step) {
-    if (streaming_ && !liftFirst_) {
-        (void)path_.take(step);
-    }
-    liftFirst_ = false;
 }
 
 std::vector<std::string> PositionSource::troubles(std::uint64_t floods, std::int64_t nowNs) {

@@ -7,8 +7,8 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/hand/device_troubles.hpp"
+#include "haptic_bridge/hand/hand.hpp"
 #include "haptic_bridge/hand/hand_mapping.hpp"
-#include "haptic_bridge/hand/path_builder.hpp"
 #include "sand/replica.hpp"
 #include "scene/scene.hpp"
 
@@ -18,7 +18,7 @@ namespace master {
 ///
 /// Lifts the tool if a position is implausible, or if the server has sent no position for kPatience. Used by one
 /// thread. The scene must outlive this object.
-class PositionSource {
+class PositionSource : public haptic_bridge::Hand {
 public:
     static constexpr double kPatience = 0.5;  // [s]
     // [hand space], longest plausible movement between two positions: a quarter of the field.
@@ -26,28 +26,22 @@ public:
 
     explicit PositionSource(const scene::Scene& scene);
 
-    /// Call it when a server begins to stream. The tool is then where `terrain` has it.
-    void begin(const sand::Replica& terrain);
-    void end() { streaming_ = false; }
-    [[nodiscard]] bool streaming() const { return streaming_; }
-
+    /// Call it when a server begins to stream.
+    void begin(const sand::Replica& sand) override;
+    [[nodiscard]] bool streaming() const { return present(); }
+    /// Adds the positions that have come since the last call.
     void add(const std::vector<haptic_bridge::TimedPosition>& positions, std::int64_t nowNs);
-    /// Fills in the hand's path since the step before. If no server streams, the tool hovers.
-    void fill(sand::Step& step);
     /// Returns messages about wrong positions that are to be printed now. `floods` is the number of floods on the link
     /// so far.
     [[nodiscard]] std::vector<std::string> troubles(std::uint64_t floods, std::int64_t nowNs);
 
 private:
     haptic_bridge::HandMapping mapping_;
-    haptic_bridge::PathBuilder path_;
     haptic_bridge::TroubleCounts counts_;
     haptic_bridge::TroubleTeller teller_{"haptic link: the server"};
     std::optional<haptic_bridge::ReadingCheck> check_;
-    sand::ProbePoint last_;
     std::int64_t heardNs_ = 0;
     std::uint64_t floods_ = 0;
-    bool streaming_ = false, liftFirst_ = false;
 };
 
 }  // namespace master

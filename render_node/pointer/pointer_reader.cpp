@@ -2,10 +2,10 @@
 #include "render_node/pointer/pointer_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 
 #include "render_node/pointer/sand_ray.hpp"
+#include "sand/model/mean_height.hpp"
 
 namespace render_node {
 namespace {
@@ -118,7 +118,7 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         }
         lockstep::PointerSample& sample = report.samples[report.count++] =
             this->sample(reading, terrain, view, heights);
-        sample.at = reading.ns - clockAhead;
+        sample.readNs = reading.ns - clockAhead;
     }
     report.pressed = pressed_ ? 1 : 0;
     report.touch = touches_;
@@ -137,39 +137,23 @@ lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand
     const sand::Rules& rules = terrain.rules();
     const double margin = 2 * terrain.toolRadius() / cell;  // sand that this tile has not drawn yet may be higher
     const bool pressed = reading.pressed;
-    const auto heightAt = [&](double x, double y) {
-        constexpr double kProbe = sand::kProbePerCell;
-        return heightOf(terrain, pressed, x * kProbe, y * kProbe) / sand::kUnitsPerCell;
-    };
+    constexpr double kProbe = sand::kProbePerCell;
+    const auto heightAt = [&](double x, double y) { return heightOf(terrain, pressed, x, y); };
     const SandBody sand{static_cast<double>(rules.columns),
                         static_cast<double>(rules.rows),
                         heights.lowest / cell - margin,
                         heights.highest / cell + margin,
                         0.5,
-                        heightAt};
+                        [&](double x, double y) { return heightAt(x * kProbe, y * kProbe) / sand::kUnitsPerCell; }};
     lockstep::PointerSample sample;
     sample.pressed = pressed ? 1 : 0;
     const std::optional<glm::dvec2> place = meetSand(cells, sand);
     if (!place) {
         return sample;
     }
-    // The mean of the heights under the tool, because ripples smaller than the tool must not shake the hand.
-    constexpr int kHalf = 2;
-    const double reach = terrain.toolRadius() / cell / kHalf;
-    double sum = 0;
-    for (int j = -kHalf; j <= kHalf; ++j) {
-        for (int i = -kHalf; i <= kHalf; ++i) {
-            sum += heightAt(place->x + reach * i, place->y + reach * j);
-        }
-    }
-    const auto quantised = [](double number) {
-        constexpr double kFarthest = sand::kMaxProbe;
-        return static_cast<std::int32_t>(
-            std::floor(std::clamp(number * sand::kProbePerCell, -kFarthest, kFarthest - 1) + 0.5));
-    };
-    sample.x = quantised(place->x);
-    sample.y = quantised(place->y);
-    sample.z = quantised(sum / ((2 * kHalf + 1) * (2 * kHalf + 1)));
+    constexpr int kSamples = 5;  // across and along the tool
+    const double height = sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe, rules.toolRadius, kSamples);
+    sample.probe = sand::probePoint(place->x, place->y, height / sand::kUnitsPerCell);
     sample.meets = 1;
     return sample;
 }

@@ -77,7 +77,7 @@ GLsizeiptr bytesOf(std::size_t entries) {
 
 TinMesh::TinMesh(const SurfaceView& tin, double cellSize)
     : surface_(tin, cellSize),
-      probe_(static_cast<float>(cellSize / sand::kProbePerCell)),
+      probe_(static_cast<float>(sand::probeUnit(cellSize))),
       field_(tin.triangles.width, tin.triangles.depth),
       buffers_(surface_.chunks().size()) {
     glBindVertexArray(array_.id());

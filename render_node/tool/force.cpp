@@ -9,31 +9,30 @@ namespace render_node {
 using sand::force::Vec3;
 
 std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
-    const double unit = terrain.cellSize() / sand::kProbePerCell;
+    const double unit = sand::probeUnit(terrain.cellSize());
     const double radius = unit * terrain.rules().toolRadius;
-    const sand::ProbePoint probe = terrain.probe();
-    const Vec3 centre{unit * probe.x, unit * probe.y, unit * probe.z};
+    const Vec3 place = sand::force::placeOf(terrain.probe(), unit);
     if (!last_ || terrain.stepNumber() < lastStep_) {
         velocity_ = {};
     } else if (terrain.stepNumber() > lastStep_) {  // a frame without a step keeps the velocity
         const auto steps = static_cast<double>(terrain.stepNumber() - lastStep_);
-        velocity_ = (terrain.rules().stepsPerSecond / (60.0 * steps)) * (centre - *last_);
+        velocity_ = (terrain.rules().stepsPerSecond / (60.0 * steps)) * (place - *last_);
     }
-    last_ = centre;
+    last_ = place;
     lastStep_ = terrain.stepNumber();
     if (!terrain.engaged() || !(radius > 0)) {
         return std::nullopt;
     }
     const sand::force::SurfacePatch patch(terrain);
     const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
-    const auto felt = sand::force::respond(constants_, patch, tool, centre);
+    const auto felt = sand::force::respond(constants_, patch, tool, place);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);
     const double newtons = sand::force::norm(force);
     if (newtons < kFewestNewtons) {
         return std::nullopt;
     }
-    const Vec3 from = centre + (radius / newtons) * force;
+    const Vec3 from = place + (radius / newtons) * force;
     const Vec3 to = from + (kArrowPerNewton * radius) * force;
     const auto vector = [](Vec3 v) { return glm::vec3(glm::dvec3(v.x, v.y, v.z)); };
     return ForceArrow{vector(from), vector(to), sand::force::norm(whole) >= kMostNewtons};

@@ -136,7 +136,7 @@ LawRegion LawRegion::of(int longerSide, double cellSize) {
     constexpr double kFramesPerSecond = 60;
     const double side = std::min(longerSide * cellSize, kLargest);
     const double scale = std::min(side / kShortestReach, kLargest);
-    return {.smallestRadius = cellSize / kProbePerCell,
+    return {.smallestRadius = probeUnit(cellSize),
             .largestRadius = std::min(cellSize * kLargestToolRadius / kProbePerCell, kLargest),
             .deepest = side,
             .scale = scale,

@@ -17,7 +17,7 @@ int reachOf(double toolRadius, double cell) {
 }
 
 /// Returns the distance from a tool's outline to the middle of its cut [scene unit].
-double halfCut(const tin::SurfaceView& tin, double cell) { return 0.5 * tin.spacing * cell / kProbePerCell; }
+double halfCut(const tin::SurfaceView& tin, double cell) { return 0.5 * tin.spacing * probeUnit(cell); }
 
 }  // namespace
 
@@ -67,14 +67,14 @@ SurfacePatch::SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePo
 }
 
 bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius) {
-    const double probe = cellSize / kProbePerCell;  // [scene unit]
-    if (!facets_.take(tin, centre, reachOf(toolRadius, cellSize) * kProbePerCell, probe)) {
+    const double unit = probeUnit(cellSize);  // [scene unit]
+    if (!facets_.take(tin, centre, reachOf(toolRadius, cellSize) * kProbePerCell, unit)) {
         return false;
     }
     columns_ = rows_ = 0;
     cutBeyond_ = halfCut(tin, cellSize);
-    fieldWidth_ = tin.triangles.width * probe;
-    fieldHeight_ = tin.triangles.depth * probe;
+    fieldWidth_ = tin.triangles.width * unit;
+    fieldHeight_ = tin.triangles.depth * unit;
     return true;
 }
 

@@ -88,7 +88,7 @@ Places evenly(const Places& outline) {
 }  // namespace
 
 Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize) {
-    const double unit = cellSize / kProbePerCell;
+    const double unit = probeUnit(cellSize);
     const double radius = unit * shape.radius;
     if (isRound(shape.kind)) {
         return Contour::sphere(radius);

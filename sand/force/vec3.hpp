@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sand/model/probe_point.hpp"
+
 namespace sand::force {
 
 struct Vec3 {
@@ -17,6 +19,11 @@ struct Vec3 {
 [[nodiscard]] inline Vec3 shortened(Vec3 a, double most) {
     const double size = norm(a);
     return size > most ? (most / size) * a : a;
+}
+/// Returns the place of `probe` [scene unit], measured from the south-west corner and from height 0. `unit` is the
+/// length of a probe unit.
+[[nodiscard]] inline Vec3 placeOf(const ProbePoint& probe, double unit) {
+    return {probe.x * unit, probe.y * unit, probe.z * unit};
 }
 
 }  // namespace sand::force

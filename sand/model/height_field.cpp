@@ -34,6 +34,16 @@ double checked(int columns, int rows, double cellSize) {
 HeightField::HeightField(int columns, int rows, double cellSize)
     : cellSize_(checked(columns, rows, cellSize)), cells_(columns, rows) {}
 
+double HeightField::interpolated(double x, double y) const {
+    const double across = std::clamp(x / kProbePerCell, 0.5, columns() - 0.5) - 0.5;
+    const double along = std::clamp(y / kProbePerCell, 0.5, rows() - 0.5) - 0.5;
+    const int column = static_cast<int>(across), east = std::min(column + 1, columns() - 1);
+    const int row = static_cast<int>(along), north = std::min(row + 1, rows() - 1);
+    const double u = across - column, v = along - row;
+    return (1 - v) * ((1 - u) * height(column, row) + u * height(east, row)) +
+           v * ((1 - u) * height(column, north) + u * height(east, north));
+}
+
 std::int64_t HeightField::volume() const {
     std::int64_t sum = 0;
     for (int y = 0; y < rows(); ++y) {

@@ -29,6 +29,10 @@ public:
     [[nodiscard]] std::int32_t height(int column, int row) const { return cells_.row(row)[column]; }  // [unit]
     void setHeight(int column, int row, std::int32_t height) { cells_.row(row)[column] = height; }    // [unit]
 
+    /// Returns the height at the place (x, y) [unit], interpolated between the centres of the four cells around it.
+    /// Outside the centres of the outermost cells, returns the height of the nearest place between them.
+    [[nodiscard]] double interpolated(double x, double y /* [probe unit] */) const;
+
     /// Returns a pointer to cell 0 of `row`. Rows -1 and rows() consist of ghost cells, as do columns -1 and columns().
     [[nodiscard]] const std::int32_t* row(int row) const { return cells_.row(row); }
     [[nodiscard]] std::int32_t* row(int row) { return cells_.row(row); }

@@ -7,24 +7,13 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "sand/model/probe_point.hpp"
 #include "sand/model/tuning.hpp"
 
 namespace sand {
 
 inline constexpr std::size_t kMaxPathPoints = 64;           // most points in one step
 inline constexpr std::size_t kMostStepsOfAFrame = 1 << 20;  // in a frame message, and in a record of the journal
-
-/// Position of the tool's centre in whole probe units [probe unit = cellSize / 256].
-///
-/// x runs east and y north from the south-west corner of the field; z runs up from height 0.
-struct ProbePoint {
-    std::int32_t x = 0, y = 0, z = 0;
-    friend bool operator==(const ProbePoint&, const ProbePoint&) = default;
-};
-
-/// Largest magnitude of a probe coordinate [probe unit], four times the longest field. The code that quantises a pose
-/// clamps it to this range.
-inline constexpr std::int32_t kMaxProbe = 1 << 24;
 
 /// Largest size of the compressed sand in a load [byte].
 inline constexpr std::size_t kMaxSandBytes = 192U << 20;

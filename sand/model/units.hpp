@@ -12,4 +12,7 @@ inline constexpr int kProbeBits = 8;                 // one probe unit is cellSi
 inline constexpr std::int32_t kUnitsPerCell = 1 << kHeightBits;
 inline constexpr std::int32_t kProbePerCell = 1 << kProbeBits;
 
+/// Returns the length of a probe unit [scene unit] on cells of side `cellSize` [scene unit].
+[[nodiscard]] constexpr double probeUnit(double cellSize) { return cellSize / kProbePerCell; }
+
 }  // namespace sand

@@ -40,7 +40,7 @@ Scene sampledScene(const Scene& scene) {
 
 Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene) {
     const Georeference& reference = scene.georeference;
-    const double length = scene.terrain.cellSize() / sand::kProbePerCell * reference.lengthPerUnit;
+    const double length = sand::probeUnit(scene.terrain.cellSize()) * reference.lengthPerUnit;
     Mesh mesh;
     std::vector<std::uint32_t> numbers(tin.triangles.places.size(), 0);
     std::vector<bool> onGround(numbers.size(), false);

@@ -19,7 +19,7 @@ constexpr int kUsual = sand::tin::Settings{}.mostVertices;
 
 sand::tin::Settings readNumbers(const host::TomlTable& tin, double cellSize) {
     sand::tin::Settings settings;
-    const double finest = cellSize / sand::kProbePerCell;
+    const double finest = sand::probeUnit(cellSize);
     const double spacing = tin.numberOr("spacing", cellSize, {finest, 1e9});
     settings.spacing = static_cast<std::int32_t>(std::min(std::floor(spacing / finest + 0.5), double{sand::kMaxProbe}));
     const double widest = tin.numberOr("widest", 16 * cellSize, {0, 1e9});
@@ -62,12 +62,12 @@ sand::tin::Settings readTinSettings(const host::TomlTable& tin, const TinCells& 
     const std::int64_t wanted = latticeSize(cells, settings.widest) + kCorners;
     if (wanted > most) {
         const std::int32_t least = widened(cells, settings.widest, most - kCorners);
-        tin.fail("widest",
-                 fmt::format("points {} apart on {} x {} cells are {} vertices, and {} are the most; widest "
-                             "must be {}",
-                             tin.number("widest"), cells.columns, cells.rows, wanted, most,
-                             least == 0 ? "0 (none)"
-                                        : fmt::format("at least {:.9g}", least * cells.side / sand::kProbePerCell)));
+        tin.fail(
+            "widest",
+            fmt::format("points {} apart on {} x {} cells are {} vertices, and {} are the most; widest "
+                        "must be {}",
+                        tin.number("widest"), cells.columns, cells.rows, wanted, most,
+                        least == 0 ? "0 (none)" : fmt::format("at least {:.9g}", least * sand::probeUnit(cells.side))));
     }
     if (!tin.has("vertices")) {
         settings.mostVertices = static_cast<std::int32_t>(std::min<std::int64_t>(wanted + kUsual, most));
@@ -104,7 +104,7 @@ void requireSpacing(const host::TomlTable& file, const Scene& scene) {
     const double least =
         std::min(std::ceil(std::sqrt(width * depth / settings.mostVertices)), double{sand::kProbePerCell});
     if (settings.spacing < least) {
-        const double finest = scene.terrain.cellSize() / sand::kProbePerCell;
+        const double finest = sand::probeUnit(scene.terrain.cellSize());
         const host::TomlTable tin = file.requiredTable("tin");
         tin.fail("spacing",
                  fmt::format("points {} apart would be {:.0f} where a tool of radius {} works, and {} are the "

@@ -176,8 +176,8 @@ sand::HeightField layOutPoints(const host::TomlTable& file, const host::TomlTabl
                                  highest * one.unit(), sand::kMaxHeight * one.unit()));
     }
     requireRange(file, highest, scene.rules.columns, scene.rules.rows, one.unit());
-    warnOfNearPoints((terrain.folder() / terrain.text("file")).string(), points, start->places,
-                     cell / sand::kProbePerCell, scene);
+    warnOfNearPoints((terrain.folder() / terrain.text("file")).string(), points, start->places, sand::probeUnit(cell),
+                     scene);
     scene.tin = start;
     return one;
 }

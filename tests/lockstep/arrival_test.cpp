@@ -77,7 +77,7 @@ TEST(Arrival, CarriesAPointerIfTheSessionsHandIsOne) {
     lockstep::PointerReport pointer;
     pointer.touch = 3;
     pointer.count = 1;
-    pointer.samples[0] = {7, 1, -2, 3, 1, 1, {}};
+    pointer.samples[0] = {7, {1, -2, 3}, 1, 1, {}};
     lockstep::PointerReport read;
     EXPECT_EQ(lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read).key, 'q');
     EXPECT_EQ(read, pointer);
@@ -102,12 +102,12 @@ TEST(Arrival, WithAnImpossiblePointerIsNone) {
     EXPECT_EQ(fault(many), "a pointer with 7 places");
     lockstep::PointerReport far;
     far.count = 1;
-    far.samples[0].y = sand::kMaxProbe;
+    far.samples[0].probe.y = sand::kMaxProbe;
     EXPECT_EQ(fault(far), "a pointer at 16777216");
     for (const std::int64_t time : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
         lockstep::PointerReport late;
         late.count = 1;
-        late.samples[0].at = time;
+        late.samples[0].readNs = time;
         EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
     }
     lockstep::PointerReport wheel;

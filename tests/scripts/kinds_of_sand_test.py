@@ -37,12 +37,10 @@ KINDS = {
 # Files of sand that belong to no kind, and ask whether a Start is a TIN.
 STARTS = {
     "sand/start.cpp": "memory, volume, mean height and bytes of the sand",
-    "sand/surface_factory.cpp": "makes the sand",
+    "sand/surface_factory.cpp": "makes the sand, and the heights that a hand follows",
 }
 # Files outside sand/ and its drawing that know a kind of sand.
 KNOWING = {
-    "haptic_bridge/hand/hand_mapping.cpp": "interpolates a height field between its cells",
-    "haptic_bridge/hand/hand_mapping.hpp": "holds the surface of a TIN for that",
     "render_node/surface_factory.cpp": "makes the object that draws it",
     "scene/export/results.cpp": "takes rasters and triangles from it",
     "scene/export/tin_raster.cpp": "samples a TIN for a raster",
@@ -66,7 +64,7 @@ KNOWING = {
     "scene/relax/tin_sand.cpp": "makes a TIN of a file",
     "scene/relax/tin_sand.hpp": "declares this",
 }
-MOST_KNOWING = 24
+MOST_KNOWING = 22
 
 ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Grid|Tin)(?:Data|Change)\b|"
                          r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Cell)Change\b")

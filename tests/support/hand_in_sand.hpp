@@ -64,7 +64,7 @@ private:
     static constexpr std::int64_t kTickNs = 1'000'000;
 
     void publish() {
-        haptic_bridge::takeSurface(sand_, hand_.where(), surface_);
+        haptic_bridge::takeSurface(sand_, hand_.probe(), surface_);
         surface_.stepNs = nowNs_;
     }
 

@@ -222,7 +222,7 @@ TEST(HandMapping, CountsHalfTheShorterSideFromTheCentre) {
     EXPECT_EQ(at(0, 0, 0), (sand::ProbePoint{100 * 256, 50 * 256, 5 * 256})) << "the mean height is 5 cells";
     EXPECT_EQ(at(1, 1, 1), (sand::ProbePoint{150 * 256, 100 * 256, 9 * 256}));
     EXPECT_EQ(at(-2, -1, -1), (sand::ProbePoint{0, 0, 256}));
-    EXPECT_NEAR(mapping.place(at(1, 1, 1)).x, 1.5, 1e-12);
+    EXPECT_NEAR(sand::force::placeOf(at(1, 1, 1), sand::probeUnit(0.01)).x, 1.5, 1e-12);
 }
 
 TEST(HandMapping, FollowsTheStartingSurface) {

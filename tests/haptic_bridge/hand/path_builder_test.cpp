@@ -47,7 +47,7 @@ TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
 
 TEST(PathBuilder, LeavesOutWhereTheHandRestsButNotWherePressed) {
     PathBuilder builder(kStepsPerSecond);
-    builder.restart({5, 0, 0}, false);
+    builder.restart({5, 0, 0});
     builder.add(at(5, false));
     EXPECT_TRUE(take(builder).path.empty());
     builder.add(at(5, true));

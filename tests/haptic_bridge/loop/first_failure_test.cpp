@@ -8,8 +8,8 @@
 #include <boost/asio/io_context.hpp>
 #include <stdexcept>
 
+#include "haptic_bridge/loop/device_hand.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
-#include "haptic_bridge/loop/hand_feed.hpp"
 #include "haptic_bridge/server/sand_thread.hpp"
 #include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -81,10 +81,10 @@ protected:
 };
 
 TEST_F(LetGo, AHandThatIsDestroyedIsPushedWithZero) {
-    VirtualFeed feed(*hand_, *channel_, 60);
-    feed.begin(sand::Replica(scene_));
-    PathBuilder path(60);
-    feed.tickForStep(path);
+    VirtualHand hand(*hand_, *channel_, 60);
+    hand.begin(sand::Replica(scene_));
+    sand::Step step;
+    hand.fill(step);
     ASSERT_GT(pushed_.last, 0);
     hand_.reset();
     EXPECT_EQ(pushed_.last, 0);
@@ -121,8 +121,8 @@ TEST_F(LetGo, AFailedSandThreadEndsTheServerWithZero) {
 TEST_F(LetGo, AForceLoopPushesZeroWhenTheProcessIsAboutToBeKilled) {
     std::atomic<bool> over{false};
     const ForceLoop loop(*hand_, *channel_, "a hand", over);
-    ChannelFeed feed(*hand_, *channel_);
-    feed.begin(sand::Replica(scene_));
+    ChannelHand hand(*hand_, *channel_, 60);
+    hand.begin(sand::Replica(scene_));
     ASSERT_TRUE(test::eventually([this] { return pushed_.last > 0; }));
     over = true;
     EXPECT_TRUE(test::eventually([this] { return pushed_.last == 0; }));

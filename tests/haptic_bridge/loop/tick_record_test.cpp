@@ -55,9 +55,9 @@ protected:
         hand_->restart();
         recorder_->begin();
         PathBuilder path(scene_.rules.stepsPerSecond);
-        path.restart(terrain_.probe(), false);
+        path.restart(terrain_.probe());
         for (int i = 0; i < steps; ++i) {
-            takeSurface(terrain_, hand_->where(), surface_);
+            takeSurface(terrain_, hand_->probe(), surface_);
             for (int tick = 0; tick < 16; ++tick) {
                 ++ticks_;
                 const double turn = 1.2 + static_cast<double>(ticks_) * 0.004;
@@ -153,7 +153,7 @@ TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
     open(folder_.file("ticks.csv"));
     hand_->restart();
     recorder_->begin();
-    takeSurface(terrain_, hand_->where(), surface_);
+    takeSurface(terrain_, hand_->probe(), surface_);
     for (int tick = 0; tick < 60'000; ++tick) {
         (void)hand_->tick(1e-3 * tick, 1'000'003 * static_cast<std::int64_t>(tick), surface_);
         recorder_->add();

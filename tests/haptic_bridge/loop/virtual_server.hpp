@@ -29,8 +29,8 @@ public:
               std::make_unique<haptic_bridge::MappedDevice>(std::make_unique<LoggingArm>(arm, std::move(path), pushes),
                                                             settings, scene),
               haptic_bridge::HandSettings::Datum::level)),
-          feed_(*hand_, *channel_, [this] { return now_; }),
-          maker_(scene, feed_, output(), {}, [this] { return now_; }),
+          deviceHand_(*hand_, *channel_, scene.rules.stepsPerSecond, [this] { return now_; }),
+          maker_(scene, deviceHand_, output(), {}, [this] { return now_; }),
           sand_(scene),
           ceiling_(ceiling) {
         share(std::nullopt);
@@ -129,7 +129,7 @@ private:
     std::int64_t now_ = 0, handNs_ = 0;  // [ns]
     std::unique_ptr<haptic_bridge::HandChannel> channel_ = std::make_unique<haptic_bridge::HandChannel>();
     std::unique_ptr<haptic_bridge::HapticTick> hand_;
-    haptic_bridge::ChannelFeed feed_;
+    haptic_bridge::ChannelHand deviceHand_;
     haptic_bridge::StepMaker maker_;
     sand::Replica sand_;
     double ceiling_;

@@ -12,18 +12,14 @@ namespace {
 using namespace haptic_bridge;
 
 /// A hand whose next samples come from the test.
-class GivenHand : public HandFeed {
+class GivenHand : public DeviceHand {
 public:
-    void begin(const sand::Replica&) override { began = true; }
-    void end() override { ended = true; }
-    void collect(PathBuilder* path) override {
+    using DeviceHand::DeviceHand;
+    void drain() override {
         for (const HandSample& sample : std::exchange(samples, {})) {
-            if (path != nullptr) {
-                path->add(sample);
-            }
+            add(sample);
         }
     }
-    void tickForStep(PathBuilder&) override {}
     void publish(const sand::Replica& terrain, bool withEdit) override {
         felt.push_back(terrain.stepNumber());
         if (withEdit) {
@@ -37,7 +33,6 @@ public:
     std::vector<std::uint64_t> felt;    // step number at every publish
     std::vector<std::uint64_t> edited;  // the numbers among them whose step held an edit
     int refreshes = 0;
-    bool began = false, ended = false;
 };
 
 /// A server without thread, clock and link, and the messages that it has sent.
@@ -64,7 +59,7 @@ protected:
 
     const scene::Scene scene_ = samples::flatScene(60, 60);
     std::int64_t now_ = 1'000'000'000;
-    GivenHand hand_;
+    GivenHand hand_{scene_.rules.stepsPerSecond};
     std::vector<std::uint32_t> ready_;
     std::vector<NeedState> needs_;
     std::vector<std::string> unusable_;
@@ -89,7 +84,7 @@ TEST_F(StepMakerTest, BeginsAtOnceOnTheSameSand) {
     EXPECT_FALSE(maker_.running());
     maker_.start(5, grantOf(sand::Replica(scene_), 3));
     EXPECT_EQ(ready_, std::vector<std::uint32_t>{5});
-    EXPECT_TRUE(hand_.began);
+    EXPECT_TRUE(hand_.present());
     hand_.samples = {{now_ - 7, {30 * 256, 30 * 256, 0}, true}};
     step();
     ASSERT_EQ(steps_.size(), 1U);
@@ -228,7 +223,7 @@ TEST_F(StepMakerTest, PutsAnEditIntoOneStepAndForgetsItWithItsMaster) {
     EXPECT_FALSE(steps_[1].step.edit.any());
     maker_.edit({sand::Edit(sand::Edit::reset)});
     maker_.release();
-    EXPECT_TRUE(hand_.ended);
+    EXPECT_FALSE(hand_.present());
     maker_.start(2, grantOf(maker_.sand(), 2));
     step();
     EXPECT_FALSE(steps_[2].step.edit.any());

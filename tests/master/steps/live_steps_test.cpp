@@ -77,7 +77,7 @@ TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunct
         nowNs_ += kFrameNs + (frame % 3 - 1) * 400'000;
         const std::int64_t read = nowNs_ - 5'000'000, received = nowNs_ - 1'000'000;
         reports[1].count = 1;
-        reports[1].samples[0] = {read, 2048 + 64 * frame, 2048, 0, 0, 1, {}};
+        reports[1].samples[0] = {read, {2048 + 64 * frame, 2048, 0}, 0, 1, {}};
         live.pointed(reports, wall_, received);
         const std::vector<TimedStep> steps = show(live);
         ASSERT_EQ(steps.size(), 1U) << "frame " << frame;

@@ -25,9 +25,7 @@ protected:
         PointerReport& report = reports_.at(rank);
         lockstep::PointerSample& sample = report.samples.at(report.count++);
         sample = {clock_ += kReadingNs,
-                  x * kPerCell,
-                  y * kPerCell,
-                  0,
+                  {x * kPerCell, y * kPerCell, 0},
                   static_cast<std::uint8_t>(pressed ? 1 : 0),
                   static_cast<std::uint8_t>(meets ? 1 : 0),
                   {}};
@@ -163,7 +161,7 @@ TEST_F(PointerHand, IsLiftedWhenTheNextPointerRests) {
 TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
     reports_[1].wheel = 1000;
     add(1, 20, 32, true);
-    reports_[1].samples[0].z = -sand::kMaxProbe;
+    reports_[1].samples[0].probe.z = -sand::kMaxProbe;
     hand_.take(reports_, terrain_);
     sand::Step deep;
     (void)hand_.fill(deep);

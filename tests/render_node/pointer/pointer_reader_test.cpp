@@ -71,8 +71,8 @@ protected:
     }
     static void expectAt(const PointerSample& sample, double x, double y) {
         EXPECT_EQ(sample.meets, 1);
-        EXPECT_NEAR(sample.x / kProbe, x, 0.02);
-        EXPECT_NEAR(sample.y / kProbe, y, 0.02);
+        EXPECT_NEAR(sample.probe.x / kProbe, x, 0.02);
+        EXPECT_NEAR(sample.probe.y / kProbe, y, 0.02);
     }
 
     static constexpr std::int64_t kAhead = 500;
@@ -88,8 +88,8 @@ TEST_F(Reader, ReportsThePlaceOfTheSandUnderEachMotion) {
     ASSERT_EQ(report.count, 2);
     expectAt(report.samples[0], 20, 16);
     expectAt(report.samples[1], 30, 16);
-    EXPECT_EQ(report.samples[0].z, 0);
-    EXPECT_EQ(report.samples[0].at, 1000) << "on the master's clock";
+    EXPECT_EQ(report.samples[0].probe.z, 0);
+    EXPECT_EQ(report.samples[0].readNs, 1000) << "on the master's clock";
     EXPECT_EQ(report.pressed, 0);
     EXPECT_FALSE(report.touches());
     EXPECT_EQ(read({}).count, 0) << "a pointer at rest";
@@ -128,7 +128,7 @@ TEST_F(Reader, OfManyMotionsItKeepsThePressTheReleaseAndTheLast) {
     const auto places = report.places();
     EXPECT_EQ(std::ranges::count_if(places, [](const PointerSample& sample) { return sample.pressed != 0; }), 1);
     expectAt(report.samples.back(), 19.9, 16);
-    EXPECT_TRUE(std::ranges::is_sorted(places, {}, &PointerSample::at));
+    EXPECT_TRUE(std::ranges::is_sorted(places, {}, &PointerSample::readNs));
 }
 
 TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
@@ -136,12 +136,12 @@ TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
     (void)read({{Kind::press, 0, {100, 480}, 1000, 0}});
     const PointerReport report = read({{Kind::move, 0, {180, 480}, 5 * kSecond, 0}});
     ASSERT_EQ(report.count, PointerReport::kMostSamples);
-    EXPECT_LT(report.samples.back().at - report.samples[0].at, kSecond / 100) << "it has rested before";
-    EXPECT_TRUE(std::ranges::is_sorted(report.places(), {}, &PointerSample::at));
+    EXPECT_LT(report.samples.back().readNs - report.samples[0].readNs, kSecond / 100) << "it has rested before";
+    EXPECT_TRUE(std::ranges::is_sorted(report.places(), {}, &PointerSample::readNs));
     for (std::size_t i = 0; i < report.count; ++i) {
         EXPECT_EQ(report.samples[i].pressed, 1);
         if (i > 0) {
-            EXPECT_NEAR(report.samples[i].x - report.samples[i - 1].x, 1.5 * kProbe, 0.6 * kProbe);
+            EXPECT_NEAR(report.samples[i].probe.x - report.samples[i - 1].probe.x, 1.5 * kProbe, 0.6 * kProbe);
         }
     }
     expectAt(report.samples.back(), 18, 16);
@@ -168,11 +168,12 @@ TEST_F(Reader, TheWheelCountsAndReportsThePlaceAgain) {
 }
 
 TEST_F(Reader, AStrokeRefersToTheSandFromBeforeIt) {
-    EXPECT_EQ(read({{Kind::press, 0, {320, 320}, 1, 0}}).samples[0].z, 0);
+    EXPECT_EQ(read({{Kind::press, 0, {320, 320}, 1, 0}}).samples[0].probe.z, 0);
     dig({at(30, 32, 1), at(32, 32, 1), at(34, 32, 1)});
-    EXPECT_EQ(read({{Kind::move, 0, {321, 320}, 2, 0}}).samples[0].z, 0) << "the tool would sink into its own furrow";
+    EXPECT_EQ(read({{Kind::move, 0, {321, 320}, 2, 0}}).samples[0].probe.z, 0)
+        << "the tool would sink into its own furrow";
     dig({}, false);
-    EXPECT_LT(read({{Kind::release, 0, {321, 320}, 3, 0}}).samples[0].z, -0.5 * kProbe) << "the furrow";
+    EXPECT_LT(read({{Kind::release, 0, {321, 320}, 3, 0}}).samples[0].probe.z, -0.5 * kProbe) << "the furrow";
 }
 
 /// The window of Reader over a TIN, whose kept sand is encoded.
@@ -182,11 +183,11 @@ protected:
 };
 
 TEST_F(TinReader, AStrokeRefersToTheSandFromBeforeIt) {
-    const std::int32_t before = read({{Kind::press, 0, {320, 320}, 1, 0}}).samples[0].z;
+    const std::int32_t before = read({{Kind::press, 0, {320, 320}, 1, 0}}).samples[0].probe.z;
     const double high = before / kProbe;
     dig({at(30, 32, high + 1), at(32, 32, high + 1), at(34, 32, high + 1)});
-    EXPECT_EQ(read({{Kind::move, 0, {320, 320}, 2, 0}}).samples[0].z, before);
-    EXPECT_LT(read({{Kind::release, 0, {320, 320}, 3, 0}}).samples[0].z, before - 0.5 * kProbe);
+    EXPECT_EQ(read({{Kind::move, 0, {320, 320}, 2, 0}}).samples[0].probe.z, before);
+    EXPECT_LT(read({{Kind::release, 0, {320, 320}, 3, 0}}).samples[0].probe.z, before - 0.5 * kProbe);
 }
 
 }  // namespace

@@ -6,30 +6,21 @@
 #include <limits>
 #include <utility>
 
+#include "haptic_bridge/hand/hand.hpp"
 #include "haptic_bridge/loop/hand_channel.hpp"
 #include "sand/replica.hpp"
 
 namespace haptic_bridge {
 
-/// Connection between the hand and the thread that makes steps. It passes the hand's samples to that thread, and the
-/// sand back to the hand.
+/// Hand of a device: passes the samples of its ticks to the thread that makes steps, and the sand back to the ticks.
 ///
-/// Used only by the thread that makes steps.
-class HandFeed {
+/// It is present while a master is linked. Used only by the thread that makes steps.
+class DeviceHand : public Hand {
 public:
-    HandFeed() = default;
-    virtual ~HandFeed() = default;
-    HandFeed(const HandFeed&) = delete;
-    HandFeed& operator=(const HandFeed&) = delete;
+    using Hand::Hand;
 
-    /// Begins a link on this sand. The hand forgets the previous link.
-    virtual void begin(const sand::Replica& terrain) = 0;
-    /// Ends the link. The hand rests from now on.
-    virtual void end() = 0;
-    /// Adds the samples that have arrived since the last call to `path`. If `path` is null, they are dropped.
-    virtual void collect(PathBuilder* path) = 0;
-    /// Adds the samples of the next step, if the hand is ticked only on request. Otherwise does nothing.
-    virtual void tickForStep(PathBuilder& path) = 0;
+    /// Takes the samples that have arrived since the last call. Call it often, also while the hand is not present.
+    virtual void drain() {}
     /// Makes the hand feel this sand from now on. `edited` says that its last step held an operator's edit.
     virtual void publish(const sand::Replica& terrain, bool edited) = 0;
     /// Copies the same sand again if the last copy is kRefreshNs old, so that the hand can tell sand without steps from
@@ -40,28 +31,26 @@ public:
     static constexpr std::int64_t kRefreshNs = 10'000'000;  // [ns]
     /// Returns whether the times of the samples are on the host's monotonic clock [ns].
     [[nodiscard]] virtual bool onHostClock() const = 0;
-    /// Returns the number of samples that were lost because the queue was full.
-    [[nodiscard]] virtual std::uint64_t overflow() const { return 0; }
 };
 
-/// Feed in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
-class ChannelFeed : public HandFeed {
+/// Hand in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
+class ChannelHand : public DeviceHand {
 public:
     using Clock = std::function<std::int64_t()>;  // [ns], the clock of HapticTick::tick()
 
     /// Uses the host's clock.
-    ChannelFeed(const HapticTick& hand, HandChannel& channel);
-    ChannelFeed(const HapticTick& hand, HandChannel& channel, Clock clock)
-        : hand_(hand), channel_(channel), now_(std::move(clock)) {}
+    ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond);
+    ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond, Clock clock)
+        : DeviceHand(stepsPerSecond), hand_(hand), channel_(channel), now_(std::move(clock)) {}
     void begin(const sand::Replica& terrain) override;
-    void end() override { channel_.moving = false; }
-    void collect(PathBuilder* path) override;
-    void tickForStep(PathBuilder&) override {}
+    void end() override;
+    void drain() override;
     void publish(const sand::Replica& terrain, bool edited) override;
     void refresh(const sand::Replica& terrain) override;
     [[nodiscard]] std::int64_t refreshDue() const override { return copiedNs_ + kRefreshNs; }
     [[nodiscard]] bool onHostClock() const override { return true; }
-    [[nodiscard]] std::uint64_t overflow() const override { return channel_.overflow; }
+    /// Counts samples that were lost because the queue was full, too.
+    [[nodiscard]] std::uint64_t dropped() const override { return Hand::dropped() + channel_.overflow; }
 
 private:
     void copy(const sand::Replica& terrain);
@@ -73,21 +62,23 @@ private:
     std::int64_t copiedNs_ = 0, stepNs_ = 0;  // [ns], of the last copy, and of the first copy of the last step
 };
 
-/// Feed under a virtual clock: the thread that makes steps also runs the ticks of the hand, as fast as it can.
+/// Hand under a virtual clock: the thread that makes steps also runs the ticks of the hand, as fast as it can.
 ///
 /// Step n takes exactly the samples at the virtual milliseconds in ((n−1)/rate, n/rate], counted from the first start.
-class VirtualFeed : public HandFeed {
+class VirtualHand : public DeviceHand {
 public:
-    VirtualFeed(HapticTick& hand, const HandChannel& channel, int stepsPerSecond)
-        : hand_(hand), channel_(channel), stepsPerSecond_(static_cast<std::uint64_t>(stepsPerSecond)) {}
+    VirtualHand(HapticTick& hand, const HandChannel& channel, int stepsPerSecond)
+        : DeviceHand(stepsPerSecond),
+          hand_(hand),
+          channel_(channel),
+          stepsPerSecond_(static_cast<std::uint64_t>(stepsPerSecond)) {}
     void begin(const sand::Replica& terrain) override;
-    void end() override {}
-    void collect(PathBuilder*) override {}
-    void tickForStep(PathBuilder& path) override;
     void publish(const sand::Replica& terrain, bool edited) override;
     [[nodiscard]] bool onHostClock() const override { return false; }
 
 private:
+    void collect() override;
+
     HapticTick& hand_;
     const HandChannel& channel_;  // only its recorder is used
     std::uint64_t stepsPerSecond_;

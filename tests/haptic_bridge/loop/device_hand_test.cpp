@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "haptic_bridge/loop/hand_feed.hpp"
+#include "haptic_bridge/loop/device_hand.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,74 +30,78 @@ private:
     std::vector<double>& times_;
 };
 
-class FeedTest : public testing::Test {
+class DeviceHandTest : public testing::Test {
 protected:
-    [[nodiscard]] std::vector<sand::ProbePoint> pathOf(PathBuilder& path) const {
+    [[nodiscard]] static sand::Step nextStep(DeviceHand& hand) {
         sand::Step step;
-        (void)path.take(step);
-        return step.path;
+        hand.fill(step);
+        return step;
     }
     const scene::Scene scene_ = samples::flatScene(60, 60);
     const sand::Replica sand_{scene_};
     std::vector<double> times_;
     HapticTick hand_{scene_, std::make_unique<ClockedHand>(times_), HandSettings::Datum::surface};
     std::unique_ptr<HandChannel> channel_ = std::make_unique<HandChannel>();
-    PathBuilder path_{60};
 };
 
 // 1000/60 ms per step: steps have 16, 17 and 17 ticks, and each tick is read exactly once.
-TEST_F(FeedTest, AVirtualClockGivesEachStepItsMilliseconds) {
-    VirtualFeed feed(hand_, *channel_, 60);
-    feed.begin(sand_);
+TEST_F(DeviceHandTest, AVirtualClockGivesEachStepItsMilliseconds) {
+    VirtualHand hand(hand_, *channel_, 60);
+    hand.begin(sand_);
     ASSERT_EQ(times_, std::vector<double>{0}) << "the hand is read once while it rests";
     std::vector<std::size_t> ticks;
     for (int step = 0; step < 6; ++step) {
         const std::size_t before = times_.size();
-        feed.tickForStep(path_);
+        (void)nextStep(hand);
         ticks.push_back(times_.size() - before);
-        feed.publish(sand_, false);
+        hand.publish(sand_, false);
     }
     EXPECT_EQ(ticks, (std::vector<std::size_t>{16, 17, 17, 16, 17, 17}));
     for (std::size_t i = 1; i < times_.size(); ++i) {
         EXPECT_NEAR(times_[i], 0.001 * static_cast<double>(i), 1e-12);
     }
-    feed.begin(sand_);
+    hand.begin(sand_);
     EXPECT_NEAR(times_.back(), 0.1, 1e-12) << "the clock continues in the next link";
-    EXPECT_FALSE(feed.onHostClock());
+    EXPECT_FALSE(hand.onHostClock());
 }
 
-TEST_F(FeedTest, AVirtualHandFeelsTheSandThatWasPublishedLast) {
-    VirtualFeed feed(hand_, *channel_, 60);
-    feed.begin(sand_);
-    feed.tickForStep(path_);
+TEST_F(DeviceHandTest, AVirtualHandFeelsTheSandThatWasPublishedLast) {
+    VirtualHand hand(hand_, *channel_, 60);
+    hand.begin(sand_);
+    (void)nextStep(hand);
     EXPECT_EQ(hand_.lastTick().surfaceStep, 0U);
     sand::Replica later(scene_);
     sand::Step step;
     step.number = 1;
     later.apply(step);
-    feed.publish(later, false);
-    feed.tickForStep(path_);
+    hand.publish(later, false);
+    (void)nextStep(hand);
     EXPECT_EQ(hand_.lastTick().surfaceStep, 1U);
     EXPECT_EQ(hand_.lastTick().surfaceAge, 0) << "never stale";
 }
 
-TEST_F(FeedTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
-    ChannelFeed feed(hand_, *channel_);
+TEST_F(DeviceHandTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
+    ChannelHand hand(hand_, *channel_, 60);
     const std::uint32_t before = channel_->sitting;
-    feed.begin(sand_);
+    hand.begin(sand_);
     EXPECT_TRUE(channel_->moving);
     EXPECT_EQ(channel_->sitting, before + 1);
     EXPECT_EQ(channel_->surface.latest().step, 0U);
     EXPECT_FALSE(channel_->surface.latest().patch.empty());
     (void)channel_->samples.push({1, {1, 2, 3}, true});
-    feed.collect(nullptr);
-    (void)channel_->samples.push({2, {4, 5, 6}, true});
-    feed.collect(&path_);
-    EXPECT_EQ(pathOf(path_), (std::vector<sand::ProbePoint>{{4, 5, 6}})) << "dropped samples do not come later";
-    feed.end();
+    hand.drain();
+    EXPECT_EQ(nextStep(hand).path, (std::vector<sand::ProbePoint>{{1, 2, 3}}));
+    hand.end();
     EXPECT_FALSE(channel_->moving);
+    (void)channel_->samples.push({2, {4, 5, 6}, true});
+    hand.drain();
+    hand.begin(sand_);
+    (void)channel_->samples.push({3, {7, 8, 9}, true});
+    hand.drain();
+    EXPECT_EQ(nextStep(hand).path, (std::vector<sand::ProbePoint>{{7, 8, 9}})) << "dropped samples do not come later";
+    EXPECT_EQ(hand.dropped(), 0U) << "samples of a hand that is not present do not count";
     channel_->overflow = 3;
-    EXPECT_EQ(feed.overflow(), 3U);
+    EXPECT_EQ(hand.dropped(), 3U);
     EXPECT_TRUE(times_.empty()) << "only the force thread reads the hand";
 }
 
@@ -108,7 +112,7 @@ TEST(HandTicks, CountTicksWithAForceAndTicksOfAFault) {
                     HandSettings::Datum::level);
     std::int64_t now = 0;  // [ns]
     FeltSand felt;
-    takeSurface(sand::Replica(scene), hand.where(), felt);
+    takeSurface(sand::Replica(scene), hand.probe(), felt);
     const auto ticks = [&](int count) {
         for (; count > 0; --count) {
             felt.timeNs = felt.stepNs = now += 1'000'000;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "haptic_bridge/loop/hand_feed.hpp"
+#include "haptic_bridge/loop/device_hand.hpp"
 
 #include "haptic_bridge/loop/felt_sand.hpp"
 #include "host/clock.hpp"
@@ -11,30 +11,32 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 
 }  // namespace
 
-ChannelFeed::ChannelFeed(const HapticTick& hand, HandChannel& channel)
-    : ChannelFeed(hand, channel, host::monotonicNs) {}
+ChannelHand::ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond)
+    : ChannelHand(hand, channel, stepsPerSecond, host::monotonicNs) {}
 
-void ChannelFeed::begin(const sand::Replica& terrain) {
+void ChannelHand::begin(const sand::Replica& terrain) {
+    DeviceHand::begin(terrain);
     publish(terrain, false);
     ++channel_.sitting;
     channel_.moving = true;
 }
 
-void ChannelFeed::collect(PathBuilder* path) {
-    channel_.samples.consume_all([path](const HandSample& sample) {
-        if (path != nullptr) {
-            path->add(sample);
-        }
-    });
+void ChannelHand::end() {
+    channel_.moving = false;
+    DeviceHand::end();
 }
 
-void ChannelFeed::publish(const sand::Replica& terrain, bool edited) {
+void ChannelHand::drain() {
+    channel_.samples.consume_all([this](const HandSample& sample) { add(sample); });
+}
+
+void ChannelHand::publish(const sand::Replica& terrain, bool edited) {
     edits_ += edited ? 1 : 0;
     stepNs_ = now_();
     copy(terrain);
 }
 
-void ChannelFeed::refresh(const sand::Replica& terrain) {
+void ChannelHand::refresh(const sand::Replica& terrain) {
     if (now_() - copiedNs_ >= kRefreshNs) {
         copy(terrain);
     }
@@ -42,16 +44,17 @@ void ChannelFeed::refresh(const sand::Replica& terrain) {
 
 /// The patch is around the hand and not around the tool. Before a link's first step the tool is at a place where no
 /// hand has been. Later the hand may be ahead of its tool.
-void ChannelFeed::copy(const sand::Replica& terrain) {
+void ChannelHand::copy(const sand::Replica& terrain) {
     FeltSand& next = channel_.surface.next();
-    takeSurface(terrain, hand_.where(), next);
+    takeSurface(terrain, hand_.probe(), next);
     next.edits = edits_;
     next.timeNs = copiedNs_ = now_();
     next.stepNs = stepNs_;
     channel_.surface.publish();
 }
 
-void VirtualFeed::begin(const sand::Replica& terrain) {
+void VirtualHand::begin(const sand::Replica& terrain) {
+    DeviceHand::begin(terrain);
     // In real time the force loop reads a hand that rests. In the fast pace no thread does, so it is read here.
     const std::uint64_t millisecond = steps_ * 1000 / stepsPerSecond_;
     hand_.rest(static_cast<double>(millisecond) * HapticTick::kTick);
@@ -59,20 +62,20 @@ void VirtualFeed::begin(const sand::Replica& terrain) {
     channel_.beginSitting(hand_);
 }
 
-void VirtualFeed::tickForStep(PathBuilder& path) {
+void VirtualHand::collect() {
     const std::uint64_t first = steps_ * 1000 / stepsPerSecond_ + 1, last = (steps_ + 1) * 1000 / stepsPerSecond_;
     ++steps_;
     for (std::uint64_t millisecond = first; millisecond <= last; ++millisecond) {
         // The sand was last computed one step ago; under a virtual clock it is never stale.
         const auto now = static_cast<std::int64_t>(millisecond) * kMillisecond;
         surface_.timeNs = now;
-        path.add(hand_.tick(static_cast<double>(millisecond) * HapticTick::kTick, now, surface_));
+        add(hand_.tick(static_cast<double>(millisecond) * HapticTick::kTick, now, surface_));
         channel_.keepTick();
     }
 }
 
-void VirtualFeed::publish(const sand::Replica& terrain, bool edited) {
-    takeSurface(terrain, hand_.where(), surface_);
+void VirtualHand::publish(const sand::Replica& terrain, bool edited) {
+    takeSurface(terrain, hand_.probe(), surface_);
     surface_.edits += edited ? 1 : 0;
     surface_.stepNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
 }
