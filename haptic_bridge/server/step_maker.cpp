@@ -23,8 +23,8 @@ std::string whyNot(const Decode& decode) {
 
 }  // namespace
 
-StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output,
-                     const sand::grid::Erosion::Options& sweeps, Clock clock)
+StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output, const base::Executor* executor,
+                     Clock clock)
     : hand_(hand),
       output_(std::move(output)),
       terrain_(scene, executor),
