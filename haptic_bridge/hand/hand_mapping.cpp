@@ -12,7 +12,7 @@ HandMapping::HandMapping(const scene::Scene& scene, HandSettings::Datum datum)
     : scene_(scene),
       datum_(datum),
       halfSide_(std::min(scene.rules.columns, scene.rules.rows) / 2.0),
-      radius_(static_cast<double>(scene.rules.toolRadius) / sand::kProbePerCell),
+      radius_(static_cast<double>(scene.rules.tuning.tool.radius) / sand::kProbePerCell),
       reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {
     if (datum_ != HandSettings::Datum::level && scene.tin != nullptr) {
         tin_ = sand::makeSurface(scene);

@@ -17,7 +17,7 @@ namespace {
 double probeStep(const scene::Scene& scene) { return scene.terrain.cellSize() / sand::kProbePerCell; }
 
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
-    const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    const double friction = static_cast<double>(scene.rules.tuning.threshold) / sand::kUnitsPerCell;
     const StepTiming steps{scene.force.between, static_cast<double>(scene.rules.stepsPerSecond)};
     if (const ArmPhysics* arm = device.physics()) {
         return ForceLimits::of(*arm, device.scale(), law, friction, probeStep(scene) / device.scale(), steps);

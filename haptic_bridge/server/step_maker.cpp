@@ -152,7 +152,7 @@ std::int64_t StepMaker::fill(sand::Step& step) {
     }
     hand_.tickForStep(path_);
     const std::int64_t readNs = path_.take(step);
-    if (sand::isRound(terrain_.toolShape().kind) || step.heading == terrain_.heading()) {
+    if (sand::isRound(terrain_.tool().kind) || step.heading == terrain_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }
     return hand_.onHostClock() ? readNs : 0;

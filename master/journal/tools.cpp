@@ -28,7 +28,7 @@ class ExportedTool {
 public:
     explicit ExportedTool(const scene::Scene& scene)
         : rules_(scene.rules),
-          heading_(scene.rules.toolHeading),
+          heading_(scene.rules.tuning.tool.heading),
           unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
 
     /// Takes the heading with which the hand moves in `step`.
@@ -36,12 +36,13 @@ public:
     /// Applies the tuning of `step` to later steps, as sand::Replica does.
     void end(const sand::Step& step) {
         if (step.edit.kind == sand::Edit::tune) {
-            heading_ = step.edit.tuning.toolHeading != rules_.toolHeading ? step.edit.tuning.toolHeading : heading_;
-            rules_.tune(step.edit.tuning);
+            heading_ =
+                step.edit.tuning.tool.heading != rules_.tuning.tool.heading ? step.edit.tuning.tool.heading : heading_;
+            rules_.tuning = step.edit.tuning;
         }
     }
     [[nodiscard]] std::string text() const {
-        return fmt::format("{},{},{:.6g}", base::nameOf(rules_.toolKind), rules_.toolRadius * unit_,
+        return fmt::format("{},{},{:.6g}", base::nameOf(rules_.tuning.tool.kind), rules_.tuning.tool.radius * unit_,
                            sand::degreesOf(heading_));
     }
     [[nodiscard]] double unit() const { return unit_; }

@@ -17,12 +17,12 @@ std::int32_t raised(std::int32_t surface, double above) {
 }  // namespace
 
 PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
-    : path_(stepsPerSecond), last_(sand.probe()), radius_(sand.toolShape().radius), liftFirst_(sand.engaged()) {
+    : path_(stepsPerSecond), last_(sand.probe()), radius_(sand.tool().radius), liftFirst_(sand.engaged()) {
     path_.restart(last_, false);
 }
 
 void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica& sand) {
-    radius_ = sand.toolShape().radius;
+    radius_ = sand.tool().radius;
     surface_.reset();
     if (sample.meets != 0) {
         surface_ = sample.z;
@@ -35,7 +35,7 @@ void PointerHand::add(const lockstep::PointerSample& sample, const sand::Replica
 
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
-    radius_ = sand.toolShape().radius;
+    radius_ = sand.tool().radius;
     last_.z = raised(*surface_, kHover * radius_);
     path_.add({lastNs_, last_, false});
     resized_ = true;
@@ -64,7 +64,7 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     for (const lockstep::PointerSample& sample : places) {
         add(sample, sand);
     }
-    if (surface_ && !engaged_ && sand.toolShape().radius != radius_) {
+    if (surface_ && !engaged_ && sand.tool().radius != radius_) {
         hoverAt(sand);
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sand/model/height_field.hpp"
+#include "sand/model/tool_shape.hpp"
 
 namespace sand::force {
 namespace {
@@ -87,26 +88,26 @@ Places evenly(const Places& outline) {
 
 }  // namespace
 
-Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize) {
+Contour contourOf(const Tool& tool, double cellSize) {
     const double unit = cellSize / kProbePerCell;
-    const double radius = unit * shape.radius;
-    if (isRound(shape.kind)) {
+    const double radius = unit * tool.radius;
+    if (isRound(tool.kind)) {
         return Contour::sphere(radius);
     }
-    const double width = unit * shape.halfWidth;
+    const double width = unit * tool.halfWidth;
     Places outline;
     for (int i = 0; i < kFine; ++i) {
-        const Vec3 place = outlineAt(shape.kind, 0.5 + static_cast<double>(i) / kFine);  // begins at the heel
+        const Vec3 place = outlineAt(tool.kind, 0.5 + static_cast<double>(i) / kFine);  // begins at the heel
         outline.push_back({radius * place.x, width * place.y, radius * (place.z - 1)});
     }
-    const double cosine = static_cast<double>(heading.x) / Heading::kLength;
-    const double sine = static_cast<double>(heading.y) / Heading::kLength;
-    const Places even = evenly(shape.kind == ToolKind::footprint ? bridged(outline) : outline);
+    const double cosine = static_cast<double>(tool.heading.x) / Heading::kLength;
+    const double sine = static_cast<double>(tool.heading.y) / Heading::kLength;
+    const Places even = evenly(tool.kind == ToolKind::footprint ? bridged(outline) : outline);
     Contour contour{{}, 0, -radius};
     for (std::size_t i = 0; i < even.size(); ++i) {
         // The points of a mirrored tool run clockwise, so that they are taken from the last to the first.
-        const Vec3 place = even[heading.mirrored ? (even.size() - i) % even.size() : i];
-        const double across = heading.mirrored ? -place.y : place.y;
+        const Vec3 place = even[tool.heading.mirrored ? (even.size() - i) % even.size() : i];
+        const double across = tool.heading.mirrored ? -place.y : place.y;
         contour.points[i] = {cosine * place.x - sine * across, sine * place.x + cosine * across, place.z};
         contour.reach = std::max(contour.reach, std::hypot(place.x, place.y));
     }

@@ -33,8 +33,7 @@ struct Obstacle {
 class Displacement {
 public:
     /// `v3` selects code with the instructions of x86-64-v3. The results are the same without it.
-    explicit Displacement(const ToolShape& shape, const Heading& heading = {}, bool v3 = base::machineHasV3())
-        : shape_(shape, heading, v3), v3_(v3) {}
+    explicit Displacement(const Tool& tool, bool v3 = base::machineHasV3()) : shape_(tool, v3), v3_(v3) {}
 
     /// Effect of one drag on the sand.
     struct Work {

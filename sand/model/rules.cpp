@@ -23,22 +23,12 @@ Scheme schemeOf(unsigned number) {
 
 }  // namespace
 
-void Rules::tune(const Tuning& tuning) {
-    threshold = tuning.threshold;
-    startThreshold = tuning.startThreshold;
-    sweepsPerStep = tuning.sweepsPerStep;
-    toolRadius = tuning.toolRadius;
-    toolKind = tuning.toolKind;
-    toolHalfWidth = tuning.toolHalfWidth;
-    toolHeading = tuning.toolHeading;
-}
-
 void Rules::encode(base::ByteWriter& writer) const {
     for (const std::int32_t number :
-         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond}) {
+         {columns, rows, aspect, tuning.threshold, tuning.startThreshold, tuning.sweepsPerStep, stepsPerSecond}) {
         writer.put(number);
     }
-    tuning().tool().encode(writer);
+    tuning.tool.encode(writer);
     writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(scheme) | (tin != 0 ? kTinFlag : 0U)));
     writer.put(static_cast<std::uint8_t>(rim));
     writer.put(ground);
@@ -49,18 +39,14 @@ void Rules::encode(base::ByteWriter& writer) const {
 
 Rules Rules::decode(base::ByteReader& reader) {
     Rules rules;
-    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
-                                 &rules.sweepsPerStep, &rules.stepsPerSecond}) {
+    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.tuning.threshold,
+                                 &rules.tuning.startThreshold, &rules.tuning.sweepsPerStep, &rules.stepsPerSecond}) {
         *number = reader.get<std::int32_t>();
         if (*number < 0) {
             throw base::FormatError("a scene with a negative rule");
         }
     }
-    const ToolRules tool = ToolRules::decode(reader);
-    rules.toolRadius = tool.shape.radius;
-    rules.toolKind = tool.shape.kind;
-    rules.toolHalfWidth = tool.shape.halfWidth;
-    rules.toolHeading = tool.heading;
+    rules.tuning.tool = Tool::decode(reader);
     const auto coded = reader.get<std::uint8_t>();
     rules.scheme = schemeOf(coded & ~kTinFlag);
     const auto rim = reader.get<std::uint8_t>();

@@ -43,28 +43,12 @@ struct Rules {
     std::int32_t columns = 0, rows = 0;  // [cell]
     /// Side of a cell from south to north, divided by its side from west to east [2^-16].
     std::int32_t aspect = kUnitsPerCell;
-    /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
-    std::int32_t threshold = 0;
-    /// Height difference, over the same distance, beyond which sand at rest starts to slide [unit]. It is at least
-    /// `threshold`; a larger value gives hysteresis.
-    std::int32_t startThreshold = 0;
-    std::int32_t sweepsPerStep = 0;
+    Tuning tuning{};
     std::int32_t stepsPerSecond = 0;
-    std::int32_t toolRadius = 0;  // [probe unit]
-    ToolKind toolKind = ToolKind::sphere;
-    std::int32_t toolHalfWidth = 0;  // [probe unit], see ToolShape::halfWidth
-    Heading toolHeading{};           // the tool's heading until a hand turns it
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(); 0 without rock and wall cells
     std::uint64_t tin = 0;     // tin::TinStart::digest(), which makes columns and rows nominal; 0 for a height field
-
-    [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
-    [[nodiscard]] Tuning tuning() const {
-        return {threshold, startThreshold, sweepsPerStep, toolRadius, toolKind, toolHalfWidth, toolHeading};
-    }
-    /// Replaces the rules that an operator may change.
-    void tune(const Tuning& tuning);
 
     void encode(base::ByteWriter& writer) const;
     /// Reads what encode() wrote. Throws base::FormatError for an unknown scheme or numbers out of range.

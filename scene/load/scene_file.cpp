@@ -49,11 +49,11 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
     if (const auto table = file.table("material")) {
         readMaterialKeys(*table, scene);
     }
-    scene.rules.tune(tuningOf(scene.material, scene.grid()));
-    if (scene.rules.threshold < kTooCoarse) {
+    scene.rules.tuning = tuningOf(scene.material, scene.grid());
+    if (scene.rules.tuning.threshold < kTooCoarse) {
         scene.warnings.push_back(fmt::format(
             "a talus of {} deg is {} height units per cell; below {} slopes rest more than a percent too steep",
-            scene.material.talus(), scene.rules.threshold, kTooCoarse));
+            scene.material.talus(), scene.rules.tuning.threshold, kTooCoarse));
     }
 }
 

@@ -120,7 +120,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const std::optio
     json["at_rest"] = timed.relaxed.atRest;
     json["seconds"] = timed.seconds;
     // For a level talus this is not a number, which JSON writes as null.
-    json["steepest_over_talus"] = steepest / sand.rules.threshold;
+    json["steepest_over_talus"] = steepest / sand.rules.tuning.threshold;
     json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
     json["certificate"] = certificatePart(sand, timed.relaxed);
     json["state_hash"] = fmt::format("{:016x}", sand::grid::TileHash(sand.field).update(sand.field));

@@ -13,7 +13,8 @@ using ExtremeInput = SceneFile;
 
 TEST_F(ExtremeInput, AnglesEndBelow90Degrees) {
     const auto thresholdAt = [&](const std::string& degrees) {
-        return scene::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n")).rules.threshold;
+        return scene::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n"))
+            .rules.tuning.threshold;
     };
     EXPECT_EQ(thresholdAt("0"), 0);
     EXPECT_EQ(thresholdAt("45"), sand::kUnitsPerCell);

@@ -22,8 +22,8 @@ TEST_F(SceneFile, DefaultsAreThePapers) {
     EXPECT_EQ(scene.rules.columns, 512);
     EXPECT_EQ(scene.rules.rows, 512);
     EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
-    EXPECT_EQ(scene.rules.toolRadius, 655);  // 2.56 cells
-    EXPECT_EQ(scene.rules.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
+    EXPECT_EQ(scene.rules.tuning.tool.radius, 655);  // 2.56 cells
+    EXPECT_EQ(scene.rules.tuning.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
     EXPECT_EQ(scene.rules.stepsPerSecond, 60);
 }
 
@@ -66,7 +66,7 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
 
 TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
     const auto sweeps = [&](const std::string& radius) {
-        return scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
+        return scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.tuning.sweepsPerStep;
     };
     EXPECT_EQ(sweeps("0.046875"), 24);  // 12 cells: 144 / (0.1 s * 60)
     EXPECT_NEAR(sweeps("0.09375"), 4 * 24, 3);
@@ -126,8 +126,8 @@ TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
 TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
     const scene::Scene scene = scene::loadScene(
         write("s.toml", kFlat + "[tool]\nshape = \"footprint\"\nradius = 0.1\nheading_deg = 90\nfoot = \"left\"\n"));
-    EXPECT_EQ(scene.rules.toolShape(), (sand::ToolShape{sand::ToolKind::footprint, 6554, 2622}));
-    EXPECT_EQ(scene.rules.toolHeading, (sand::Heading{0, sand::Heading::kLength, true}));
+    EXPECT_EQ(scene.rules.tuning.tool,
+              (sand::Tool{sand::ToolKind::footprint, 6554, 2622, {0, sand::Heading::kLength, true}}));
     EXPECT_EQ(scene::Scene::decode(scene.encode()).rules, scene.rules);
     const scene::Scene plain = scene::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
     EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";

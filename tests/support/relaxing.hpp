@@ -76,8 +76,8 @@ inline sand::Rules rulesFor(const sand::HeightField& field, const Law& law = {},
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = threshold;
-    rules.startThreshold = threshold + static_cast<std::int32_t>(law.band * threshold);
+    rules.tuning.threshold = threshold;
+    rules.tuning.startThreshold = threshold + static_cast<std::int32_t>(law.band * threshold);
     rules.scheme = law.scheme;
     return rules;
 }

@@ -196,7 +196,7 @@ TEST(Protocol, RefusesAShareOfTheForceThatNoOperatorCanSet) {
 }
 
 TEST(Protocol, AnEditTakesItsDetailsAlong) {
-    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, {.radius = 17}}), sand::Edit::loaded({3, 1, 4})}) {
         const base::Bytes framed = encode(EditRequest{edit});
         EXPECT_EQ(decode(withoutLength(framed)), Message(EditRequest{edit}));
         for (std::size_t length = 0; length < framed.size() - 4; ++length) {
