@@ -204,8 +204,7 @@ void Replica::settle() {
 }
 
 void Replica::tune(const Tuning& tuning) {
-    // A tool that a hand has turned keeps its heading, unless the operator turns the tool.
-    heading_ = tuning.tool.heading != rules_.tuning.tool.heading ? tuning.tool.heading : heading_;
+    heading_ = headingAfter(rules_.tuning.tool, tuning.tool, heading_);
     const bool otherTool = tuning.tool != rules_.tuning.tool;
     rules_.tuning = tuning;
     surface_->changeRules(rules_);

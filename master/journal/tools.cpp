@@ -27,8 +27,8 @@ constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "r
 class ExportedTool {
 public:
     explicit ExportedTool(const scene::Scene& scene)
-        : rules_(scene.rules),
-          heading_(scene.rules.tuning.tool.heading),
+        : ofRules_(scene.rules.tuning.tool),
+          heading_(ofRules_.heading),
           unit_(scene.terrain.cellSize() / sand::kProbePerCell) {}
 
     /// Takes the heading with which the hand moves in `step`.
@@ -36,19 +36,18 @@ public:
     /// Applies the tuning of `step` to later steps, as sand::Replica does.
     void end(const sand::Step& step) {
         if (step.edit.kind == sand::Edit::tune) {
-            heading_ =
-                step.edit.tuning.tool.heading != rules_.tuning.tool.heading ? step.edit.tuning.tool.heading : heading_;
-            rules_.tuning = step.edit.tuning;
+            heading_ = sand::headingAfter(ofRules_, step.edit.tuning.tool, heading_);
+            ofRules_ = step.edit.tuning.tool;
         }
     }
     [[nodiscard]] std::string text() const {
-        return fmt::format("{},{},{:.6g}", base::nameOf(rules_.tuning.tool.kind), rules_.tuning.tool.radius * unit_,
+        return fmt::format("{},{},{:.6g}", base::nameOf(ofRules_.kind), ofRules_.radius * unit_,
                            sand::degreesOf(heading_));
     }
     [[nodiscard]] double unit() const { return unit_; }
 
 private:
-    sand::Rules rules_;
+    sand::Tool ofRules_;
     sand::Heading heading_;
     double unit_;  // [scene unit], length of a probe unit
 };

@@ -58,4 +58,10 @@ struct Tool {
     friend bool operator==(const Tool&, const Tool&) = default;
 };
 
+/// Returns the heading of the tool in the hand, until now `held`, after an operator has replaced the tool of the rules.
+/// A tool that a hand has turned keeps its heading, unless the operator turns the tool.
+[[nodiscard]] inline Heading headingAfter(const Tool& before, const Tool& after, const Heading& held) {
+    return after.heading != before.heading ? after.heading : held;
+}
+
 }  // namespace sand
