@@ -3,7 +3,6 @@
 
 #include <xxhash.h>
 
-#include <algorithm>
 #include <string>
 
 namespace sand {
@@ -13,12 +12,11 @@ constexpr unsigned kTinFlag =
     0x80;  // bit beside the scheme; a height field's rules do not have it and keep their old bytes
 
 Scheme schemeOf(unsigned number) {
-    const auto* const found = std::ranges::find_if(
-        kSchemes, [&](const NamedScheme& known) { return static_cast<unsigned>(known.scheme) == number; });
-    if (found == kSchemes.end()) {
+    const auto scheme = static_cast<Scheme>(number);
+    if (base::nameOf(scheme).empty()) {
         throw base::FormatError("a scene with the unknown scheme " + std::to_string(number));
     }
-    return found->scheme;
+    return scheme;
 }
 
 }  // namespace

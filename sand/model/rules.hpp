@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
 
 #include "base/byte_stream.hpp"
+#include "base/names.hpp"
 #include "sand/model/tuning.hpp"
 #include "sand/model/units.hpp"
 
@@ -22,19 +22,17 @@ inline constexpr std::uint32_t kAlgorithmVersion = 9;
 /// belonged to a scheme that was removed; Rules::decode() refuses it.
 enum class Scheme : std::uint8_t { isotropic = 0, plainIsotropic = 2 };
 
-/// A scheme and its name in scene files and on command lines.
-struct NamedScheme {
-    Scheme scheme;
-    std::string_view name;
-};
-/// All schemes, the default first.
-inline constexpr std::array<NamedScheme, 2> kSchemes{{{Scheme::isotropic, "g"}, {Scheme::plainIsotropic, "g_plain"}}};
+/// The names are those of scene files and command lines. The default is the first.
+constexpr auto valuesOf(Scheme) {
+    return std::array{base::Named{Scheme::isotropic, "g"}, base::Named{Scheme::plainIsotropic, "g_plain"}};
+}
 
 /// Border of the field.
 enum class Rim : std::uint8_t {
     closed,  // keeps all sand on the field
     open     // lets sand fall over it, as outflow
 };
+constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
 /// and sends them to all other processes. These never derive them again, because the last digit of libm's results

@@ -110,9 +110,9 @@ TEST_F(SceneFile, WithoutAMaterialIsDrySand) {
 TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {
     EXPECT_EQ(complaint(kFlat + "talus_deg = 34\nscheme = \"n4\"\n"),
               "s.toml:5: scheme must be one of g, g_plain, got 'n4'");
-    for (const sand::NamedScheme& known : sand::kSchemes) {
+    for (const auto& known : valuesOf(sand::Scheme{})) {
         const std::string text = fmt::format("{}scheme = \"{}\"\n", kFlat, known.name);
-        EXPECT_EQ(scene::loadScene(write("s.toml", text)).rules.scheme, known.scheme) << known.name;
+        EXPECT_EQ(scene::loadScene(write("s.toml", text)).rules.scheme, known.value) << known.name;
     }
 }
 

@@ -45,7 +45,7 @@ TEST_F(Relax, GivesWhatTheLibraryGives) {
     const sand::HeightField start = samples::cylinder(64, 16, 9.6);
     writeGrid("in.asc", 64, 64, heightsOf(start));
     sand::Rules rules = samples::flatScene(64, 64).rules;
-    for (const auto& [scheme, name] : sand::kSchemes) {
+    for (const auto& [scheme, name] : valuesOf(sand::Scheme{})) {
         rules.scheme = scheme;
         sand::HeightField expected = start;
         sand::grid::Erosion erosion(expected, rules);
