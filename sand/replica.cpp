@@ -282,7 +282,7 @@ StateCopy Replica::copyState() const {
     }
     writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0) + (settling_ ? 4 : 0)});
     heading_.encode(writer);
-    rules_.tuning.encode(writer);
+    base::putMember(writer, rules_.tuning);
     return {writer.take(), surface_->kept(), copySand()};
 }
 
@@ -314,7 +314,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const auto flags = reader.get<std::int32_t>();
     const bool engaged = (flags & 1) != 0, settling = (flags & 4) != 0;
     const Heading heading = Heading::decode(reader, (flags & 2) != 0);
-    const Tuning tuning = Tuning::decode(reader);
+    const Tuning tuning = base::read<Tuning>(reader);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
     // Decode the kept sand now, because at the undo it would be too late to refuse it.

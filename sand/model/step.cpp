@@ -38,7 +38,7 @@ bool operator==(const Edit& a, const Edit& b) {
 
 void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
     if (edit.kind == Edit::tune) {
-        edit.tuning.encode(writer);
+        base::putMember(writer, edit.tuning);
     } else if (edit.kind == Edit::load) {
         writer.putBlock(edit.sand ? *edit.sand : base::Bytes());
     }
@@ -46,7 +46,7 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
 
 Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
     if (kind == Edit::tune) {
-        return Edit::tuned(Tuning::decode(reader));
+        return Edit::tuned(base::read<Tuning>(reader));
     }
     if (kind == Edit::load) {
         // Replica::apply() checks the sand itself, because only the replica knows the field.

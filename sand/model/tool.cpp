@@ -8,7 +8,7 @@ constexpr int kMirroredBit = 0x80;  // bit of the byte whose lower bits are the 
 
 }  // namespace
 
-void Tool::encode(base::ByteWriter& writer) const {
+void Tool::put(base::ByteWriter& writer) const {
     writer.put(plain() ? radius : -1 - radius);
     if (!plain()) {
         writer.put(static_cast<std::uint8_t>(static_cast<int>(kind) + (heading.mirrored ? kMirroredBit : 0)));
@@ -17,24 +17,23 @@ void Tool::encode(base::ByteWriter& writer) const {
     }
 }
 
-Tool Tool::decode(base::ByteReader& reader) {
-    Tool tool;
-    tool.radius = reader.get<std::int32_t>();
-    if (tool.radius < 0) {
-        tool.radius = -1 - tool.radius;
+void Tool::get(base::ByteReader& reader) {
+    *this = {};
+    radius = reader.get<std::int32_t>();
+    if (radius < 0) {
+        radius = -1 - radius;
         const auto coded = reader.get<std::uint8_t>();
-        tool.kind = static_cast<ToolKind>(coded & ~kMirroredBit);
-        tool.halfWidth = reader.get<std::int32_t>();
-        tool.heading = Heading::decode(reader, (coded & kMirroredBit) != 0);
-        if (base::nameOf(tool.kind).empty()) {
-            throw base::FormatError("a tool of an unknown shape");
+        kind = static_cast<ToolKind>(coded & ~kMirroredBit);
+        halfWidth = reader.get<std::int32_t>();
+        heading = Heading::decode(reader, (coded & kMirroredBit) != 0);
+        if (base::nameOf(kind).empty()) {
+            throw base::FormatError("has an unknown kind");
         }
     }
-    const std::int32_t widest = isRound(tool.kind) ? 0 : tool.radius;
-    if (tool.radius > kLargestToolRadius || tool.halfWidth < 0 || tool.halfWidth > widest) {
-        throw base::FormatError("a tool out of range");
+    const std::int32_t widest = isRound(kind) ? 0 : radius;
+    if (radius > kLargestToolRadius || halfWidth < 0 || halfWidth > widest) {
+        throw base::FormatError("is larger or wider than a tool can be");
     }
-    return tool;
 }
 
 }  // namespace sand

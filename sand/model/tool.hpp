@@ -52,9 +52,9 @@ struct Tool {
     /// Returns whether the tool is a sphere that points east. Its encoding is its radius alone. The encoding of any
     /// other tool is −1 − radius, kind, half width and heading.
     [[nodiscard]] bool plain() const { return kind == ToolKind::sphere && heading == Heading{}; }
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for a tool that no scene file can contain.
-    static Tool decode(base::ByteReader& reader);
+    void put(base::ByteWriter& writer) const;
+    /// Reads what put() wrote. Throws base::FormatError for a tool that no scene file can contain.
+    void get(base::ByteReader& reader);
     friend bool operator==(const Tool&, const Tool&) = default;
 };
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "sand/model/tool.hpp"
 
 namespace sand {
@@ -23,9 +23,18 @@ struct Tuning {
     std::int32_t sweepsPerStep = 0;
     Tool tool{};
 
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for numbers that no scene file can contain.
-    static Tuning decode(base::ByteReader& reader);
+    /// Visits all members except the tool.
+    template <class Self, class Visit>
+    static void materialFields(Self& it, Visit& visit) {
+        visit("threshold", base::limited(it.threshold, 0, kLargestThreshold));
+        visit("start_threshold", base::limited(it.startThreshold, it.threshold, kLargestThreshold));
+        visit("sweeps_per_step", base::limited(it.sweepsPerStep, 0, kMostSweeps));
+    }
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        materialFields(it, visit);
+        visit("tool", it.tool);
+    }
     friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

@@ -339,7 +339,7 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     rules.stepsPerSecond = 60;
     base::ByteWriter scene;
     scene.putText("huge");
-    rules.encode(scene);
+    base::putMember(scene, rules);
     master::JournalHeader header;
     header.session = 1;
     header.scene = scene.take();
