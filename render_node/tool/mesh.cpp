@@ -117,8 +117,8 @@ Solid solidOf(sand::ToolKind kind, float width) {
     }
     if (kind == rectangle) {
         solid.box({-1, -width, -1}, {1, width, kPlate - 1});
-    } else if (kind == footprint) {
-        for (const sand::SolePiece& piece : sand::solePieces()) {
+    } else if (const auto sole = sand::solePieces(kind); !sole.empty()) {
+        for (const sand::SolePiece& piece : sole) {
             solid.plate(glm::dvec2(piece.along, double{width} * piece.across),
                         glm::dvec2(piece.halfLength, double{width} * piece.halfWidth), static_cast<float>(piece.lift),
                         static_cast<float>(piece.bulge), kPlate - 1);

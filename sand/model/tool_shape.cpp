@@ -26,7 +26,9 @@ constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
 
 }  // namespace
 
-std::span<const SolePiece> solePieces() { return kSole; }
+std::span<const SolePiece> solePieces(ToolKind kind) {
+    return kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : std::span<const SolePiece>();
+}
 
 TurnedShape::TurnedShape(const Tool& tool, bool v3)
     : tool_(tool),
@@ -52,7 +54,8 @@ TurnedShape::TurnedShape(const Tool& tool, bool v3)
 }
 
 std::span<const SolePiece> TurnedShape::pieces() const {
-    return tool_.kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : kPlate;
+    const std::span<const SolePiece> sole = solePieces(tool_.kind);
+    return sole.empty() ? kPlate : sole;
 }
 
 void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std::int32_t> row) const {

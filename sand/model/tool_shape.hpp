@@ -20,7 +20,7 @@ struct Offset {
     [[nodiscard]] std::int64_t squared() const { return x * x + y * y; }
 };
 
-/// Part of the sole of a foot: an ellipse with a bowl below it.
+/// Part of a sole: an ellipse with a bowl below it.
 struct SolePiece {
     /// Position of the middle: along the heading [half length of the tool], and to the left [half width of the tool].
     double along, across;
@@ -28,9 +28,9 @@ struct SolePiece {
     double lift;                   // height of the bowl's lowest point over the tool's lowest point [radius]
     double bulge;                  // height of the bowl's rim over the bowl's lowest point [radius]
 };
-/// Returns heel, outer side, ball and toes of a right foot whose toes point along its heading. The foot is this
-/// project's own drawing.
-[[nodiscard]] std::span<const SolePiece> solePieces();
+/// Returns the pieces of a sole, or none for a tool of another shape. Those of a footprint are heel, outer side, ball
+/// and toes of a right foot whose toes point along its heading. The foot is this project's own drawing.
+[[nodiscard]] std::span<const SolePiece> solePieces(ToolKind kind);
 
 /// Shape of a tool with its heading: the cells below it, the cells beside it, and the height of its underside.
 ///

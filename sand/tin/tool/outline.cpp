@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <span>
 
 namespace sand::tin {
 namespace {
@@ -152,10 +153,10 @@ private:
     Outline outline_;
 };
 
-void drawSole(Drawing& drawing, double length, double width) {
+void drawSole(Drawing& drawing, std::span<const SolePiece> sole, double length, double width) {
     constexpr double kSmall = 0.2;  // [half length of the tool]; toes: 8 points do as well as 16 for a heel
     std::vector<Polygon> pieces;
-    for (const SolePiece& piece : solePieces()) {
+    for (const SolePiece& piece : sole) {
         pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
                                  piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 8 : 16));
     }
@@ -164,7 +165,7 @@ void drawSole(Drawing& drawing, double length, double width) {
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (!pieces[i].empty()) {  // the deepest place of the piece's bowl
-            drawing.point({solePieces()[i].along * length, solePieces()[i].across * width});
+            drawing.point({sole[i].along * length, sole[i].across * width});
         }
     }
 }
@@ -198,8 +199,8 @@ void drawBowl(Drawing& drawing, double length, double width) {
 Outline drawn(const Tool& tool) {
     const double length = tool.radius, width = isRound(tool.kind) ? tool.radius : tool.halfWidth;
     Drawing drawing;
-    if (tool.kind == ToolKind::footprint) {
-        drawSole(drawing, length, width);
+    if (const auto sole = solePieces(tool.kind); !sole.empty()) {
+        drawSole(drawing, sole, length, width);
         return drawing.take();
     }
     const Polygon ring = tool.kind == ToolKind::rectangle ? rectangle(length - kMargin, width - kMargin)

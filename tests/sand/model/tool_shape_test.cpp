@@ -54,7 +54,7 @@ std::optional<long double> depthBelow(ToolKind kind, long double along, long dou
         return square < 1 ? std::optional(1.0L) : std::nullopt;
     }
     std::optional<long double> deepest;
-    for (const sand::SolePiece& piece : sand::solePieces()) {
+    for (const sand::SolePiece& piece : sand::solePieces(kind)) {
         const long double x = (along - piece.along) / piece.halfLength, y = (across - piece.across) / piece.halfWidth;
         if (x * x + y * y < 1) {
             deepest = std::max(deepest.value_or(0), 1 - piece.lift - piece.bulge * (x * x + y * y));
