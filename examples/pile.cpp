@@ -12,11 +12,11 @@ int main() {
     start.terrain = sand::HeightField(kSide, kSide, kCell);
     start.terrain.setHeight(kSide / 2, kSide / 2, 1200 * sand::kUnitsPerCell);  // a column 1200 cells high
     start.rules.columns = start.rules.rows = kSide;
-    start.rules.threshold = sand::kUnitsPerCell;  // stable up to one cell per cell: 45 degrees
-    start.rules.startThreshold = start.rules.threshold;
-    start.rules.sweepsPerStep = 16;
+    start.rules.tuning.threshold = sand::kUnitsPerCell;  // stable up to one cell per cell: 45 degrees
+    start.rules.tuning.startThreshold = start.rules.tuning.threshold;
+    start.rules.tuning.sweepsPerStep = 16;
     start.rules.stepsPerSecond = 60;
-    start.rules.toolRadius = sand::kProbePerCell;
+    start.rules.tuning.tool.radius = sand::kProbePerCell;
 
     sand::Replica replica(start);
     sand::Step step;

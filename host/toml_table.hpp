@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/names.hpp"
+
 namespace host {
 
 /// Range of numbers that a key accepts. Messages print it: "within [0, 90)".
@@ -41,6 +43,16 @@ public:
     [[nodiscard]] std::string textOr(std::string_view key, std::string_view fallback) const;
     /// Returns the index of the key's text in `choices`, or `fallback` if the key is absent.
     [[nodiscard]] int choiceOr(std::string_view key, const std::vector<std::string_view>& choices, int fallback) const;
+    /// Returns the value whose name the key's text is (base/names.hpp), or `fallback` if the key is absent.
+    template <base::NamedEnum Enum>
+    [[nodiscard]] Enum valueOr(std::string_view key, Enum fallback) const {
+        std::vector<std::string_view> names;
+        for (const auto& known : valuesOf(Enum{})) {
+            names.push_back(known.name);
+        }
+        const int index = choiceOr(key, names, -1);
+        return index < 0 ? fallback : valuesOf(Enum{})[static_cast<std::size_t>(index)].value;
+    }
     /// Returns a list of exactly `count` finite numbers.
     [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<double> numbersOr(std::string_view key, std::vector<double> fallback) const;

@@ -215,7 +215,7 @@ nlohmann::json Session::status() const {
                           {"linked", steps_->linked()},
                           {"streaming", steps_->streaming()},
                           {"tool_radius", sand.toolRadius()},
-                          {"tool_shape", std::string(base::nameOf(sand.toolShape().kind))},
+                          {"tool_shape", std::string(base::nameOf(sand.tool().kind))},
                           {"tool_heading", sand::degreesOf(sand.heading())},
                           {"state_hash", fmt::format("{:016x}", sand_.hash())},
                           {"checking_journal", check_.pending()},

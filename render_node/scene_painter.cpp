@@ -29,17 +29,14 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
     : sceneToRoom_(sceneToRoom),
       look_(scene.look),
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
-      cellSize_(static_cast<float>(scene.terrain.cellSize())),
-      probeUnit_(scene.terrain.cellSize() / sand::kProbePerCell),
-      toolRadius_(static_cast<float>(scene.toolRadius())),
-      toolShape_(scene.rules.toolShape()),
-      toolHeading_(scene.rules.toolHeading),
+      cellSize_(scene.terrain.cellSize()),
+      tool_(scene.rules.tuning.tool),
       surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
       sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
       woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
       toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
       grain_(glm::vec2(sun_)),
-      box_(surface_->rim(), surface_->heightsEver().lowest, double{cellSize_}, scene.rules.rim) {
+      box_(surface_->rim(), surface_->heightsEver().lowest, double{static_cast<float>(cellSize_)}, scene.rules.rim) {
     startCounting();
 }
 
@@ -65,16 +62,15 @@ SurfaceShaders ScenePainter::shaders() const {
 
 void ScenePainter::setTool(sand::ProbePoint centre, bool engaged) {
     const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
-    tool_ = EyeMemory::Tool{glm::vec3(cells * double{cellSize_}), engaged, toolRadius_, toolShape_, toolHeading_};
+    drawnTool_ = DrawnTool{tool_, glm::vec3(cells * double{static_cast<float>(cellSize_)}), toolRadius(), engaged};
 }
 
-void ScenePainter::setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape,
-                           const sand::Heading& heading) {
-    toolShape_ = shape;
-    toolHeading_ = heading;
-    toolRadius_ = static_cast<float>(shape.radius * probeUnit_);
+void ScenePainter::setTool(sand::ProbePoint centre, bool engaged, const sand::Tool& tool) {
+    tool_ = tool;
     setTool(centre, engaged);
 }
+
+float ScenePainter::toolRadius() const { return static_cast<float>(tool_.radius * cellSize_ / sand::kProbePerCell); }
 
 void ScenePainter::setLayers(lockstep::Overlays layers) {
     overlays_ = {};
@@ -100,12 +96,12 @@ void ScenePainter::prepare(const GlProgram& program, const Camera& camera) const
 }
 
 void ScenePainter::prepareTool(const GlProgram& program) const {
-    if (!tool_ || !(toolRadius_ > 0)) {
+    if (!drawnTool_ || !(drawnTool_->radius > 0)) {
         program.set("uTool", kNoTool);
-    } else if (isBall(*tool_)) {
-        program.set("uTool", glm::vec4(tool_->centre, 1 / toolRadius_));
+    } else if (drawnTool_->isBall()) {
+        program.set("uTool", glm::vec4(drawnTool_->centre, 1 / drawnTool_->radius));
     } else {
-        const ToolLight light = lightOf(*tool_);
+        const ToolLight light(*drawnTool_);
         const glm::dvec3 sun = light.toBall * glm::dvec3(sun_);
         program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
         program.set("uToolSpace", glm::mat3(light.toBall));
@@ -119,14 +115,10 @@ void ScenePainter::prepareSurface(const GlProgram& program, const Camera& camera
     surface_->prepare(program);
 }
 
-Box ScenePainter::bodyOf(const EyeMemory::Tool& tool) {
-    const Box box = boxOfTool(tool.shape);
+Box ScenePainter::bodyOf(const DrawnTool& tool) {
+    const Box box = boxOfTool(tool.tool);
     return {glm::dvec3(tool.centre) + double{tool.radius} * box.low,
             glm::dvec3(tool.centre) + double{tool.radius} * box.high};
-}
-
-ToolLight ScenePainter::lightOf(const EyeMemory::Tool& tool) {
-    return {tool.shape, tool.heading, glm::dvec3(tool.centre), double{tool.radius}};
 }
 
 void ScenePainter::draw(const Camera& camera, const EyeTarget& target) {
@@ -171,11 +163,11 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
 }
 
 void ScenePainter::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
-    if (tool_ && toolRadius_ > 0 && (!culling_ || inFrustum(bodyOf(*tool_), sceneToPart))) {
+    if (drawnTool_ && drawnTool_->radius > 0 && (!culling_ || inFrustum(bodyOf(*drawnTool_), sceneToPart))) {
         prepare(toolProgram_, camera);
-        toolProgram_.set("uModel", glm::vec4(tool_->centre, toolRadius_));
-        toolProgram_.set("uEngaged", tool_->engaged ? 1.0F : 0.0F);
-        toolMesh_.show(tool_->shape, tool_->heading);
+        toolProgram_.set("uModel", glm::vec4(drawnTool_->centre, drawnTool_->radius));
+        toolProgram_.set("uEngaged", drawnTool_->engaged ? 1.0F : 0.0F);
+        toolMesh_.show(drawnTool_->tool);
         toolMesh_.draw();
         toolProgram_.drawn();
     }
@@ -186,12 +178,12 @@ void ScenePainter::drawForce(const Camera& camera) {
         forceView_.emplace();
     }
     prepare(forceView_->program(), camera);
-    forceView_->draw(*force_, toolRadius_);
+    forceView_->draw(*force_, toolRadius());
 }
 
 const SandPrograms& ScenePainter::sandPrograms() {
     const bool hillShade = overlays_.shows(lockstep::Overlay::hillShade);
-    const bool ball = !tool_ || isBall(*tool_);
+    const bool ball = !drawnTool_ || drawnTool_->isBall();
     if (ball && !hillShade) {
         return sunlit_;
     }
@@ -203,7 +195,7 @@ const SandPrograms& ScenePainter::sandPrograms() {
 }
 
 const GlProgram& ScenePainter::woodProgram() {
-    if (!tool_ || isBall(*tool_)) {
+    if (!drawnTool_ || drawnTool_->isBall()) {
         return woodProgram_;
     }
     if (!stampWood_) {
@@ -220,8 +212,8 @@ void ScenePainter::drawSand(const Camera& camera, const glm::dmat4& sceneToPart,
     // so that it is used only within the tool's reach.
     std::function<void(const Box&)> choose;
     bool near = false;
-    if (tool_ && toolRadius_ > 0) {
-        choose = [&programs, &near, reach = reachOf(*tool_)](const Box& chunk) {
+    if (drawnTool_ && drawnTool_->radius > 0) {
+        choose = [&programs, &near, reach = reachOf(*drawnTool_)](const Box& chunk) {
             const bool within = reach.meets(chunk);
             (within ? programs.near : programs.far).use();
             near = near || within;

@@ -16,6 +16,7 @@
 #include "render_node/gl/pixel_rect.hpp"
 #include "render_node/sand_box.hpp"
 #include "render_node/surface/drawn_surface.hpp"
+#include "render_node/tool/drawn_tool.hpp"
 #include "render_node/tool/force_arrow.hpp"
 #include "render_node/tool/light.hpp"
 #include "render_node/tool/mesh.hpp"
@@ -43,20 +44,12 @@ struct DrawCounts {
 
 /// Record of the picture that one view has last drawn into one target. The caller keeps one for each eye.
 struct EyeMemory {
-    struct Tool {
-        glm::vec3 centre;  // [scene unit]
-        bool engaged;
-        float radius;  // [scene unit]
-        sand::ToolShape shape;
-        sand::Heading heading;
-        friend bool operator==(const Tool&, const Tool&) = default;
-    };
     bool drawn = false;  // false: the next drawIfChanged() draws the whole picture
     glm::dmat4 roomToClip{1}, sceneToRoom{1};
     glm::dvec3 eye{0};
     std::uint64_t sand = 0;  // revision
     DrawnLevels levels;
-    std::optional<Tool> tool;
+    std::optional<DrawnTool> tool;
     std::optional<ForceArrow> force;
     lockstep::Overlays layers;  // only the layers that change every pixel of the sand
     PixelRect covered{};        // pixels that something else was drawn over, and that must be drawn again
@@ -87,7 +80,7 @@ struct SandPrograms {
 /// a camera sees are built, sent to GL and drawn. The GL context must be current. Used by one thread.
 class ScenePainter {
 public:
-    /// Takes the tool's radius and the look from `scene`. `start` is the sand of a replica before its first step.
+    /// Takes the tool and the look from `scene`. `start` is the sand of a replica before its first step.
     /// Throws std::runtime_error if a shader does not compile.
     ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
     /// Takes the sand from `scene`, which must have a height field.
@@ -104,8 +97,8 @@ public:
     [[nodiscard]] HeightRange heightsEver() const { return surface_->heightsEver(); }
     /// Sets the tool's centre. No tool is drawn before the first call.
     void setTool(sand::ProbePoint centre, bool engaged);
-    /// Sets the tool's centre, shape and heading. Use it if the tool differs from the last one or was turned.
-    void setTool(sand::ProbePoint centre, bool engaged, const sand::ToolShape& shape, const sand::Heading& heading);
+    /// Sets the tool and its centre. Use it if the tool differs from the last one or was turned.
+    void setTool(sand::ProbePoint centre, bool engaged, const sand::Tool& tool);
 
     /// Shows or hides hill-shade and wireframe; ignores all other layers. The next draw() makes the programs of a layer
     /// that is shown for the first time. It then throws std::runtime_error if a shader does not compile.
@@ -150,22 +143,18 @@ private:
     [[nodiscard]] std::vector<PixelRect> changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
     [[nodiscard]] const SandPrograms& sandPrograms();
     [[nodiscard]] const GlProgram& woodProgram();
-    [[nodiscard]] static ToolLight lightOf(const EyeMemory::Tool& tool);
-    [[nodiscard]] static Box bodyOf(const EyeMemory::Tool& tool);
-    [[nodiscard]] static bool isBall(const EyeMemory::Tool& tool) { return tool.shape.kind == sand::ToolKind::sphere; }
-    [[nodiscard]] ToolReach reachOf(const EyeMemory::Tool& tool) const;
-    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const EyeMemory::Tool& tool) const;
+    [[nodiscard]] static Box bodyOf(const DrawnTool& tool);
+    [[nodiscard]] ToolReach reachOf(const DrawnTool& tool) const;
+    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const DrawnTool& tool) const;
+    [[nodiscard]] float toolRadius() const;  // [scene unit], of the current tool
 
     glm::dmat4 sceneToRoom_;
     scene::Look look_;
     glm::vec2 halfPicture_{};  // [pixel], half of the size of the current picture
     glm::vec3 sun_;            // towards the sun, of length 1
-    float cellSize_;           // [scene unit]
-    double probeUnit_;         // [scene unit]
-    float toolRadius_;         // [scene unit], of the current tool
-    sand::ToolShape toolShape_;
-    sand::Heading toolHeading_;
-    std::optional<EyeMemory::Tool> tool_;
+    double cellSize_;          // [scene unit]; places are computed from its float, as in the shaders
+    sand::Tool tool_;
+    std::optional<DrawnTool> drawnTool_;  // nullopt before the first setTool()
     std::optional<ForceArrow> force_;
     lockstep::Overlays overlays_;
     bool culling_ = true;

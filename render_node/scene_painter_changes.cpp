@@ -14,13 +14,13 @@ constexpr std::size_t kMostPasses = 4;  // each pass tests every chunk
 
 }  // namespace
 
-ToolReach ScenePainter::reachOf(const EyeMemory::Tool& tool) const {
-    const ToolLight light = lightOf(tool);
+ToolReach ScenePainter::reachOf(const DrawnTool& tool) const {
+    const ToolLight light(tool);
     return {light.centre, light.radius, sun_};
 }
 
 /// Returns convex hulls around everything that a tool changes: the sand that it dims, its shadow, and the tool.
-std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const EyeMemory::Tool& tool) const {
+std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const DrawnTool& tool) const {
     const ToolReach reach = reachOf(tool);
     const HeightRange sand = surface_->heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
@@ -47,7 +47,7 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
     const PixelRect whole = allPixels(size);
     const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
     const LevelRule rule = ruleFor(camera, size);
-    const bool toolMoved = memory.tool != tool_;
+    const bool toolMoved = memory.tool != drawnTool_;
     if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
         memory.sceneToRoom != sceneToRoom_ || memory.layers != overlays_) {
         memory.levels = surface_->levelsWithin(sceneToClip, rule);
@@ -55,8 +55,8 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
     }
     std::vector<PixelRect> changed{memory.covered};
     const auto add = [&](std::span<const glm::dvec3> hull) { changed.push_back(pixelsOf(hull, sceneToClip, size)); };
-    if (toolMoved && toolRadius_ > 0) {
-        for (const std::optional<EyeMemory::Tool>& tool : {memory.tool, tool_}) {
+    if (toolMoved && toolRadius() > 0) {
+        for (const std::optional<DrawnTool>& tool : {memory.tool, drawnTool_}) {
             if (tool) {
                 std::ranges::for_each(hullsOf(*tool), add);
             }
@@ -67,7 +67,7 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
             add(cornersOf(boxOf(*memory.force, memory.tool->radius)));
         }
         if (force_) {
-            add(cornersOf(boxOf(*force_, toolRadius_)));
+            add(cornersOf(boxOf(*force_, toolRadius())));
         }
     }
     for (const Box& box : surface_->changesSince(memory.sand, memory.levels, rule)) {
@@ -94,7 +94,7 @@ PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& tar
               camera.eye,
               surface_->revision(),
               std::move(memory.levels),
-              tool_,
+              drawnTool_,
               force_,
               overlays_,
               {}};

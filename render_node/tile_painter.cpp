@@ -69,7 +69,7 @@ void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view,
     const std::vector<Camera> cameras = camerasOf(view);
     scenePainter_.update(terrain.surface().data(), terrain.takeChange(), cameras);
     if (terrain.probe() != sand::ProbePoint{}) {  // a hand has moved the tool
-        scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+        scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
     }
     if (!view.layers.shows(lockstep::Overlay::force)) {
         force_.reset();

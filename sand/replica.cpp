@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/float_environment.hpp"
+#include "sand/model/tool_shape.hpp"
 #include "sand/surface_factory.hpp"
 
 namespace sand {
@@ -22,8 +23,8 @@ namespace {
 constexpr std::int64_t kMostWork = std::int64_t{1} << 32;
 
 /// Returns the cells below `tool`, summed over the sub-steps of `path`, as if all of them were over the field.
-std::int64_t workOf(const HeldTool& tool, const std::vector<ProbePoint>& path, const Rules& rules) {
-    const CellRect below = TurnedShape(tool.shape, tool.heading).cellsChanged(0, 0);
+std::int64_t workOf(const Tool& tool, const std::vector<ProbePoint>& path, const Rules& rules) {
+    const CellRect below = TurnedShape(tool).cellsChanged(0, 0);
     const std::int64_t cells = std::int64_t{std::min(below.x1 - below.x0, rules.columns)} *
                                std::min(below.y1 - below.y0, rules.rows);  // at most 2^28
     std::int64_t substeps = 0;                                             // at most 2^24
@@ -59,7 +60,7 @@ Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
       startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
       surface_(std::move(surface)),
-      heading_(start.rules.toolHeading) {
+      heading_(start.rules.tuning.tool.heading) {
     (void)base::needDefaultFloats();
 }
 
@@ -84,7 +85,7 @@ void Replica::apply(const Step& step) {
                                std::to_string(stepNumber_));
     }
     leftOut_.clear();
-    const Hand before{rules_.tuning(), probe_, heading_};
+    const Hand before{rules_.tuning, probe_, heading_};
     try {
         applyToSand(step);
     } catch (const std::bad_alloc&) {
@@ -102,7 +103,7 @@ void Replica::skip(const Step& step, const Hand& before, const char* why) {
         surface_->reset();
     }
     surface_->forget();
-    rules_.tune(before.tuning);
+    rules_.tuning = before.tuning;
     surface_->changeRules(rules_);
     probe_ = before.probe;
     heading_ = before.heading;
@@ -129,7 +130,7 @@ bool Replica::restoreKept() {
 void Replica::applyToSand(const Step& step) {
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
-    const HeldTool toolBefore = tool();
+    const Tool toolBefore = tool();
     const bool turned = step.heading && *step.heading != heading_;
     heading_ = step.heading.value_or(heading_);
     if (step.engaged && !wasEngaged) {
@@ -168,8 +169,9 @@ void Replica::applyToSand(const Step& step) {
     if (wasEngaged && !engaged_) {
         surface_->leave(toolBefore);
     }
-    const HeldTool here = tool();
-    const int sweeps = settling_ ? std::max(settlingSweeps(), rules_.sweepsPerStep) : rules_.sweepsPerStep;
+    const Tool here = tool();
+    const int sweeps =
+        settling_ ? std::max(settlingSweeps(), rules_.tuning.sweepsPerStep) : rules_.tuning.sweepsPerStep;
     surface_->sweep(sweeps, engaged_ ? &here : nullptr, probe_);
     settling_ = settling_ && !surface_->settled();
 }
@@ -190,10 +192,9 @@ void Replica::settle() {
 }
 
 void Replica::tune(const Tuning& tuning) {
-    // A tool that a hand has turned keeps its heading, unless the operator turns the tool.
-    heading_ = tuning.toolHeading != rules_.toolHeading ? tuning.toolHeading : heading_;
-    const bool otherTool = tuning.tool() != rules_.tuning().tool();
-    rules_.tune(tuning);
+    heading_ = headingAfter(rules_.tuning.tool, tuning.tool, heading_);
+    const bool otherTool = tuning.tool != rules_.tuning.tool;
+    rules_.tuning = tuning;
     surface_->changeRules(rules_);
     if (engaged_ && otherTool) {
         press();
@@ -243,18 +244,18 @@ std::uint64_t Replica::stateHash() {
         fold(static_cast<std::uint32_t>(coordinate));
     }
     if (rules_ != startRules_) {  // only then, so that sessions without tuning keep the hashes of earlier versions
-        const Tuning now = rules_.tuning();
-        for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.toolRadius}) {
+        const Tuning& now = rules_.tuning;
+        for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.tool.radius}) {
             fold(static_cast<std::uint32_t>(number));
         }
-        if (!now.tool().plain()) {
-            fold(static_cast<std::uint64_t>(now.toolKind));
-            fold(static_cast<std::uint32_t>(now.toolHalfWidth));
-            fold(now.toolHeading.bits());
+        if (!now.tool.plain()) {
+            fold(static_cast<std::uint64_t>(now.tool.kind));
+            fold(static_cast<std::uint32_t>(now.tool.halfWidth));
+            fold(now.tool.heading.bits());
         }
     }
-    if (heading_ !=
-        startRules_.toolHeading) {  // only then, so that sessions without turns keep the hashes of earlier versions
+    // Only then, so that sessions without turns keep the hashes of earlier versions.
+    if (heading_ != startRules_.tuning.tool.heading) {
         fold(heading_.bits());
     }
     return hash;
@@ -269,7 +270,7 @@ StateCopy Replica::copyState() const {
     }
     writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0) + (settling_ ? 4 : 0)});
     heading_.encode(writer);
-    rules_.tuning().encode(writer);
+    base::putMember(writer, rules_.tuning);
     return {writer.take(), surface_->kept(), copySand()};
 }
 
@@ -301,7 +302,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     const auto flags = reader.get<std::int32_t>();
     const bool engaged = (flags & 1) != 0, settling = (flags & 4) != 0;
     const Heading heading = Heading::decode(reader, (flags & 2) != 0);
-    const Tuning tuning = Tuning::decode(reader);
+    const Tuning tuning = base::read<Tuning>(reader);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
@@ -313,7 +314,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     } else {
         surface_->forget();
     }
-    rules_.tune(tuning);
+    rules_.tuning = tuning;
     surface_->changeRules(rules_);
     surface_->replace(*sand);
     stepNumber_ = number;

@@ -83,11 +83,12 @@ public:
     [[nodiscard]] std::int64_t volume() const { return surface_->volume(); }
     [[nodiscard]] ProbePoint probe() const { return probe_; }  // the tool's centre [probe unit]
     [[nodiscard]] double toolRadius() const {                  // [scene unit]
-        return rules_.toolRadius * cellSize_ / kProbePerCell;
+        return rules_.tuning.tool.radius * cellSize_ / kProbePerCell;
     }
-    [[nodiscard]] ToolShape toolShape() const { return rules_.toolShape(); }
-    [[nodiscard]] Heading heading() const { return heading_; }  // the tool's, from rules or hand
-    [[nodiscard]] bool engaged() const { return engaged_; }     // whether the tool may touch the sand
+    /// Returns the tool of the rules, with the heading that a hand may have given it.
+    [[nodiscard]] Tool tool() const { return rules_.tuning.tool.turnedTo(heading_); }
+    [[nodiscard]] Heading heading() const { return heading_; }
+    [[nodiscard]] bool engaged() const { return engaged_; }  // whether the tool may touch the sand
     /// Returns whether an undo can restore sand. The replica keeps the sand from before the last stroke. A stroke
     /// begins with the first step in which the tool is engaged after it hovered. After an undo, a reset or a load, the
     /// replica keeps no sand. If the tool is still engaged, it keeps the restored sand: a stroke begins there.
@@ -139,7 +140,6 @@ private:
         ProbePoint probe;
         Heading heading;
     };
-    [[nodiscard]] HeldTool tool() const { return {rules_.toolShape(), heading_}; }
     void tune(const Tuning& tuning);
     void settle();
     /// Displaces the sand below the tool at its current position.

@@ -49,7 +49,7 @@ struct Start {
     std::shared_ptr<const Ground> ground;      // null without rock and wall cells
 
     [[nodiscard]] double toolRadius() const {  // [scene unit]
-        return rules.toolRadius * terrain.cellSize() / kProbePerCell;
+        return rules.tuning.tool.radius * terrain.cellSize() / kProbePerCell;
     }
     /// Makes the TIN `start` the sand that a replica begins with. Sets `tin`, `terrain` and `rules.tin`; keeps the cell
     /// size.

@@ -98,15 +98,15 @@ sand::Tuning tuningOf(const Material& material, const MaterialGrid& grid) {
     sand::Tuning tuning;
     tuning.threshold = static_cast<std::int32_t>(threshold);
     tuning.startThreshold = static_cast<std::int32_t>(std::min(start, double{sand::kLargestThreshold}));
-    tuning.toolRadius =
+    tuning.tool.radius =
         static_cast<std::int32_t>(std::floor(material.toolRadius / grid.cellSize * sand::kProbePerCell + 0.5));
-    tuning.toolKind = material.toolKind;
+    tuning.tool.kind = material.toolKind;
     if (!sand::isRound(material.toolKind)) {
         const double width = material.toolWidth.value_or(sand::usualWidth(material.toolKind));
-        tuning.toolHalfWidth = static_cast<std::int32_t>(std::floor(width * tuning.toolRadius + 0.5));
+        tuning.tool.halfWidth = static_cast<std::int32_t>(std::floor(width * tuning.tool.radius + 0.5));
     }
-    tuning.toolHeading = sand::headingOf(material.toolHeading, material.leftFoot).value_or(sand::Heading{});
-    tuning.sweepsPerStep = sweepsFor(grid.scheme, static_cast<double>(tuning.toolRadius) / sand::kProbePerCell,
+    tuning.tool.heading = sand::headingOf(material.toolHeading, material.leftFoot).value_or(sand::Heading{});
+    tuning.sweepsPerStep = sweepsFor(grid.scheme, static_cast<double>(tuning.tool.radius) / sand::kProbePerCell,
                                      material.settlingSeconds, grid.stepsPerSecond);
     return tuning;
 }

@@ -51,7 +51,7 @@ void decodePart(base::ByteReader& reader, Scene& scene) {
 base::ByteWriter Scene::encodeWithoutStatements() const {
     base::ByteWriter writer;
     writer.putText(name);
-    rules.encode(writer);
+    base::putMember(writer, rules);
     for (const double constant : {force.stiffness, force.depthExponent, force.friction}) {
         writer.put(constant);
     }
@@ -93,14 +93,14 @@ bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     (void)reader.getText();  // the name
-    return sand::Rules::decode(reader);
+    return base::read<sand::Rules>(reader);
 }
 
 Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     Scene scene;
     scene.name = reader.getText();
-    scene.rules = sand::Rules::decode(reader);
+    scene.rules = base::read<sand::Rules>(reader);
     for (double* constant : {&scene.force.stiffness, &scene.force.depthExponent, &scene.force.friction}) {
         *constant = reader.get<double>();
     }

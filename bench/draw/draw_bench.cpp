@@ -111,7 +111,7 @@ void dig(benchmark::State& state) {
     sand::grid::makeDunes({.height = 0.02}, scene.terrain);  // these dunes are at rest
     // The default of a scene file.
     const double radius = 0.01 / scene.terrain.cellSize();
-    scene.rules.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
+    scene.rules.tuning.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
     sand::Replica terrain(scene);
     render_node::ScenePainter view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);

@@ -74,7 +74,7 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
     constexpr std::int32_t kUnitsPerProbe = sand::kUnitsPerCell / sand::kProbePerCell;
     return {static_cast<std::int32_t>(half * (1 + radius * std::cos(left / radius))),
             static_cast<std::int32_t>(half * (1 + radius * std::sin(left / radius))),
-            level / kUnitsPerProbe + rules.toolRadius / 2};
+            level / kUnitsPerProbe + rules.tuning.tool.radius / 2};
 }
 
 /// Applies the `steps` steps of one frame. Each step has as many samples of the hand as a device gives.
@@ -105,7 +105,7 @@ void takeOver(Tile& tile, const sand::Replica& terrain, const sand::SurfaceChang
         cameras.push_back(eye->camera);
     }
     view.update(terrain.surface().data(), change, cameras);
-    view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+    view.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
 }
 
 /// Updates the views with the changes since the last call, and draws them, tile by tile.

@@ -120,10 +120,10 @@ void surfacePatchOfFineTin(benchmark::State& state) {
     start.terrain = sand::HeightField(1, 1, kCell);
     start.tin = fine;
     start.rules.columns = start.rules.rows = kSide;
-    start.rules.threshold = start.rules.startThreshold = sand::kUnitsPerCell;
-    start.rules.sweepsPerStep = 1;
+    start.rules.tuning.threshold = start.rules.tuning.startThreshold = sand::kUnitsPerCell;
+    start.rules.tuning.sweepsPerStep = 1;
     start.rules.stepsPerSecond = 60;
-    start.rules.toolRadius = static_cast<std::int32_t>(state.range(0)) * sand::kProbePerCell;
+    start.rules.tuning.tool.radius = static_cast<std::int32_t>(state.range(0)) * sand::kProbePerCell;
     const sand::Replica replica(start);
     sand::force::SurfacePatch patch;
     for (auto step : state) {

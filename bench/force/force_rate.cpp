@@ -48,11 +48,12 @@ scene::Scene sceneOf(int side) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(side, side, kRadius / kCells);
     scene.rules.columns = scene.rules.rows = side;
-    scene.rules.threshold = 44204;  // 34 degrees
-    scene.rules.startThreshold = 44248;
-    scene.rules.sweepsPerStep = 3;  // sand rests after a tenth of a second, as with sixty steps of 40 sweeps per second
+    scene.rules.tuning.threshold = 44204;  // 34 degrees
+    scene.rules.tuning.startThreshold = 44248;
+    // Sand rests after a tenth of a second, as with sixty steps of 40 sweeps per second.
+    scene.rules.tuning.sweepsPerStep = 3;
     scene.rules.stepsPerSecond = 1000;
-    scene.rules.toolRadius = kCells * sand::kProbePerCell;
+    scene.rules.tuning.tool.radius = kCells * sand::kProbePerCell;
     return scene;
 }
 

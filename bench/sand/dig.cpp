@@ -27,9 +27,9 @@ scene::Scene sceneFor(const Stroke& stroke) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(stroke.side, stroke.side, 1.0);
     scene.rules = rulesFor(scene.terrain, kTalus, 1e-3);
-    scene.rules.sweepsPerStep = stroke.sweeps;
+    scene.rules.tuning.sweepsPerStep = stroke.sweeps;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(stroke.radius * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(stroke.radius * sand::kProbePerCell);
     return scene;
 }
 
@@ -71,7 +71,7 @@ Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
     Lag lag;
     const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
     const sand::HeightField end = field;
-    const sand::grid::Obstacle tool = sand::grid::Displacement(terrain.toolShape()).obstacle(end, terrain.probe());
+    const sand::grid::Obstacle tool = sand::grid::Displacement(terrain.tool()).obstacle(end, terrain.probe());
     sand::HeightField held = end;
     sand::grid::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
     sand::HeightField lifted = end;

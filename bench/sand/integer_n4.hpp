@@ -48,8 +48,8 @@ public:
                  .stride = field_.stride(),
                  .columns = start.columns(),
                  .rows = start.rows(),
-                 .threshold = rules.threshold,
-                 .startThreshold = rules.startThreshold},
+                 .threshold = rules.tuning.threshold,
+                 .startThreshold = rules.tuning.startThreshold},
           path_(path) {}
     IntegerN4(const IntegerN4&) = delete;
     IntegerN4& operator=(const IntegerN4&) = delete;

@@ -42,7 +42,7 @@ class Baseline : public Relaxation {
 public:
     Baseline(BaselineScheme scheme, const sand::HeightField& field, const sand::Rules& rules)
         : scheme_(scheme),
-          talus_(static_cast<float>(rules.threshold) / sand::kUnitsPerCell),
+          talus_(static_cast<float>(rules.tuning.threshold) / sand::kUnitsPerCell),
           field_(field.columns()),
           scratch_(field.columns()),
           path_(base::fastestCodePath()) {
@@ -174,8 +174,8 @@ sand::Rules rulesFor(const sand::HeightField& field, double talus, double band) 
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = static_cast<std::int32_t>(std::lround(talus * sand::kUnitsPerCell));
-    rules.startThreshold = static_cast<std::int32_t>(std::lround(talus * (1 + band) * sand::kUnitsPerCell));
+    rules.tuning.threshold = static_cast<std::int32_t>(std::lround(talus * sand::kUnitsPerCell));
+    rules.tuning.startThreshold = static_cast<std::int32_t>(std::lround(talus * (1 + band) * sand::kUnitsPerCell));
     return rules;
 }
 

@@ -35,8 +35,8 @@ void sweep(benchmark::State& state, sand::Scheme scheme, base::CodePath path, st
     sand::HeightField field = roughField(side);
     sand::Rules rules;
     rules.columns = rules.rows = side;
-    rules.threshold = 64;  // nearly all sand moves
-    rules.startThreshold = rules.threshold + band;
+    rules.tuning.threshold = 64;  // nearly all sand moves
+    rules.tuning.startThreshold = rules.tuning.threshold + band;
     rules.scheme = scheme;
     sand::grid::Erosion erosion(field, rules, {.path = path});
     for (auto _ : state) {
@@ -66,11 +66,11 @@ scene::Scene level(double toolCells, int sweeps, std::int32_t band = 0) {
     scene::Scene scene;
     scene.terrain = sand::HeightField(512, 512, 1.0);
     scene.rules.columns = scene.rules.rows = 512;
-    scene.rules.threshold = 44204;  // 34 degrees
-    scene.rules.startThreshold = scene.rules.threshold + band;
-    scene.rules.sweepsPerStep = sweeps;
+    scene.rules.tuning.threshold = 44204;  // 34 degrees
+    scene.rules.tuning.startThreshold = scene.rules.tuning.threshold + band;
+    scene.rules.tuning.sweepsPerStep = sweeps;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
     return scene;
 }
 

@@ -20,7 +20,7 @@ public:
                 field.setHeight(x, y, static_cast<std::int32_t>(std::floor(cells * scale_ + 0.5)));
             }
         }
-        rules.threshold = rules.startThreshold = static_cast<std::int32_t>(scale_);
+        rules.tuning.threshold = rules.tuning.startThreshold = static_cast<std::int32_t>(scale_);
     }
 
     [[nodiscard]] std::vector<double> heights() const {

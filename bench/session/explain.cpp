@@ -100,9 +100,9 @@ void explainRules(const scene::Scene& scene, Explanation& rows) {
     rows.rule("non-square cells", rules.aspect != sand::kUnitsPerCell,
               "a law per axis: only where a cell is not square");
     rows.rule("outflow over the rim", rules.rim == sand::Rim::open, "only with rim = open");
-    rows.rule("hysteresis band", rules.startThreshold > rules.threshold,
-              fmt::format("{} and {} units", rules.threshold, rules.startThreshold));
-    rows.rule("tool as an obstacle", rules.toolRadius > 0, "only in patches that the engaged tool reaches");
+    rows.rule("hysteresis band", rules.tuning.startThreshold > rules.tuning.threshold,
+              fmt::format("{} and {} units", rules.tuning.threshold, rules.tuning.startThreshold));
+    rows.rule("tool as an obstacle", rules.tuning.tool.radius > 0, "only in patches that the engaged tool reaches");
 }
 
 std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
@@ -123,7 +123,7 @@ std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::St
 scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
     std::mt19937 random(seed);
     scene::Scene result = scene;
-    const auto range = static_cast<std::uint32_t>(std::max(scene.rules.toolRadius / kProbePerCell, 1) * 4) *
+    const auto range = static_cast<std::uint32_t>(std::max(scene.rules.tuning.tool.radius / kProbePerCell, 1) * 4) *
                        static_cast<std::uint32_t>(sand::kUnitsPerCell);
     if (scene.tin != nullptr) {
         auto start = *scene.tin;
@@ -147,7 +147,7 @@ scene::Scene stirred(const scene::Scene& scene, std::uint32_t seed) {
 }
 
 void explainSteps(const scene::Scene& scene, const Settings& settings, Explanation& rows) {
-    const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.sweepsPerStep);
+    const std::string sweepsPerStep = fmt::format("{} sweeps at most", scene.rules.tuning.sweepsPerStep);
     const auto runs = static_cast<std::size_t>(settings.runs);
     std::uint64_t hash = 0;
 
@@ -194,8 +194,9 @@ void explain(const Settings& settings, Csv& csv) {
     for (const std::string& warning : scene.warnings) {
         csv.note("warning: " + warning);
     }
-    csv.note(fmt::format("scene: {}, {} sweeps per step, tool of {:.3g} cells", scene.name, scene.rules.sweepsPerStep,
-                         static_cast<double>(scene.rules.toolRadius) / kProbePerCell));
+    csv.note(fmt::format("scene: {}, {} sweeps per step, tool of {:.3g} cells", scene.name,
+                         scene.rules.tuning.sweepsPerStep,
+                         static_cast<double>(scene.rules.tuning.tool.radius) / kProbePerCell));
     csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless `why` says otherwise",
                          settings.runs));
     Explanation rows(csv);

@@ -56,7 +56,7 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
     std::mt19937 random(settings.seed);
     const auto radius = static_cast<std::int32_t>(kToolRadius * sand::kProbePerCell);
     const auto half = static_cast<std::int32_t>(radius * sand::usualWidth(kind));
-    const sand::ToolShape shape{kind, radius, sand::isRound(kind) ? 0 : half};
+    const sand::Tool tool{kind, radius, sand::isRound(kind) ? 0 : half};
     sand::tin::DetailRules rules;
     rules.spacing = refines ? sand::kProbePerCell : 0;
     std::vector<double> imprints, steps;
@@ -71,24 +71,24 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         for (int i = 0; i < kEach; ++i) {
             const double x = somewhere();
             const sand::ProbePoint at = handAt(x, somewhere(), kToolRadius - kDepth);
-            near = verticesNear(layer, sand::TurnedShape(shape), at);
+            near = verticesNear(layer, sand::TurnedShape(tool), at);
             sand::tin::Imprint imprint;
             imprints.push_back(secondsOf([&] {
-                sand::tin::Displacement tool(shape, {}, rules);
-                tool.drag(layer, imprint, sand::Rim::closed, std::array{at});
+                sand::tin::Displacement displacement(tool, rules);
+                displacement.drag(layer, imprint, sand::Rim::closed, std::array{at});
             }));
-            sand::tin::Displacement(shape, {}, rules).leave(layer, imprint);
+            sand::tin::Displacement(tool, rules).leave(layer, imprint);
             static_cast<void>(layer.takeChange());
         }
         sand::tin::Imprint imprint;
-        sand::tin::Displacement tool(shape, {}, rules);
+        sand::tin::Displacement displacement(tool, rules);
         double x = 2 * kToolRadius;
         for (int i = 0; i < kEach; ++i, x += kWay) {
             std::vector<sand::ProbePoint> path;
             for (int sample = 0; sample <= kSamples; ++sample) {
                 path.push_back(handAt(x + kWay * sample / kSamples, side / 2.0, kToolRadius - kDepth));
             }
-            steps.push_back(secondsOf([&] { tool.drag(layer, imprint, sand::Rim::closed, path); }));
+            steps.push_back(secondsOf([&] { displacement.drag(layer, imprint, sand::Rim::closed, path); }));
             static_cast<void>(layer.takeChange());
         }
     }

@@ -37,11 +37,11 @@ scene::Scene levelScene(int side, bool refines, std::uint32_t seed) {
     start.settings.mostVertices = kMostVertices;
     scene::Scene scene;
     scene.rules.columns = scene.rules.rows = side;
-    scene.rules.threshold = kSlope;
-    scene.rules.startThreshold = kSlope + kBand;
-    scene.rules.sweepsPerStep = kSweepsPerStep;
-    scene.rules.toolKind = sand::ToolKind::circle;
-    scene.rules.toolRadius = static_cast<std::int32_t>(kToolCells * sand::kProbePerCell);
+    scene.rules.tuning.threshold = kSlope;
+    scene.rules.tuning.startThreshold = kSlope + kBand;
+    scene.rules.tuning.sweepsPerStep = kSweepsPerStep;
+    scene.rules.tuning.tool.kind = sand::ToolKind::circle;
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(kToolCells * sand::kProbePerCell);
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }
@@ -104,7 +104,7 @@ void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions,
 /// Measures the parts of a step: the calls of the surface in the order of Replica::apply().
 void measureParts(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
-    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    const sand::Tool& tool = scene.rules.tuning.tool;
     sand::ProbePoint at;
     surface.sweep(kSweepsPerStep, nullptr, at);
     bool touched = false;
@@ -138,7 +138,7 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
 void measureImprints(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     sand::tin::VertexSand layer = sand::tin::Snapshot(surface.layer(), {}).layer();
-    const auto outline = sand::tin::Outline::of(scene.rules.toolShape(), {});
+    const auto outline = sand::tin::Outline::of(scene.rules.tuning.tool);
     for (const auto& [kind, step] : actions) {
         if (kind != "imprint") {
             continue;
@@ -158,7 +158,7 @@ void measureImprints(const scene::Scene& scene, const std::vector<Action>& actio
 }
 
 int verticesBelowAndBeside(const scene::Scene& scene, const sand::ProbePoint& at) {
-    const sand::TurnedShape tool(scene.rules.toolShape(), {});
+    const sand::TurnedShape tool(scene.rules.tuning.tool);
     const auto& places = scene.tin->places;
     return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
         const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};

@@ -12,7 +12,7 @@ HandMapping::HandMapping(const scene::Scene& scene, HandSettings::Datum datum)
     : scene_(scene),
       datum_(datum),
       halfSide_(std::min(scene.rules.columns, scene.rules.rows) / 2.0),
-      radius_(static_cast<double>(scene.rules.toolRadius) / sand::kProbePerCell),
+      radius_(static_cast<double>(scene.rules.tuning.tool.radius) / sand::kProbePerCell),
       reference_(static_cast<double>(scene.referenceHeight()) / sand::kUnitsPerCell) {
     if (datum_ != HandSettings::Datum::level) {
         surface_ = sand::startHeights(scene);
@@ -23,8 +23,8 @@ double HandMapping::datumAt(double x, double y) const {
     constexpr int kSamples = 9;  // across and along the tool
     return datum_ == HandSettings::Datum::level
                ? reference_
-               : sand::meanHeight(surface_, x * sand::kProbePerCell, y * sand::kProbePerCell, scene_.rules.toolRadius,
-                                  kSamples) /
+               : sand::meanHeight(surface_, x * sand::kProbePerCell, y * sand::kProbePerCell,
+                                  scene_.rules.tuning.tool.radius, kSamples) /
                      sand::kUnitsPerCell;
 }
 

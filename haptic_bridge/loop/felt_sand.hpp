@@ -12,8 +12,8 @@ namespace haptic_bridge {
 inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& around, FeltSand& surface) {
     surface.patch.take(terrain, around);
     surface.around = {around.x, around.y, 0};
-    surface.tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
-    surface.talus = static_cast<double>(terrain.rules().threshold) / sand::kUnitsPerCell;
+    surface.tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
+    surface.talus = static_cast<double>(terrain.rules().tuning.threshold) / sand::kUnitsPerCell;
     surface.step = terrain.stepNumber();
 }
 

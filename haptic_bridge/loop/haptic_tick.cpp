@@ -14,7 +14,7 @@ namespace haptic_bridge {
 namespace {
 
 ForceLimits limitsFor(const scene::Scene& scene, const Device& device, const LawAtRadius& law) {
-    const double friction = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+    const double friction = static_cast<double>(scene.rules.tuning.threshold) / sand::kUnitsPerCell;
     const double unit = sand::probeUnit(scene.terrain.cellSize());
     const StepTiming steps{scene.force.between, static_cast<double>(scene.rules.stepsPerSecond)};
     if (const ArmPhysics* arm = device.physics()) {

@@ -142,7 +142,7 @@ void StepMaker::collect() {
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
     const std::int64_t readNs = hand_.fill(step);
-    if (sand::isRound(terrain_.toolShape().kind) || step.heading == terrain_.heading()) {
+    if (sand::isRound(terrain_.tool().kind) || step.heading == terrain_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }
     return hand_.onHostClock() ? readNs : 0;

@@ -28,25 +28,27 @@ constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "r
 class ExportedTool {
 public:
     explicit ExportedTool(const scene::Scene& scene)
-        : rules_(scene.rules), heading_(scene.rules.toolHeading), unit_(sand::probeUnit(scene.terrain.cellSize())) {}
+        : ofRules_(scene.rules.tuning.tool),
+          heading_(ofRules_.heading),
+          unit_(sand::probeUnit(scene.terrain.cellSize())) {}
 
     /// Takes the heading with which the hand moves in `step`.
     void begin(const sand::Step& step) { heading_ = step.heading.value_or(heading_); }
     /// Applies the tuning of `step` to later steps, as sand::Replica does.
     void end(const sand::Step& step) {
         if (step.edit.kind == sand::Edit::tune) {
-            heading_ = step.edit.tuning.toolHeading != rules_.toolHeading ? step.edit.tuning.toolHeading : heading_;
-            rules_.tune(step.edit.tuning);
+            heading_ = sand::headingAfter(ofRules_, step.edit.tuning.tool, heading_);
+            ofRules_ = step.edit.tuning.tool;
         }
     }
     [[nodiscard]] std::string text() const {
-        return fmt::format("{},{},{:.6g}", base::nameOf(rules_.toolKind), rules_.toolRadius * unit_,
+        return fmt::format("{},{},{:.6g}", base::nameOf(ofRules_.kind), ofRules_.radius * unit_,
                            sand::degreesOf(heading_));
     }
     [[nodiscard]] double unit() const { return unit_; }
 
 private:
-    sand::Rules rules_;
+    sand::Tool ofRules_;
     sand::Heading heading_;
     double unit_;  // [scene unit], length of a probe unit
 };

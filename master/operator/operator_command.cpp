@@ -89,8 +89,8 @@ scene::ToolChange parseTool(std::string_view text) {
             change.radius = radius;
         } else if (!word.empty()) {
             std::string shapes;
-            for (int i = 0; i < sand::kToolKinds; ++i) {
-                shapes += fmt::format("{}, ", base::nameOf(static_cast<sand::ToolKind>(i)));
+            for (const auto& known : valuesOf(sand::ToolKind{})) {
+                shapes += fmt::format("{}, ", known.name);
             }
             throw base::InputError(
                 fmt::format("a tool is one of {}or has radius=, width=, heading=, foot=left or right, got '{}'", shapes,

@@ -15,12 +15,12 @@ sand::ProbePoint raised(const sand::ProbePoint& surface, double above) {
 }  // namespace
 
 PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
-    : Hand(stepsPerSecond), radius_(sand.toolShape().radius) {
+    : Hand(stepsPerSecond), radius_(sand.tool().radius) {
     Hand::begin(sand);
 }
 
 void PointerHand::point(const lockstep::PointerSample& sample, const sand::Replica& sand) {
-    radius_ = sand.toolShape().radius;
+    radius_ = sand.tool().radius;
     surface_.reset();
     if (sample.meets == 0) {
         lift(sample.readNs);
@@ -33,7 +33,7 @@ void PointerHand::point(const lockstep::PointerSample& sample, const sand::Repli
 
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
-    radius_ = sand.toolShape().radius;
+    radius_ = sand.tool().radius;
     const haptic_bridge::HandSample& before = last();
     add({.readNs = before.readNs,
          .probe = raised({before.probe.x, before.probe.y, *surface_}, kHover * radius_),
@@ -60,7 +60,7 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     for (const lockstep::PointerSample& sample : places) {
         point(sample, sand);
     }
-    if (surface_ && !last().engaged && sand.toolShape().radius != radius_) {
+    if (surface_ && !last().engaged && sand.tool().radius != radius_) {
         hoverAt(sand);
     }
 }

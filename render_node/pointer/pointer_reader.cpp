@@ -152,7 +152,8 @@ lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand
         return sample;
     }
     constexpr int kSamples = 5;  // across and along the tool
-    const double height = sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe, rules.toolRadius, kSamples);
+    const double height =
+        sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe, rules.tuning.tool.radius, kSamples);
     sample.probe = sand::probePoint(place->x, place->y, height / sand::kUnitsPerCell);
     sample.meets = 1;
     return sample;

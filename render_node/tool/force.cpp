@@ -10,7 +10,7 @@ using sand::force::Vec3;
 
 std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
     const double unit = sand::probeUnit(terrain.cellSize());
-    const double radius = unit * terrain.rules().toolRadius;
+    const double radius = unit * terrain.rules().tuning.tool.radius;
     const Vec3 place = sand::force::placeOf(terrain.probe(), unit);
     if (!last_ || terrain.stepNumber() < lastStep_) {
         velocity_ = {};
@@ -24,7 +24,7 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
         return std::nullopt;
     }
     const sand::force::SurfacePatch patch(terrain);
-    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
+    const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, place);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);

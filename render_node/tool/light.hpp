@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "sand/model/tool_shape.hpp"
+#include "render_node/tool/drawn_tool.hpp"
 
 namespace render_node {
 
@@ -13,8 +13,7 @@ struct ToolLight {
     double radius = 0;       // [scene unit], longest half axis
     glm::dmat3 toBall{1.0};  // from the scene to a space in which the ellipsoid has radius 1
 
-    /// Makes the ellipsoid of a tool whose centre is at `place`.
-    ToolLight(const sand::ToolShape& shape, const sand::Heading& heading, const glm::dvec3& place, double toolRadius);
+    explicit ToolLight(const DrawnTool& drawn);
 };
 
 }  // namespace render_node

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <span>
 
+#include "sand/model/tool_shape.hpp"
+
 namespace render_node {
 namespace {
 
@@ -115,8 +117,8 @@ Solid solidOf(sand::ToolKind kind, float width) {
     }
     if (kind == rectangle) {
         solid.box({-1, -width, -1}, {1, width, kPlate - 1});
-    } else if (kind == footprint) {
-        for (const sand::SolePiece& piece : sand::solePieces()) {
+    } else if (const auto sole = sand::solePieces(kind); !sole.empty()) {
+        for (const sand::SolePiece& piece : sole) {
             solid.plate(glm::dvec2(piece.along, double{width} * piece.across),
                         glm::dvec2(piece.halfLength, double{width} * piece.halfWidth), static_cast<float>(piece.lift),
                         static_cast<float>(piece.bulge), kPlate - 1);
@@ -128,46 +130,46 @@ Solid solidOf(sand::ToolKind kind, float width) {
     return solid;
 }
 
-float widthOf(const sand::ToolShape& shape) {
-    return sand::isRound(shape.kind) || shape.radius == 0
+float widthOf(const sand::Tool& tool) {
+    return sand::isRound(tool.kind) || tool.radius == 0
                ? 1
-               : static_cast<float>(shape.halfWidth) / static_cast<float>(shape.radius);
+               : static_cast<float>(tool.halfWidth) / static_cast<float>(tool.radius);
 }
 
 }  // namespace
 
-std::vector<SolidVertex> makeTool(const sand::ToolShape& shape, const sand::Heading& heading) {
-    std::vector<SolidVertex> vertices = solidOf(shape.kind, widthOf(shape)).vertices;
-    if (sand::isRound(shape.kind)) {
+std::vector<SolidVertex> makeTool(const sand::Tool& tool) {
+    std::vector<SolidVertex> vertices = solidOf(tool.kind, widthOf(tool)).vertices;
+    if (sand::isRound(tool.kind)) {
         return vertices;
     }
-    const glm::vec2 along = glm::normalize(glm::vec2(heading.x, heading.y));
-    const glm::vec2 across = glm::vec2(-along.y, along.x) * (heading.mirrored ? -1.0F : 1.0F);
+    const glm::vec2 along = glm::normalize(glm::vec2(tool.heading.x, tool.heading.y));
+    const glm::vec2 across = glm::vec2(-along.y, along.x) * (tool.heading.mirrored ? -1.0F : 1.0F);
     for (SolidVertex& vertex : vertices) {
         for (glm::vec3* vector : {&vertex.position, &vertex.normal}) {
             *vector = glm::vec3(vector->x * along + vector->y * across, vector->z);
         }
     }
-    for (std::size_t i = 0; heading.mirrored && i + 2 < vertices.size(); i += 3) {
+    for (std::size_t i = 0; tool.heading.mirrored && i + 2 < vertices.size(); i += 3) {
         std::swap(vertices[i + 1], vertices[i + 2]);
     }
     return vertices;
 }
 
-Box boxOfTool(const sand::ToolShape& shape) {
+Box boxOfTool(const sand::Tool& tool) {
     // A hundredth more, for rounding of GL's floats.
-    if (shape.kind == sand::ToolKind::sphere || shape.kind == sand::ToolKind::ellipsoid) {
+    if (tool.kind == sand::ToolKind::sphere || tool.kind == sand::ToolKind::ellipsoid) {
         return {glm::dvec3(-1.01), glm::dvec3(1.01)};
     }
-    const double corner = shape.kind == sand::ToolKind::rectangle ? std::hypot(1.0, double{widthOf(shape)}) : 1.0;
+    const double corner = tool.kind == sand::ToolKind::rectangle ? std::hypot(1.0, double{widthOf(tool)}) : 1.0;
     const double wide = 1.01 * corner;
     return {{-wide, -wide, -1.01}, {wide, wide, 1.01 * double{kKnob}}};
 }
 
-void ToolMesh::show(const sand::ToolShape& shape, const sand::Heading& heading) {
-    const Shown now{shape.kind, double{widthOf(shape)}, sand::isRound(shape.kind) ? sand::Heading{} : heading};
+void ToolMesh::show(const sand::Tool& tool) {
+    const Shown now{tool.kind, double{widthOf(tool)}, sand::isRound(tool.kind) ? sand::Heading{} : tool.heading};
     if (shown_ != now) {
-        mesh_.set(makeTool(shape, heading));
+        mesh_.set(makeTool(tool));
         shown_ = now;
     }
 }

@@ -5,24 +5,24 @@
 
 #include "render_node/gl/solid_mesh.hpp"
 #include "render_node/surface/frustum.hpp"
-#include "sand/model/tool_shape.hpp"
+#include "sand/model/tool.hpp"
 
 namespace render_node {
 
 /// Returns the triangles of a sphere of radius 1 around the origin. They come from an icosahedron: each triangle is
 /// split into four, `splits` times.
 [[nodiscard]] std::vector<SolidVertex> makeSphere(int splits);
-/// Returns the triangles of a tool of radius 1 around its centre, turned to `heading`. Flat tools and soles are plates
+/// Returns the triangles of a tool around its centre, scaled to radius 1. Flat tools and soles are plates
 /// on a handle.
-[[nodiscard]] std::vector<SolidVertex> makeTool(const sand::ToolShape& shape, const sand::Heading& heading);
+[[nodiscard]] std::vector<SolidVertex> makeTool(const sand::Tool& tool);
 /// Returns a box around makeTool() for any heading.
-[[nodiscard]] Box boxOfTool(const sand::ToolShape& shape);
+[[nodiscard]] Box boxOfTool(const sand::Tool& tool);
 
 /// Tool of radius 1 in GL. The shader moves and scales it.
 class ToolMesh {
 public:
     /// Makes the triangles for this tool if they differ from the last ones. A change of the radius alone costs no time.
-    void show(const sand::ToolShape& shape, const sand::Heading& heading);
+    void show(const sand::Tool& tool);
     /// Draws the tool. Must be called after show().
     void draw() const { mesh_.draw(); }
 

@@ -2,9 +2,11 @@
 #include "sand/force/tool_contour.hpp"
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "sand/model/height_field.hpp"
+#include "sand/model/tool_shape.hpp"
 
 namespace sand::force {
 namespace {
@@ -18,10 +20,10 @@ using Places = std::vector<Vec3>;
 Vec3 onCircle(double turn) { return {std::cos(2 * std::numbers::pi * turn), std::sin(2 * std::numbers::pi * turn), 0}; }
 
 /// Returns the last place of the sole along a ray from its middle.
-Vec3 soleAlong(const Vec3& ray) {
+Vec3 soleAlong(std::span<const SolePiece> sole, const Vec3& ray) {
     Vec3 farthest;
     double reach = 0;
-    for (const SolePiece& piece : solePieces()) {
+    for (const SolePiece& piece : sole) {
         // Solves |t d - c| = 1 for the larger t, in the frame in which the piece is a unit circle.
         const double dx = ray.x / piece.halfLength, dy = ray.y / piece.halfWidth;
         const double cx = piece.along / piece.halfLength, cy = piece.across / piece.halfWidth;
@@ -60,7 +62,8 @@ Vec3 outlineAt(ToolKind kind, double turn) {
     if (kind == ToolKind::rectangle) {
         return (1 / std::max(std::abs(place.x), std::abs(place.y))) * place;
     }
-    return kind == ToolKind::footprint ? soleAlong(place) : place;
+    const std::span<const SolePiece> sole = solePieces(kind);
+    return sole.empty() ? place : soleAlong(sole, place);
 }
 
 /// Returns kPoints places at equal distances along the outline.
@@ -87,26 +90,26 @@ Places evenly(const Places& outline) {
 
 }  // namespace
 
-Contour contourOf(const ToolShape& shape, const Heading& heading, double cellSize) {
+Contour contourOf(const Tool& tool, double cellSize) {
     const double unit = probeUnit(cellSize);
-    const double radius = unit * shape.radius;
-    if (isRound(shape.kind)) {
+    const double radius = unit * tool.radius;
+    if (isRound(tool.kind)) {
         return Contour::sphere(radius);
     }
-    const double width = unit * shape.halfWidth;
+    const double width = unit * tool.halfWidth;
     Places outline;
     for (int i = 0; i < kFine; ++i) {
-        const Vec3 place = outlineAt(shape.kind, 0.5 + static_cast<double>(i) / kFine);  // begins at the heel
+        const Vec3 place = outlineAt(tool.kind, 0.5 + static_cast<double>(i) / kFine);  // begins at the heel
         outline.push_back({radius * place.x, width * place.y, radius * (place.z - 1)});
     }
-    const double cosine = static_cast<double>(heading.x) / Heading::kLength;
-    const double sine = static_cast<double>(heading.y) / Heading::kLength;
-    const Places even = evenly(shape.kind == ToolKind::footprint ? bridged(outline) : outline);
+    const double cosine = static_cast<double>(tool.heading.x) / Heading::kLength;
+    const double sine = static_cast<double>(tool.heading.y) / Heading::kLength;
+    const Places even = evenly(solePieces(tool.kind).empty() ? outline : bridged(outline));
     Contour contour{{}, 0, -radius};
     for (std::size_t i = 0; i < even.size(); ++i) {
         // The points of a mirrored tool run clockwise, so that they are taken from the last to the first.
-        const Vec3 place = even[heading.mirrored ? (even.size() - i) % even.size() : i];
-        const double across = heading.mirrored ? -place.y : place.y;
+        const Vec3 place = even[tool.heading.mirrored ? (even.size() - i) % even.size() : i];
+        const double across = tool.heading.mirrored ? -place.y : place.y;
         contour.points[i] = {cosine * place.x - sine * across, sine * place.x + cosine * across, place.z};
         contour.reach = std::max(contour.reach, std::hypot(place.x, place.y));
     }

@@ -64,13 +64,13 @@ double squaredDistance(const HeightField& a, const HeightField& b) {
 Certificate certify(const HeightField& start, const HeightField& rest, const NetFlux& flux, const Rules& rules) {
     const QuadEnergy asIs(rest, rules);
     QuadEnergy stable = asIs;
-    stable.flatten(rules.threshold);
+    stable.flatten(rules.tuning.threshold);
     const QuadFluxes fluxes(flux, rules, asIs.northing());
     double gap = 0;
     stable.forEach([&](int x, int y) {
         const Faces v = fluxes(x, y);
         // Sand flows downhill, so that a flux to the east belongs to a negative difference.
-        gap += rules.threshold * std::numbers::sqrt2 * std::sqrt(dot(v, v)) + dot(v, stable.differences(x, y));
+        gap += rules.tuning.threshold * std::numbers::sqrt2 * std::sqrt(dot(v, v)) + dot(v, stable.differences(x, y));
     });
     gap = std::max(gap / asIs.images(), 0.0);  // only rounding can make it negative
     const double squaredStep = stable.squaredDistanceTo(asIs) / asIs.images();

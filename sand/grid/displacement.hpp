@@ -33,9 +33,8 @@ struct Obstacle {
 class Displacement {
 public:
     /// The results are the same with every `path`.
-    explicit Displacement(const ToolShape& shape, const Heading& heading = {},
-                          base::CodePath path = base::fastestCodePath())
-        : shape_(shape, heading, path), path_(path) {}
+    explicit Displacement(const Tool& tool, base::CodePath path = base::fastestCodePath())
+        : shape_(tool, path), path_(path) {}
 
     /// Effect of one drag on the sand.
     struct Work {

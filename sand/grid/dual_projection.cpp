@@ -65,7 +65,7 @@ CellRect DualProjection::steepQuads() const {
             const double east = b - a + (d - c);
             const double north = northing_ * (c - a + (d - b));
             const double twist = twist_ * (d - c - (b - a));
-            if (std::sqrt(east * east + north * north + twist * twist) > 2.0 * rules_.threshold) {
+            if (std::sqrt(east * east + north * north + twist * twist) > 2.0 * rules_.tuning.threshold) {
                 steep = {std::min(steep.x0, x), std::min(steep.y0, y), std::max(steep.x1, x + 2),
                          std::max(steep.y1, y + 2)};
             }
@@ -111,7 +111,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
                                   .before = before_,
                                   .momentum = momentum,
                                   .step = 0.25 / (twist_ * twist_),
-                                  .threshold = (1 - kSlack) * rules_.threshold / kUnitsPerCell,
+                                  .threshold = (1 - kSlack) * rules_.tuning.threshold / kUnitsPerCell,
                                   .northing = northing_,
                                   .twist = twist_,
                                   .heldWest = open && box_.x0 == domain_.x0,
@@ -138,7 +138,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
 }
 
 int DualProjection::run(double relativeGap) {
-    const double enough = std::max(kRelativeExcess * rules_.threshold / kUnitsPerCell, kLeastExcess);
+    const double enough = std::max(kRelativeExcess * rules_.tuning.threshold / kUnitsPerCell, kLeastExcess);
     double weight = 1;  // t of Beck and Teboulle
     double momentum = 0;
     bool wasClose = false;

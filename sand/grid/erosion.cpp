@@ -119,8 +119,9 @@ std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& bloc
         .cells = cells,
         .columns = field.columns(),
         .rows = field.rows(),
-        .eastLaw = axisLaw(rules_.scheme, rules_.threshold, rules_.startThreshold, 1 / ratio),
-        .northLaw = axisLaw(rules_.scheme, rules_.threshold * ratio, rules_.startThreshold * ratio, ratio),
+        .eastLaw = axisLaw(rules_.scheme, rules_.tuning.threshold, rules_.tuning.startThreshold, 1 / ratio),
+        .northLaw =
+            axisLaw(rules_.scheme, rules_.tuning.threshold * ratio, rules_.tuning.startThreshold * ratio, ratio),
         .momentum = momentum,
         .inertial = rules_.scheme == Scheme::isotropic,
         .openRim = rules_.rim == Rim::open,
@@ -218,7 +219,7 @@ void Erosion::resume(const Inertia& inertia) {
 }
 
 void Erosion::findSliding() {
-    if (rules_.startThreshold <= rules_.threshold) {
+    if (rules_.tuning.startThreshold <= rules_.tuning.threshold) {
         sliding_.reset();
         return;
     }

@@ -177,7 +177,7 @@ Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, base::Code
     }
     project(field, rules, flux, path, result);
     Rules toRest = rules;
-    toRest.startThreshold = rules.threshold;
+    toRest.tuning.startThreshold = rules.tuning.threshold;
     Erosion erosion(field, toRest, {.path = path});
     for (; !erosion.settled(); ++result.sweeps) {
         result.outflow += erosion.sweep(field, 1);

@@ -67,8 +67,8 @@ SurfaceChange GridSurface::takeChange() {
     return {.whole = false, .parts = std::move(change)};
 }
 
-void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
-    const Displacement displacement(tool.shape, tool.heading);
+void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
+    const Displacement displacement(tool);
     for (std::size_t i = 1; i < path.size(); ++i) {
         const Displacement::Work done = displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
         erosion_.touch(done.cells);
@@ -77,12 +77,12 @@ void GridSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     }
 }
 
-void GridSurface::release(const HeldTool& tool, const ProbePoint& at) {
-    erosion_.touch(Displacement(tool.shape, tool.heading).cells(field_, at));
+void GridSurface::release(const Tool& tool, const ProbePoint& at) {
+    erosion_.touch(Displacement(tool).cells(field_, at));
 }
 
-void GridSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
-    const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(tool->shape, tool->heading).obstacle(field_, at);
+void GridSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
+    const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, at);
     outflow_ += erosion_.sweep(field_, sweeps, tool == nullptr ? nullptr : &here);
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);

@@ -24,9 +24,9 @@ public:
 
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }
 
-    void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
-    void release(const HeldTool& tool, const ProbePoint& at) override;
-    void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
+    void drag(const Tool& tool, std::span<const ProbePoint> path) override;
+    void release(const Tool& tool, const ProbePoint& at) override;
+    void sweep(int sweeps, const Tool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }

@@ -3,83 +3,11 @@
 
 #include <xxhash.h>
 
-#include <algorithm>
-#include <string>
-
 namespace sand {
-namespace {
-
-constexpr unsigned kTinFlag =
-    0x80;  // bit beside the scheme; a height field's rules do not have it and keep their old bytes
-
-Scheme schemeOf(unsigned number) {
-    const auto* const found = std::ranges::find_if(
-        kSchemes, [&](const NamedScheme& known) { return static_cast<unsigned>(known.scheme) == number; });
-    if (found == kSchemes.end()) {
-        throw base::FormatError("a scene with the unknown scheme " + std::to_string(number));
-    }
-    return found->scheme;
-}
-
-}  // namespace
-
-void Rules::tune(const Tuning& tuning) {
-    threshold = tuning.threshold;
-    startThreshold = tuning.startThreshold;
-    sweepsPerStep = tuning.sweepsPerStep;
-    toolRadius = tuning.toolRadius;
-    toolKind = tuning.toolKind;
-    toolHalfWidth = tuning.toolHalfWidth;
-    toolHeading = tuning.toolHeading;
-}
-
-void Rules::encode(base::ByteWriter& writer) const {
-    for (const std::int32_t number :
-         {columns, rows, aspect, threshold, startThreshold, sweepsPerStep, stepsPerSecond}) {
-        writer.put(number);
-    }
-    tuning().tool().encode(writer);
-    writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(scheme) | (tin != 0 ? kTinFlag : 0U)));
-    writer.put(static_cast<std::uint8_t>(rim));
-    writer.put(ground);
-    if (tin != 0) {
-        writer.put(tin);
-    }
-}
-
-Rules Rules::decode(base::ByteReader& reader) {
-    Rules rules;
-    for (std::int32_t* number : {&rules.columns, &rules.rows, &rules.aspect, &rules.threshold, &rules.startThreshold,
-                                 &rules.sweepsPerStep, &rules.stepsPerSecond}) {
-        *number = reader.get<std::int32_t>();
-        if (*number < 0) {
-            throw base::FormatError("a scene with a negative rule");
-        }
-    }
-    const ToolRules tool = ToolRules::decode(reader);
-    rules.toolRadius = tool.shape.radius;
-    rules.toolKind = tool.shape.kind;
-    rules.toolHalfWidth = tool.shape.halfWidth;
-    rules.toolHeading = tool.heading;
-    const auto coded = reader.get<std::uint8_t>();
-    rules.scheme = schemeOf(coded & ~kTinFlag);
-    const auto rim = reader.get<std::uint8_t>();
-    const bool sides = rules.columns >= 1 && rules.columns <= kMaxSide && rules.rows >= 1 && rules.rows <= kMaxSide;
-    if (!sides || rules.aspect < 1 || rim > 1 || rules.stepsPerSecond < 1) {
-        throw base::FormatError("a scene with rules out of range");
-    }
-    rules.rim = static_cast<Rim>(rim);
-    rules.ground = reader.get<std::uint64_t>();
-    if ((coded & kTinFlag) != 0 && (rules.tin = reader.get<std::uint64_t>()) == 0) {
-        throw base::FormatError("a TIN without a digest");
-    }
-    return rules;
-}
 
 std::uint64_t Rules::digest() const {
-    base::ByteWriter writer;
-    encode(writer);
-    return XXH3_64bits_withSeed(writer.bytes().data(), writer.bytes().size(), kAlgorithmVersion);
+    const base::Bytes bytes = base::encoded(*this);
+    return XXH3_64bits_withSeed(bytes.data(), bytes.size(), kAlgorithmVersion);
 }
 
 }  // namespace sand

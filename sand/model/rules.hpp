@@ -3,9 +3,12 @@
 
 #include <array>
 #include <cstdint>
-#include <string_view>
+#include <limits>
+#include <string>
+#include <type_traits>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
+#include "base/names.hpp"
 #include "sand/model/tuning.hpp"
 #include "sand/model/units.hpp"
 
@@ -19,21 +22,38 @@ inline constexpr std::uint32_t kAlgorithmVersion = 9;
 /// docs/sand.md states both laws.
 ///
 /// A scheme keeps its number forever, because digests, messages, journals and checkpoints contain the number. Number 1
-/// belonged to a scheme that was removed; Rules::decode() refuses it.
+/// belonged to a scheme that was removed; rules with it are refused.
 enum class Scheme : std::uint8_t { isotropic = 0, plainIsotropic = 2 };
 
-/// A scheme and its name in scene files and on command lines.
-struct NamedScheme {
-    Scheme scheme;
-    std::string_view name;
-};
-/// All schemes, the default first.
-inline constexpr std::array<NamedScheme, 2> kSchemes{{{Scheme::isotropic, "g"}, {Scheme::plainIsotropic, "g_plain"}}};
+/// The names are those of scene files and command lines. The default is the first.
+constexpr auto valuesOf(Scheme) {
+    return std::array{base::Named{Scheme::isotropic, "g"}, base::Named{Scheme::plainIsotropic, "g_plain"}};
+}
 
 /// Border of the field.
 enum class Rim : std::uint8_t {
     closed,  // keeps all sand on the field
     open     // lets sand fall over it, as outflow
+};
+constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
+
+/// Form of a scheme in one byte. Its highest bit is set in the rules of a TIN, whose digest then follows.
+template <class AnyRules>
+struct SchemeOfKind {
+    static constexpr unsigned kTin = 0x80;
+    AnyRules& rules;
+    void put(base::ByteWriter& writer) const {
+        writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(rules.scheme) | (rules.tin != 0 ? kTin : 0U)));
+    }
+    /// Sets `tin` to 1 if its digest follows, and to 0 otherwise.
+    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyRules>) {
+        const unsigned byte = reader.get<std::uint8_t>(), scheme = byte & ~kTin;
+        rules.scheme = static_cast<Scheme>(scheme);
+        if (base::nameOf(rules.scheme).empty()) {
+            throw base::FormatError("is " + std::to_string(scheme) + ", which is unknown");
+        }
+        rules.tin = (byte & kTin) != 0 ? 1 : 0;
+    }
 };
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
@@ -43,36 +63,33 @@ struct Rules {
     std::int32_t columns = 0, rows = 0;  // [cell]
     /// Side of a cell from south to north, divided by its side from west to east [2^-16].
     std::int32_t aspect = kUnitsPerCell;
-    /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
-    std::int32_t threshold = 0;
-    /// Height difference, over the same distance, beyond which sand at rest starts to slide [unit]. It is at least
-    /// `threshold`; a larger value gives hysteresis.
-    std::int32_t startThreshold = 0;
-    std::int32_t sweepsPerStep = 0;
+    Tuning tuning{};
     std::int32_t stepsPerSecond = 0;
-    std::int32_t toolRadius = 0;  // [probe unit]
-    ToolKind toolKind = ToolKind::sphere;
-    std::int32_t toolHalfWidth = 0;  // [probe unit], see ToolShape::halfWidth
-    Heading toolHeading{};           // the tool's heading until a hand turns it
     Scheme scheme = Scheme::isotropic;
     Rim rim = Rim::closed;
     std::uint64_t ground = 0;  // Ground::digest(); 0 without rock and wall cells
     std::uint64_t tin = 0;     // tin::TinStart::digest(), which makes columns and rows nominal; 0 for a height field
 
-    [[nodiscard]] ToolShape toolShape() const { return {toolKind, toolRadius, toolHalfWidth}; }
-    [[nodiscard]] Tuning tuning() const {
-        return {threshold, startThreshold, sweepsPerStep, toolRadius, toolKind, toolHalfWidth, toolHeading};
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::int32_t kAny = std::numeric_limits<std::int32_t>::max();
+        visit("columns", base::limited(it.columns, 1, kMaxSide));
+        visit("rows", base::limited(it.rows, 1, kMaxSide));
+        visit("aspect", base::limited(it.aspect, 1, kAny));
+        Tuning::materialFields(it.tuning, visit);
+        visit("steps_per_second", base::limited(it.stepsPerSecond, 1, kAny));
+        visit("tool", it.tuning.tool);
+        visit("scheme", SchemeOfKind<Self>{it});
+        visit("rim", it.rim);
+        visit("ground", it.ground);
+        if (it.tin != 0) {
+            visit("tin", base::limited(it.tin, 1, std::numeric_limits<std::uint64_t>::max()));
+        }
     }
-    /// Replaces the rules that an operator may change.
-    void tune(const Tuning& tuning);
 
     /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a
     /// TIN.
     [[nodiscard]] std::uint64_t siteDigest() const { return ground ^ tin; }
-
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for an unknown scheme or numbers out of range.
-    static Rules decode(base::ByteReader& reader);
     /// Returns a hash of the encoded rules and kAlgorithmVersion. Server and master compare it: replicas with equal
     /// digests and equal sand stay equal under equal steps.
     [[nodiscard]] std::uint64_t digest() const;

@@ -41,7 +41,7 @@ void encodeDetails(const Edit& edit, base::ByteWriter& writer) {
         writer.putVarint(edit.number);
     }
     if (edit.kind == Edit::tune) {
-        edit.tuning.encode(writer);
+        base::putMember(writer, edit.tuning);
     } else if (edit.kind == Edit::load) {
         writer.putBlock(edit.sand ? std::span(*edit.sand) : std::span<const std::uint8_t>());
     }
@@ -51,7 +51,7 @@ Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
     Edit edit = kind;
     edit.number = edit.any() ? reader.getVarint() : 0;
     if (kind == Edit::tune) {
-        edit.tuning = Tuning::decode(reader);
+        edit.tuning = base::read<Tuning>(reader);
     } else if (kind == Edit::load) {
         // Replica::apply() checks the sand itself, because only the replica knows the field.
         const auto sand = reader.getBlock();

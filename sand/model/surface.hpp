@@ -13,15 +13,9 @@
 #include "sand/model/rules.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
-#include "sand/model/tool_shape.hpp"
+#include "sand/model/tool.hpp"
 
 namespace sand {
-
-/// A tool with its heading.
-struct HeldTool {
-    ToolShape shape;
-    Heading heading;
-};
 
 /// Hashes of the hash tiles of a surface. Their sum, modulo 2^64, is the hash of the surface. Every rank divides its
 /// surface into the same hash tiles.
@@ -70,15 +64,15 @@ public:
 
     /// Moves the tool along `path`, which begins where the tool is and has at least two points, and displaces the sand.
     /// Two equal points press the sand without a direction.
-    virtual void drag(const HeldTool& tool, std::span<const ProbePoint> path) = 0;
+    virtual void drag(const Tool& tool, std::span<const ProbePoint> path) = 0;
     /// Wakes the sand that `tool` held back while its centre was at `at`.
-    virtual void release(const HeldTool& tool, const ProbePoint& at) = 0;
+    virtual void release(const Tool& tool, const ProbePoint& at) = 0;
     /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,
     /// as tin::Settings::keepConstraints says.
-    virtual void leave(const HeldTool&) {}
+    virtual void leave(const Tool&) {}
     /// Lets the sand slide for at most `sweeps` sweeps. `tool` is an obstacle with its centre at `at`; null without
     /// one.
-    virtual void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) = 0;
+    virtual void sweep(int sweeps, const Tool* tool, const ProbePoint& at) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once. Ignores rock, walls and tools.

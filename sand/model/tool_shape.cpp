@@ -26,25 +26,26 @@ constexpr std::array<SolePiece, 9> kSole{{{-0.69, 0.05, 0.31, 0.62, 0, 0.07},
 
 }  // namespace
 
-std::span<const SolePiece> solePieces() { return kSole; }
+std::span<const SolePiece> solePieces(ToolKind kind) {
+    return kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : std::span<const SolePiece>();
+}
 
-TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, base::CodePath path)
-    : shape_(shape),
-      heading_(heading),
+TurnedShape::TurnedShape(const Tool& tool, base::CodePath path)
+    : tool_(tool),
       path_(path),
-      length_(shape.radius),
-      width_(shape.halfWidth),
-      ring_(kRing + (shape.kind == ToolKind::sphere ? 0 : (isRound(shape.kind) ? shape.radius : shape.halfWidth) / 4)),
-      scale_(1 /
-             std::sqrt(static_cast<double>(std::int64_t{heading.x} * heading.x + std::int64_t{heading.y} * heading.y))),
-      east_(shape.radius),
-      north_(shape.radius) {
+      length_(tool.radius),
+      width_(tool.halfWidth),
+      ring_(kRing + (tool.kind == ToolKind::sphere ? 0 : (isRound(tool.kind) ? tool.radius : tool.halfWidth) / 4)),
+      scale_(1 / std::sqrt(static_cast<double>(std::int64_t{tool.heading.x} * tool.heading.x +
+                                               std::int64_t{tool.heading.y} * tool.heading.y))),
+      east_(tool.radius),
+      north_(tool.radius) {
     if (hasHeading()) {
         // Half sides of the upright rectangle around the turned tool. They are a little too large, because rounding may
         // have made the heading a little short.
-        const std::int64_t x = std::abs(heading.x), y = std::abs(heading.y);
+        const std::int64_t x = std::abs(tool.heading.x), y = std::abs(tool.heading.y);
         const auto reach = [&](std::int64_t along, std::int64_t across) {
-            const std::int64_t whole = along * shape.radius + across * shape.halfWidth;
+            const std::int64_t whole = along * tool.radius + across * tool.halfWidth;
             return whole / Heading::kLength + whole / (std::int64_t{Heading::kLength} * Heading::kLength / 2) + 2;
         };
         east_ = reach(x, y);
@@ -53,12 +54,13 @@ TurnedShape::TurnedShape(const ToolShape& shape, const Heading& heading, base::C
 }
 
 std::span<const SolePiece> TurnedShape::pieces() const {
-    return shape_.kind == ToolKind::footprint ? std::span<const SolePiece>(kSole) : kPlate;
+    const std::span<const SolePiece> sole = solePieces(tool_.kind);
+    return sole.empty() ? kPlate : sole;
 }
 
 void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std::int32_t> row) const {
-    if (shape_.kind == ToolKind::sphere) {
-        const SphereRow cells{.square = std::int64_t{shape_.radius} * shape_.radius - first.y * first.y,
+    if (tool_.kind == ToolKind::sphere) {
+        const SphereRow cells{.square = std::int64_t{tool_.radius} * tool_.radius - first.y * first.y,
                               .first = first.x,
                               .centre = std::int64_t{z} * kUnitsPerProbe,
                               .count = static_cast<int>(row.size())};
@@ -83,15 +85,15 @@ double TurnedShape::levelOf(const SolePiece& piece, const Place& place, double g
 }
 
 std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) const {
-    if (shape_.halfWidth == 0) {
+    if (tool_.halfWidth == 0) {
         return kFree;
     }
     const Place place = placeOf(offset);
-    if (shape_.kind == ToolKind::rectangle) {
+    if (tool_.kind == ToolKind::rectangle) {
         const bool below = std::abs(place.along) < length_ && std::abs(place.across) < width_;
         return below ? lowered(z, length_) : kFree;
     }
-    if (shape_.kind == ToolKind::ellipsoid) {
+    if (tool_.kind == ToolKind::ellipsoid) {
         const double across = place.across * length_ / width_;
         const double square = length_ * length_ - place.along * place.along - across * across;
         return square > 0 ? lowered(z, std::sqrt(square)) : kFree;
@@ -109,7 +111,7 @@ std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) co
 bool TurnedShape::longTakes(const Offset& offset) const {
     const Place place = placeOf(offset);
     const auto ring = static_cast<double>(ring_);
-    if (shape_.kind == ToolKind::rectangle) {
+    if (tool_.kind == ToolKind::rectangle) {
         return std::abs(place.along) <= length_ + ring && std::abs(place.across) <= width_ + ring;
     }
     int near = 0, beside = 0;
@@ -123,7 +125,7 @@ bool TurnedShape::longTakes(const Offset& offset) const {
 }
 
 TurnedShape::Place TurnedShape::normalAt(const Place& place) const {
-    if (shape_.kind == ToolKind::rectangle) {
+    if (tool_.kind == ToolKind::rectangle) {
         const bool end = std::abs(place.along) - length_ > std::abs(place.across) - width_;
         return end ? Place{place.along, 0} : Place{0, place.across};
     }

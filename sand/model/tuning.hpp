@@ -3,43 +3,38 @@
 
 #include <cstdint>
 
-#include "base/byte_stream.hpp"
-#include "sand/model/tool_shape.hpp"
+#include "base/field_forms.hpp"
+#include "sand/model/tool.hpp"
 
 namespace sand {
 
 inline constexpr std::int32_t kLargestThreshold =
-    1 << 30;  // [unit]; no sand slides then, because differences never exceed 2^29
-inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit]; 2048 cells
-inline constexpr std::int32_t kMostSweeps = 4096;              // most sweeps per step
-
-/// The tool of the rules. A sphere that points east is encoded as its radius alone. Any other tool is encoded as −1 −
-/// radius, kind, half width and heading.
-struct ToolRules {
-    ToolShape shape;
-    Heading heading;  // the tool's heading until a hand turns it
-
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for a tool that no scene file can contain.
-    static ToolRules decode(base::ByteReader& reader);
-    [[nodiscard]] bool plain() const { return shape.kind == ToolKind::sphere && heading == Heading{}; }
-    friend bool operator==(const ToolRules&, const ToolRules&) = default;
-};
+    1 << 30;                                       // [unit]; no sand slides then, because differences never exceed 2^29
+inline constexpr std::int32_t kMostSweeps = 4096;  // most sweeps per step
 
 /// Rules that an operator may change during a session. scene/material.hpp computes them once; then they are sent as
 /// whole numbers.
 struct Tuning {
-    std::int32_t threshold = 0, startThreshold = 0;  // [unit]
+    /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
+    std::int32_t threshold = 0;
+    /// Height difference, over the same distance, beyond which sand at rest starts to slide [unit]. It is at least
+    /// `threshold`; a larger value gives hysteresis.
+    std::int32_t startThreshold = 0;
     std::int32_t sweepsPerStep = 0;
-    std::int32_t toolRadius = 0;  // [probe unit]
-    ToolKind toolKind = ToolKind::sphere;
-    std::int32_t toolHalfWidth = 0;  // [probe unit], see ToolShape::halfWidth
-    Heading toolHeading{};           // the tool's heading until a hand turns it
+    Tool tool{};
 
-    [[nodiscard]] ToolRules tool() const { return {{toolKind, toolRadius, toolHalfWidth}, toolHeading}; }
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for numbers that no scene file can contain.
-    static Tuning decode(base::ByteReader& reader);
+    /// Visits all members except the tool.
+    template <class Self, class Visit>
+    static void materialFields(Self& it, Visit& visit) {
+        visit("threshold", base::limited(it.threshold, 0, kLargestThreshold));
+        visit("start_threshold", base::limited(it.startThreshold, it.threshold, kLargestThreshold));
+        visit("sweeps_per_step", base::limited(it.sweepsPerStep, 0, kMostSweeps));
+    }
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        materialFields(it, visit);
+        visit("tool", it.tool);
+    }
     friend bool operator==(const Tuning&, const Tuning&) = default;
 };
 

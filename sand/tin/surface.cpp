@@ -38,8 +38,8 @@ TinSurface::TinSurface(const Rules& rules, std::shared_ptr<const TinStart> start
     : start_(std::move(start)),
       detail_(detailOf(*start_, rules.rim)),
       rim_(rules.rim),
-      threshold_(rules.threshold),
-      startThreshold_(rules.startThreshold),
+      threshold_(rules.tuning.threshold),
+      startThreshold_(rules.tuning.startThreshold),
       layer_(layerOf(*start_)),
       startVertices_(layer_.triangles().places.size()),
       erosion_(layer_, threshold_, startThreshold_, rim_),
@@ -86,9 +86,9 @@ void TinSurface::reserve() {
     coarsening_.reserve(vertices);
 }
 
-Displacement& TinSurface::displacementOf(const HeldTool& tool) {
-    if (!displacement_ || !displacement_->is(tool.shape, tool.heading)) {
-        displacement_.emplace(tool.shape, tool.heading, detail_, neighbourhood_);
+Displacement& TinSurface::displacementOf(const Tool& tool) {
+    if (!displacement_ || displacement_->tool() != tool) {
+        displacement_.emplace(tool, detail_, neighbourhood_);
     }
     return *displacement_;
 }
@@ -141,7 +141,7 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
     }
 }
 
-void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
+void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     const Displacement::Work done = displacementOf(tool).drag(layer_, state_.imprint, rim_, path);
     state_.outflow += static_cast<std::int64_t>(done.outflow);
     meshChanged();
@@ -150,12 +150,12 @@ void TinSurface::drag(const HeldTool& tool, std::span<const ProbePoint> path) {
     sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
 }
 
-void TinSurface::leave(const HeldTool& tool) {
+void TinSurface::leave(const Tool& tool) {
     displacementOf(tool).leave(layer_, state_.imprint);
     meshChanged();
 }
 
-void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
+void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
     if (detail_.removals > 0) {
         const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(at);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
@@ -166,7 +166,7 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
     if (tool != nullptr) {
         const Displacement& here = displacementOf(*tool);
         const Underside under = here.underside(at);
-        const Imprint::Stand stand{at, tool->shape, tool->heading};
+        const Imprint::Stand stand{at, *tool};
         if (held_ != stand) {
             held_ = stand;
             wakeFull(under, here.reach(at));
@@ -181,8 +181,8 @@ void TinSurface::sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) {
 }
 
 void TinSurface::changeRules(const Rules& rules) {
-    threshold_ = rules.threshold;
-    startThreshold_ = rules.startThreshold;
+    threshold_ = rules.tuning.threshold;
+    startThreshold_ = rules.tuning.startThreshold;
     erosion_.changeThresholds(threshold_, startThreshold_);
 }
 

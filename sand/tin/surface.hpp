@@ -30,11 +30,11 @@ public:
     [[nodiscard]] const VertexSand& layer() const { return layer_; }
     [[nodiscard]] const TinStart& start() const { return *start_; }
 
-    void drag(const HeldTool& tool, std::span<const ProbePoint> path) override;
+    void drag(const Tool& tool, std::span<const ProbePoint> path) override;
     /// Does nothing, because Erosion itself finds the sand that the tool held back.
-    void release(const HeldTool&, const ProbePoint&) override {}
-    void leave(const HeldTool& tool) override;
-    void sweep(int sweeps, const HeldTool* tool, const ProbePoint& at) override;
+    void release(const Tool&, const ProbePoint&) override {}
+    void leave(const Tool& tool) override;
+    void sweep(int sweeps, const Tool* tool, const ProbePoint& at) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] std::int64_t sweepCost() const override;
@@ -68,8 +68,8 @@ public:
     [[nodiscard]] SurfaceChange takeChange() override;
 
 private:
-    /// Returns the Displacement for `tool`, which is created again only if shape or heading differ from the last call.
-    [[nodiscard]] Displacement& displacementOf(const HeldTool& tool);
+    /// Returns the Displacement for `tool`, which is created again only if the tool differs from that of the last call.
+    [[nodiscard]] Displacement& displacementOf(const Tool& tool);
     /// Returns the limits of every sand that this surface can have.
     [[nodiscard]] SandLimits limits() const;
     /// Prepares a layer_ that has just been put in place.

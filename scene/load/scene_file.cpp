@@ -21,12 +21,6 @@ namespace {
 
 constexpr int kTooCoarse = 4096;  // [unit]; below it, rest slopes are more than a percent too steep
 
-sand::Scheme schemeIn(const host::TomlTable& material) {
-    std::vector<std::string_view> names(sand::kSchemes.size());
-    std::ranges::transform(sand::kSchemes, names.begin(), &sand::NamedScheme::name);
-    return sand::kSchemes.at(static_cast<std::size_t>(material.choiceOr("scheme", names, 0))).scheme;
-}
-
 /// Reads the keys of [material]. The table may be missing, because dry sand is the default.
 void readMaterialKeys(const host::TomlTable& table, Scene& scene) {
     for (const MaterialKey& key : materialKeys()) {
@@ -35,7 +29,7 @@ void readMaterialKeys(const host::TomlTable& table, Scene& scene) {
             key.set(scene.material, value);
         }
     }
-    scene.rules.scheme = schemeIn(table);
+    scene.rules.scheme = table.valueOr("scheme", scene.rules.scheme);
     if (scene.tin != nullptr && scene.rules.scheme != sand::Scheme::isotropic) {
         table.fail("scheme", fmt::format("a TIN has no scheme \"{}\", only \"g\"; leave out 'scheme', or [tin]",
                                          table.text("scheme")));
@@ -50,25 +44,16 @@ void readMaterial(const host::TomlTable& file, Scene& scene) {
     if (const auto table = file.table("material")) {
         readMaterialKeys(*table, scene);
     }
-    scene.rules.tune(tuningOf(scene.material, scene.grid()));
-    if (scene.rules.threshold < kTooCoarse) {
+    scene.rules.tuning = tuningOf(scene.material, scene.grid());
+    if (scene.rules.tuning.threshold < kTooCoarse) {
         scene.warnings.push_back(fmt::format(
             "a talus of {} deg is {} height units per cell; below {} slopes rest more than a percent too steep",
-            scene.material.talus(), scene.rules.threshold, kTooCoarse));
+            scene.material.talus(), scene.rules.tuning.threshold, kTooCoarse));
     }
-}
-
-std::vector<std::string_view> toolNames() {
-    std::vector<std::string_view> names;
-    names.reserve(sand::kToolKinds);
-    for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        names.push_back(base::nameOf(static_cast<sand::ToolKind>(kind)));
-    }
-    return names;
 }
 
 void readShape(const host::TomlTable& tool, Material& material) {
-    material.toolKind = static_cast<sand::ToolKind>(tool.choiceOr("shape", toolNames(), 0));
+    material.toolKind = tool.valueOr("shape", sand::ToolKind::sphere);
     if (const double width = tool.numberOr("width", 1, {kNarrowestTool, 1}); tool.has("width")) {
         material.toolWidth = width;
     }
@@ -179,7 +164,7 @@ Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
         toml.fail("name", "name must be one line of plain text");
     }
     scene.rules.stepsPerSecond = toml.integerOr("steps_per_second", 60, 1, 1000);
-    scene.rules.rim = static_cast<sand::Rim>(toml.choiceOr("rim", {"closed", "open"}, 0));
+    scene.rules.rim = toml.valueOr("rim", scene.rules.rim);
     const bool settle = readTerrain(toml, scene, checks);
     readTin(toml, scene);
     readTool(toml, scene);

@@ -98,7 +98,7 @@ void requireSpacing(const host::TomlTable& file, const Scene& scene) {
     }
     const sand::tin::Settings& settings = scene.tin->settings;
     const sand::CellRect reach =
-        sand::TurnedShape(scene.rules.toolShape()).cellsChanged(0, 0);  // along the tool's length
+        sand::TurnedShape(scene.rules.tuning.tool).cellsChanged(0, 0);  // along the tool's length
     const double width = std::min(reach.x1 - reach.x0, scene.rules.columns) * double{sand::kProbePerCell};
     const double depth = std::min(reach.x1 - reach.x0, scene.rules.rows) * double{sand::kProbePerCell};
     const double least =

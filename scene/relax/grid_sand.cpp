@@ -84,8 +84,8 @@ void setTalus(const EsriGrid& surface, const Extremes& extremes, const TalusSett
     const double aspect = surface.aspect();
     const double slope = std::tan(material.talusDegrees * std::numbers::pi / 180);
     const double threshold = std::min(std::floor(slope * surface.cellSize / sand.scale.unit + 0.5), kLargestThreshold);
-    sand.rules.threshold = static_cast<std::int32_t>(threshold);
-    sand.rules.startThreshold =
+    sand.rules.tuning.threshold = static_cast<std::int32_t>(threshold);
+    sand.rules.tuning.startThreshold =
         static_cast<std::int32_t>(std::min(std::floor(threshold * (1 + material.band)), kLargestThreshold));
     const double least = std::floor(threshold * std::min(1.0, aspect));
     const std::string units = fmt::format("{}: a talus of {} degrees is {} height units of {:.4g} from cell to cell",

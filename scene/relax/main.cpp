@@ -72,8 +72,7 @@ void checkKind(const Options& options, bool toMesh) {
 /// Returns the values of --scheme.
 std::vector<std::string> schemes() {
     std::vector<std::string> names;
-    names.reserve(sand::kSchemes.size() + 1);
-    for (const sand::NamedScheme& known : sand::kSchemes) {
+    for (const auto& known : valuesOf(sand::Scheme{})) {
         names.emplace_back(known.name);
     }
     names.emplace_back("settle");

@@ -2,7 +2,6 @@
 // Work of sandwall-relax on a grid.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -30,10 +29,7 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Returns the scheme of this name. For settle, returns the default scheme, whose sweeps end it.
-sand::Scheme schemeOf(const std::string& name) {
-    const auto* const found = std::ranges::find(sand::kSchemes, name, &sand::NamedScheme::name);
-    return found != sand::kSchemes.end() ? found->scheme : sand::kSchemes.front().scheme;
-}
+sand::Scheme schemeOf(const std::string& name) { return base::valueNamed<sand::Scheme>(name).value_or(sand::Scheme{}); }
 
 /// Prints on stderr every second how far long work has come. The report uses the last call of after().
 class Progress {
@@ -120,7 +116,7 @@ ordered_json report(const GridSand& sand, const EsriGrid& grid, const std::optio
     json["at_rest"] = timed.relaxed.atRest;
     json["seconds"] = timed.seconds;
     // For a level talus this is not a number, which JSON writes as null.
-    json["steepest_over_talus"] = steepest / sand.rules.threshold;
+    json["steepest_over_talus"] = steepest / sand.rules.tuning.threshold;
     json["steepest_deg"] = std::atan(steepest * sand.scale.unit / grid.cellSize) * 180 / std::numbers::pi;
     json["certificate"] = certificatePart(sand, timed.relaxed);
     json["state_hash"] = fmt::format("{:016x}", sand::grid::TileHash(sand.field).update(sand.field));

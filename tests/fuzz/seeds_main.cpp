@@ -36,7 +36,7 @@ sand::Step step(std::uint64_t number) {
 void writeWire(Folder folder) {
     using namespace haptic_bridge;
     sand::Step tuned = step(2);
-    tuned.edit = sand::Edit::tuned({1000, 1001, 4, 512});
+    tuned.edit = sand::Edit::tuned({1000, 1001, 4, {.radius = 512}});
     sand::Step loaded = step(3);
     loaded.edit = sand::Edit::loaded({1, 2, 3});
     const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 5, "scene"};
@@ -213,9 +213,9 @@ void writeSteps(Folder folder) {
         terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
         base::ByteWriter input;
         input.putBytes(piece(plainStateOf(terrain, before)));
-        sand::Edit tuned = sand::Edit::tuned(scenes[kind].rules.tuning());
-        tuned.tuning.toolKind = sand::ToolKind::rectangle;
-        tuned.tuning.toolHalfWidth = tuned.tuning.toolRadius / 2;
+        sand::Edit tuned = sand::Edit::tuned(scenes[kind].rules.tuning);
+        tuned.tuning.tool.kind = sand::ToolKind::rectangle;
+        tuned.tuning.tool.halfWidth = tuned.tuning.tool.radius / 2;
         for (const sand::Edit& edit :
              {sand::Edit(), sand::Edit(sand::Edit::settle), tuned, sand::Edit(sand::Edit::undo),
               sand::Edit::loaded(plainOf(before)), sand::Edit(sand::Edit::reset)}) {
@@ -232,7 +232,7 @@ void writeSteps(Folder folder) {
 void writeTin(Folder folder) {
     const scene::Scene scene = fuzz::tinScene();
     sand::tin::TinSurface surface(scene.rules, scene.tin);
-    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    const sand::Tool& tool = scene.rules.tuning.tool;
     const auto add = [&] {
         folder.add(surface.copy()->encode(), {1});
         base::ByteWriter plain;

@@ -28,7 +28,7 @@ const scene::Scene& sceneOf(unsigned kind) {
         }
         scenes[2].rules.ground = ground->digest();
         scenes[2].ground = std::move(ground);
-        scenes[2].rules.startThreshold = scenes[4].rules.startThreshold = sand::kUnitsPerCell * 3 / 2;
+        scenes[2].rules.tuning.startThreshold = scenes[4].rules.tuning.startThreshold = sand::kUnitsPerCell * 3 / 2;
         return scenes;
     }();
     return kScenes.at(kind % kScenes.size());
@@ -43,8 +43,8 @@ void shorten(Step& step) {
     }
     step.path.resize(std::min<std::size_t>(step.path.size(), 4));
     step.edit.tuning.sweepsPerStep %= 16;
-    step.edit.tuning.toolRadius %= 32 * sand::kProbePerCell;
-    step.edit.tuning.toolHalfWidth = std::min(step.edit.tuning.toolHalfWidth, step.edit.tuning.toolRadius);
+    step.edit.tuning.tool.radius %= 32 * sand::kProbePerCell;
+    step.edit.tuning.tool.halfWidth = std::min(step.edit.tuning.tool.halfWidth, step.edit.tuning.tool.radius);
 }
 
 /// Replaces the plain bytes of a load by sand.

@@ -22,7 +22,7 @@ base::Bytes packed(fuzz::Input plain) {
 }
 
 void goOn(TinSurface& surface, const scene::Scene& scene) {
-    const sand::HeldTool tool{scene.rules.toolShape(), {}};
+    const sand::Tool& tool = scene.rules.tuning.tool;
     const auto outside = surface.outflow();
     const auto volume = surface.layer().volume();
     const std::array path{ProbePoint{1500, 1500, 300}, ProbePoint{2600, 1900, 200}};

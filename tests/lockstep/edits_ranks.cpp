@@ -25,7 +25,7 @@ constexpr std::array kBlocks{16, 32, 64};
 
 scene::Scene smallScene() {
     scene::Scene scene = samples::flatScene(41, 29, 2.56);
-    scene.rules.sweepsPerStep = 4;
+    scene.rules.tuning.sweepsPerStep = 4;
     scene.rules.rim = sand::Rim::open;
     sand::grid::makeDunes({.bed = 2, .height = 5, .length = 20, .seed = 7}, scene.terrain);
     return scene;

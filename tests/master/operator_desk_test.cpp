@@ -262,7 +262,7 @@ TEST_F(Desk, TakesKeysAsCommandsIfTheHandIsThePointer) {
     EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::help));
     desk_->obey({{.key = '3'}, {.key = 'h'}});
     ASSERT_EQ(requests_.edits.size(), 2U);
-    EXPECT_EQ(requests_.edits[1].tuning.toolKind, sand::ToolKind::rectangle);
+    EXPECT_EQ(requests_.edits[1].tuning.tool.kind, sand::ToolKind::rectangle);
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
     desk_->obey({{.key = 'u'}});
     EXPECT_EQ(requests_.edits.size(), 2U) << "there is no stroke to undo";

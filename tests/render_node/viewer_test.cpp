@@ -164,7 +164,7 @@ constexpr double kFewWrong = 0.001, kManyWrong = 0.02;
 class Viewer : public testing::Test {
 protected:
     Viewer() {
-        scene_.rules.toolRadius *= 2;
+        scene_.rules.tuning.tool.radius *= 2;
         for (std::size_t tile = 0; tile < 3; ++tile) {
             for (const Eye eye : {Eye::left, Eye::right, Eye::middle}) {
                 expected_.at(tile).push_back(drawn(tile, eye));

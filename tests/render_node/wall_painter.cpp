@@ -193,7 +193,7 @@ Ball ballOf(const DugScene& dug) {
     const std::vector<double>& sun = dug.scene.look.sunDirection;
     const sand::HeightField* field = &samples::fieldOf(dug.terrain);
     return {glm::dvec3(probe.x, probe.y, probe.z) * (cell / sand::kProbePerCell),
-            dug.scene.rules.toolRadius * (cell / sand::kProbePerCell),
+            dug.scene.rules.tuning.tool.radius * (cell / sand::kProbePerCell),
             {sun[0], sun[1], sun[2]},
             [field, cell](const glm::dvec2& place) {
                 const glm::ivec2 last(field->columns() - 1, field->rows() - 1);

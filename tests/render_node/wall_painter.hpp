@@ -34,7 +34,7 @@ struct DugScene {
 private:
     static scene::Scene ballInDunes() {
         scene::Scene dunes = duneScene(128);
-        dunes.rules.toolRadius *= 2;
+        dunes.rules.tuning.tool.radius *= 2;
         return dunes;
     }
 };

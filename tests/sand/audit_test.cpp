@@ -37,7 +37,7 @@ constexpr int kColumns = 100, kRows = 70;  // three by two whole tiles of 32 cel
 /// Returns level sand at rest with a band.
 Replica restingSand() {
     scene::Scene scene = samples::flatScene(kColumns, kRows);
-    scene.rules.startThreshold = scene.rules.threshold + 1000;
+    scene.rules.tuning.startThreshold = scene.rules.tuning.threshold + 1000;
     Replica terrain(scene);
     terrain.apply({1, 1, false, {}});
     return terrain;
@@ -115,7 +115,7 @@ TEST(Audit, FindsAFluxOverTheSouthernRimInEveryTileThere) {
 TEST(Audit, LeavesSandThatFallsOverAnOpenRim) {
     scene::Scene scene = samples::flatScene(40, 40);
     scene.rules.rim = sand::Rim::open;
-    scene.rules.sweepsPerStep = 1;
+    scene.rules.tuning.sweepsPerStep = 1;
     for (int y = 0; y < 40; ++y) {
         std::fill_n(scene.terrain.row(y), 40, 12 * sand::kUnitsPerCell);
     }

@@ -211,13 +211,13 @@ TEST(Undo, KeepsWhatTheOperatorHasChosen) {
     Replica terrain(scene);
     Hand hand(terrain);
     hand.stroke(20);
-    sand::Tuning tuning = scene.rules.tuning();
-    tuning.toolRadius *= 2;
+    sand::Tuning tuning = scene.rules.tuning;
+    tuning.tool.radius *= 2;
     hand.hover(Edit::tuned(tuning));
     hand.hover(Edit::undo);
-    EXPECT_EQ(terrain.rules().tuning(), tuning);
+    EXPECT_EQ(terrain.rules().tuning, tuning);
     hand.hover(Edit::reset);
-    EXPECT_EQ(terrain.rules().tuning(), tuning);
+    EXPECT_EQ(terrain.rules().tuning, tuning);
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
 }
 
@@ -227,10 +227,10 @@ Step editedStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& ra
     const auto draw = random() % 40;
     step.edit = draw < 5 ? Edit::undo : draw == 5 ? Edit::reset : draw == 6 ? Edit::settle : Edit::none;
     if (draw == 7 || draw == 8) {
-        sand::Tuning tuning = rules.tuning();
+        sand::Tuning tuning = rules.tuning;
         tuning.threshold = tuning.threshold / 2 + static_cast<std::int32_t>(random() % 60000);
         tuning.startThreshold = tuning.threshold + 100;
-        tuning.toolRadius += static_cast<std::int32_t>(random() % 512);
+        tuning.tool.radius += static_cast<std::int32_t>(random() % 512);
         step.edit = Edit::tuned(tuning);
     }
     return step;

@@ -17,9 +17,9 @@ using sand::Step;
 /// Level sand with a narrow plate of 40 cells, which is easily turned.
 scene::Scene plateScene() {
     scene::Scene scene = samples::flatScene(90, 90, 20);
-    scene.rules.toolKind = sand::ToolKind::rectangle;
-    scene.rules.toolHalfWidth = 2 * kProbePerCell;
-    scene.rules.sweepsPerStep = 1;  // so that blocks at rest do not wake within a step
+    scene.rules.tuning.tool.kind = sand::ToolKind::rectangle;
+    scene.rules.tuning.tool.halfWidth = 2 * kProbePerCell;
+    scene.rules.tuning.sweepsPerStep = 1;  // so that blocks at rest do not wake within a step
     return scene;
 }
 

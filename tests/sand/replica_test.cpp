@@ -56,7 +56,7 @@ TEST(Replica, AHeldToolComesToRest) {
     const sand::HeightField rest = samples::fieldOf(terrain);
     terrain.apply({1, ++number, true, {}});
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest));
-    const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.toolShape()).obstacle(rest, terrain.probe());
+    const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.tuning.tool).obstacle(rest, terrain.probe());
     std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
@@ -67,7 +67,7 @@ TEST(Replica, AHeldToolComesToRest) {
 
 TEST(Replica, SandFallsWhenTheToolLeaves) {
     scene::Scene scene = samples::flatScene(64, 64, 8);
-    scene.rules.sweepsPerStep = 2;
+    scene.rules.tuning.sweepsPerStep = 2;
     Replica terrain(scene);
     std::uint64_t number = 0;
     terrain.apply({1, ++number, true, {at(32, 32, 0)}});
@@ -192,7 +192,7 @@ TEST(Replica, GoesOnFromSettledSand) {
 TEST(Replica, SettlesAtOnceWhenAsked) {
     scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 12, 30);
-    scene.rules.sweepsPerStep = 4;
+    scene.rules.tuning.sweepsPerStep = 4;
     for (const bool onRock : {false, true}) {
         if (onRock) {
             scene.ground = std::make_shared<sand::Ground>(64, 64);

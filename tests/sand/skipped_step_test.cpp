@@ -76,7 +76,7 @@ protected:
         sand::Step step = digging(number);
         step.heading = sand::Heading{0, sand::Heading::kLength};
         step.edit = sand::Edit::tune;
-        step.edit.tuning = scene_.rules.tuning();
+        step.edit.tuning = scene_.rules.tuning;
         step.edit.tuning.threshold /= 4;
         step.edit.tuning.startThreshold /= 4;
         return step;
@@ -111,7 +111,7 @@ TEST_F(SkippedStep, LeavesEveryReplicaEqualHoweverFarItCame) {
             EXPECT_FALSE(one.canUndo());
             EXPECT_FALSE(one.engaged());
             EXPECT_EQ(one.probe(), digging(3).path.back());
-            EXPECT_EQ(one.heading(), scene_.rules.toolHeading);
+            EXPECT_EQ(one.heading(), scene_.rules.tuning.tool.heading);
             EXPECT_EQ(one.rules(), scene_.rules);
             for (int tile = 0; tile < one.hashTiles().tileCount(); ++tile) {
                 EXPECT_EQ(one.surface().valuesOf(tile), intact.surface().valuesOf(tile)) << tile;

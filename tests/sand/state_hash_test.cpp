@@ -96,7 +96,7 @@ TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
     hashes.add("not tuned", hashAfter([](Step&) {}));
     const auto tuned = [](const std::function<void(Tuning&)>& change) {
         return hashAfter([&](Step& step) {
-            Tuning tuning = samples::flatScene(kSide, kSide).rules.tuning();
+            Tuning tuning = samples::flatScene(kSide, kSide).rules.tuning;
             tuning.startThreshold += 100;
             change(tuning);
             step.edit = Edit::tuned(tuning);
@@ -105,24 +105,24 @@ TEST(StateHash, TellsEveryRuleThatAnOperatorHasTuned) {
     hashes.add("start threshold", tuned([](Tuning&) {}));
     hashes.add("threshold", tuned([](Tuning& tuning) { ++tuning.threshold; }));
     hashes.add("sweeps per step", tuned([](Tuning& tuning) { ++tuning.sweepsPerStep; }));
-    hashes.add("tool's radius", tuned([](Tuning& tuning) { ++tuning.toolRadius; }));
-    hashes.add("circle", tuned([](Tuning& tuning) { tuning.toolKind = sand::ToolKind::circle; }));
-    hashes.add("tool's heading", tuned([](Tuning& tuning) { tuning.toolHeading = *sand::headingOf(1); }));
+    hashes.add("tool's radius", tuned([](Tuning& tuning) { ++tuning.tool.radius; }));
+    hashes.add("circle", tuned([](Tuning& tuning) { tuning.tool.kind = sand::ToolKind::circle; }));
+    hashes.add("tool's heading", tuned([](Tuning& tuning) { tuning.tool.heading = *sand::headingOf(1); }));
     const auto ellipse = [](Tuning& tuning) {
-        tuning.toolKind = sand::ToolKind::ellipse;
-        tuning.toolHalfWidth = 200;
+        tuning.tool.kind = sand::ToolKind::ellipse;
+        tuning.tool.halfWidth = 200;
     };
     hashes.add("ellipse", tuned(ellipse));
     for (const sand::ToolKind kind :
          {sand::ToolKind::rectangle, sand::ToolKind::ellipsoid, sand::ToolKind::footprint}) {
         hashes.add(std::string(base::nameOf(kind)), tuned([&](Tuning& tuning) {
                        ellipse(tuning);
-                       tuning.toolKind = kind;
+                       tuning.tool.kind = kind;
                    }));
     }
     hashes.add("wider ellipse", tuned([&](Tuning& tuning) {
                    ellipse(tuning);
-                   ++tuning.toolHalfWidth;
+                   ++tuning.tool.halfWidth;
                }));
 }
 
@@ -132,9 +132,9 @@ TEST(StateHash, TellsTheHeadingOfTheRulesFromThatOfTheHand) {
     for (const double ofRules : {0.0, 90.0}) {
         for (const double ofHand : {0.0, 45.0, 90.0}) {
             Replica terrain(samples::flatScene(kSide, kSide));
-            Tuning tuning = terrain.rules().tuning();
-            tuning.toolKind = sand::ToolKind::circle;
-            tuning.toolHeading = *sand::headingOf(ofRules);
+            Tuning tuning = terrain.rules().tuning;
+            tuning.tool.kind = sand::ToolKind::circle;
+            tuning.tool.heading = *sand::headingOf(ofRules);
             terrain.apply({1, 1, false, {}, Edit::tuned(tuning)});
             Step turned{1, 2, false, {}};
             turned.heading = *sand::headingOf(ofHand);

@@ -97,8 +97,8 @@ scene::Scene inclinedTin() {
     scene.georeference = origin();
     scene.rules.columns = 4;
     scene.rules.rows = 3;
-    scene.rules.threshold = scene.rules.startThreshold = 4 * kUnitsPerCell;
-    scene.rules.toolRadius = sand::kProbePerCell;
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = 4 * kUnitsPerCell;
+    scene.rules.tuning.tool.radius = sand::kProbePerCell;
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }

@@ -13,7 +13,8 @@ using ExtremeInput = SceneFile;
 
 TEST_F(ExtremeInput, AnglesEndBelow90Degrees) {
     const auto thresholdAt = [&](const std::string& degrees) {
-        return scene::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n")).rules.threshold;
+        return scene::loadScene(write("s.toml", kFlat + "band = 0\ntalus_deg = " + degrees + "\n"))
+            .rules.tuning.threshold;
     };
     EXPECT_EQ(thresholdAt("0"), 0);
     EXPECT_EQ(thresholdAt("45"), sand::kUnitsPerCell);
@@ -80,12 +81,8 @@ TEST_F(ExtremeInput, SidesBeyondTheLargestAreRefused) {
 TEST_F(ExtremeInput, RulesOutOfRangeAreRefusedOnTheWire) {
     sand::Rules rules = scene::loadScene(write("s.toml", kFlat)).rules;
     const auto accepted = [](const sand::Rules& sent) {
-        base::ByteWriter writer;
-        sent.encode(writer);
-        const base::Bytes bytes = writer.take();
-        base::ByteReader reader(bytes);
         try {
-            return sand::Rules::decode(reader) == sent;
+            return base::decoded<sand::Rules>(base::encoded(sent)) == sent;
         } catch (const base::FormatError&) {
             return false;
         }

@@ -22,7 +22,7 @@ TEST_F(SceneFile, AnOperatorsNumbersBecomeTheRulesOfAFileThatSaysThem) {
     const scene::Scene plain = scene::loadScene(write("plain.toml", kFlat));
     const auto grid = plain.grid();
     const auto same = [&](const scene::Material& material, const std::string& file) {
-        EXPECT_EQ(scene::tuningOf(material, grid), scene::loadScene(write("s.toml", kFlat + file)).rules.tuning())
+        EXPECT_EQ(scene::tuningOf(material, grid), scene::loadScene(write("s.toml", kFlat + file)).rules.tuning)
             << file;
     };
     same(plain.material, "");
@@ -79,7 +79,7 @@ TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     }
     const sand::HeightField rest = samples::fieldOf(terrain);
     const std::uint64_t hash = terrain.stateHash();
-    sand::Tuning tuning = scene.rules.tuning();
+    sand::Tuning tuning = scene.rules.tuning;
     terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
     EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest)) << "the same material moves nothing";
     tuning.threshold /= 2;
@@ -94,8 +94,8 @@ TEST(Tuning, AFlatterTalusWakesSandAtRest) {
 // Two replicas with equal sand and different tools differ one step later. The hash must show that at once.
 TEST(Tuning, IsPartOfTheHashAndOfTheState) {
     const scene::Scene scene = samples::flatScene(64, 64);
-    sand::Tuning tuning = scene.rules.tuning();
-    tuning.toolRadius *= 2;
+    sand::Tuning tuning = scene.rules.tuning;
+    tuning.tool.radius *= 2;
     sand::Replica plain(scene);
     sand::Replica tuned(scene);
     plain.apply({1, 1, false, {}, Edit::none});
@@ -106,7 +106,7 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
     joined.decodeState(tuned.encodeState());
     EXPECT_EQ(joined.stateHash(), tuned.stateHash());
     EXPECT_EQ(joined.rules(), tuned.rules());
-    tuned.apply({1, 2, false, {}, Edit::tuned(scene.rules.tuning())});
+    tuned.apply({1, 2, false, {}, Edit::tuned(scene.rules.tuning)});
     plain.apply({1, 2, false, {}, Edit::none});
     EXPECT_EQ(plain.stateHash(), tuned.stateHash()) << "and back";
 }
@@ -116,8 +116,8 @@ TEST(Tuning, AToolThatGrowsInTheSandPresses) {
     sand::Replica terrain(scene);
     const std::int32_t middle = 32 * sand::kProbePerCell;
     terrain.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});
-    sand::Tuning tuning = scene.rules.tuning();
-    tuning.toolRadius = 8 * sand::kProbePerCell;
+    sand::Tuning tuning = scene.rules.tuning;
+    tuning.tool.radius = 8 * sand::kProbePerCell;
     terrain.apply({1, 2, true, {}, Edit::tuned(tuning)});
     EXPECT_LE(samples::fieldOf(terrain).height(32, 32), -5 * sand::kUnitsPerCell);
 }

@@ -87,11 +87,11 @@ TEST_F(SceneFile, WetSandIsSteeperAndItsBanksStand) {
             .rules;
     };
     const auto units = [](double degrees) { return std::lround(std::tan(degrees * std::numbers::pi / 180) * 65536); };
-    EXPECT_EQ(rulesOf("").threshold, units(34));
-    EXPECT_EQ(rulesOf("").startThreshold, units(34)) << "dry sand has no cohesion";
-    EXPECT_EQ(rulesOf("humidity = 0.5\n").threshold, units(39));
-    EXPECT_EQ(rulesOf("humidity = 1\n").threshold, units(44));
-    EXPECT_EQ(rulesOf("humidity = 1\n").startThreshold, 1677721) << "0.1 of cells of 2 / 512, rounded down";
+    EXPECT_EQ(rulesOf("").tuning.threshold, units(34));
+    EXPECT_EQ(rulesOf("").tuning.startThreshold, units(34)) << "dry sand has no cohesion";
+    EXPECT_EQ(rulesOf("humidity = 0.5\n").tuning.threshold, units(39));
+    EXPECT_EQ(rulesOf("humidity = 1\n").tuning.threshold, units(44));
+    EXPECT_EQ(rulesOf("humidity = 1\n").tuning.startThreshold, 1677721) << "0.1 of cells of 2 / 512, rounded down";
     EXPECT_EQ(complaint(kFlat + "wet_talus_deg = 20\n"),
               "s.toml:4: wet_talus_deg must be at least talus_deg = 34, got 20");
     EXPECT_EQ(complaint(kFlat + "humidity = 2\n"), "s.toml:4: humidity must be within [0, 1], got 2");

@@ -22,8 +22,8 @@ TEST_F(SceneFile, DefaultsAreThePapers) {
     EXPECT_EQ(scene.rules.columns, 512);
     EXPECT_EQ(scene.rules.rows, 512);
     EXPECT_DOUBLE_EQ(scene.terrain.cellSize(), 2.0 / 512);
-    EXPECT_EQ(scene.rules.toolRadius, 655);  // 2.56 cells
-    EXPECT_EQ(scene.rules.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
+    EXPECT_EQ(scene.rules.tuning.tool.radius, 655);  // 2.56 cells
+    EXPECT_EQ(scene.rules.tuning.threshold, std::lround(std::tan(34 * std::numbers::pi / 180) * 65536));
     EXPECT_EQ(scene.rules.stepsPerSecond, 60);
 }
 
@@ -65,7 +65,7 @@ TEST_F(SceneFile, ItsSizeIsLookedAtOnce) {
 
 TEST_F(SceneFile, SweepsFollowTheSquareOfTheToolsCells) {
     const auto sweeps = [&](const std::string& radius) {
-        return scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.sweepsPerStep;
+        return scene::loadScene(write("s.toml", kFlat + "[tool]\nradius = " + radius)).rules.tuning.sweepsPerStep;
     };
     EXPECT_EQ(sweeps("0.046875"), 24);  // 12 cells: 144 / (0.1 s * 60)
     EXPECT_NEAR(sweeps("0.09375"), 4 * 24, 3);
@@ -109,9 +109,9 @@ TEST_F(SceneFile, WithoutAMaterialIsDrySand) {
 TEST_F(SceneFile, UnknownSchemesAreRefusedWithTheKnownOnes) {
     EXPECT_EQ(complaint(kFlat + "talus_deg = 34\nscheme = \"n4\"\n"),
               "s.toml:5: scheme must be one of g, g_plain, got 'n4'");
-    for (const sand::NamedScheme& known : sand::kSchemes) {
+    for (const auto& known : valuesOf(sand::Scheme{})) {
         const std::string text = fmt::format("{}scheme = \"{}\"\n", kFlat, known.name);
-        EXPECT_EQ(scene::loadScene(write("s.toml", text)).rules.scheme, known.scheme) << known.name;
+        EXPECT_EQ(scene::loadScene(write("s.toml", text)).rules.scheme, known.value) << known.name;
     }
 }
 
@@ -125,8 +125,8 @@ TEST_F(SceneFile, AToolOutOfScaleIsRefusedOrWarnedOf) {
 TEST_F(SceneFile, AToolHasAShapeAWidthAndAHeading) {
     const scene::Scene scene = scene::loadScene(
         write("s.toml", kFlat + "[tool]\nshape = \"footprint\"\nradius = 0.1\nheading_deg = 90\nfoot = \"left\"\n"));
-    EXPECT_EQ(scene.rules.toolShape(), (sand::ToolShape{sand::ToolKind::footprint, 6554, 2622}));
-    EXPECT_EQ(scene.rules.toolHeading, (sand::Heading{0, sand::Heading::kLength, true}));
+    EXPECT_EQ(scene.rules.tuning.tool,
+              (sand::Tool{sand::ToolKind::footprint, 6554, 2622, {0, sand::Heading::kLength, true}}));
     EXPECT_EQ(scene::Scene::decode(scene.encode()).rules, scene.rules);
     const scene::Scene plain = scene::loadScene(write("p.toml", kFlat + "[tool]\nshape = \"sphere\"\nradius = 0.1\n"));
     EXPECT_NE(plain.rules.digest(), scene.rules.digest()) << "server and master must have the same tool";

@@ -26,10 +26,11 @@ inline scene::Scene levelSand(const sand::ForceConstants& force = {}, int cells 
     scene.terrain = sand::HeightField(cells, cells, side / cells);
     scene.force = force;
     scene.rules.columns = scene.rules.rows = cells;
-    scene.rules.threshold = scene.rules.startThreshold = 44204;  // 34 degrees
-    scene.rules.sweepsPerStep = 16;
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = 44204;  // 34 degrees
+    scene.rules.tuning.sweepsPerStep = 16;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(std::lround(kPapersRadius * cells / side * sand::kProbePerCell));
+    scene.rules.tuning.tool.radius =
+        static_cast<std::int32_t>(std::lround(kPapersRadius * cells / side * sand::kProbePerCell));
     return scene;
 }
 
@@ -77,7 +78,7 @@ public:
         const std::int32_t middle = scene.rules.columns / 2 * sand::kProbePerCell;
         surface_.patch = {scene.terrain, {middle, middle, 0}, scene.toolRadius()};
         surface_.tool = sand::force::Contour::sphere(scene.toolRadius());
-        surface_.talus = static_cast<double>(scene.rules.threshold) / sand::kUnitsPerCell;
+        surface_.talus = static_cast<double>(scene.rules.tuning.threshold) / sand::kUnitsPerCell;
     }
 
     /// Runs a tick on a surface that was copied `age` ago [s], `span` after the tick before [s]. The newest step was

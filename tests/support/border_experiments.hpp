@@ -287,7 +287,7 @@ inline Held heldSettle(const Ground& ground, int n, bool atRest) {
     Held result;
     const sand::ProbePoint at = sand.probe();
     result.largest = overUnderside(sand, at) / scale;
-    const sand::TurnedShape turned(sand.toolShape(), {});
+    const sand::TurnedShape turned(sand.tool());
     for (int row = 0; row < n; ++row) {
         for (int column = 0; column < n; ++column) {
             const sand::Offset offset{std::int64_t{column} * 256 + 128 - at.x, std::int64_t{row} * 256 + 128 - at.y};

@@ -65,15 +65,16 @@ inline scene::Scene sceneOf(const Case& given) {
     sand::Rules& rules = scene.rules;
     rules.columns = given.columns;
     rules.rows = given.rows;
-    rules.threshold = units(given.talus);
-    rules.startThreshold = std::max(rules.threshold, units(given.start));
-    rules.sweepsPerStep = given.sweeps;
+    rules.tuning.threshold = units(given.talus);
+    rules.tuning.startThreshold = std::max(rules.tuning.threshold, units(given.start));
+    rules.tuning.sweepsPerStep = given.sweeps;
     rules.stepsPerSecond = 60;
     rules.rim = given.rim;
-    rules.toolKind = given.tool;
-    rules.toolRadius = static_cast<std::int32_t>(given.radius * sand::kProbePerCell);
-    rules.toolHalfWidth =
-        sand::isRound(given.tool) ? 0 : static_cast<std::int32_t>(rules.toolRadius * sand::usualWidth(given.tool));
+    rules.tuning.tool.kind = given.tool;
+    rules.tuning.tool.radius = static_cast<std::int32_t>(given.radius * sand::kProbePerCell);
+    rules.tuning.tool.halfWidth =
+        sand::isRound(given.tool) ? 0
+                                  : static_cast<std::int32_t>(rules.tuning.tool.radius * sand::usualWidth(given.tool));
     if (given.tin) {
         sand::tin::Settings settings;
         settings.maxError = units(given.maxError);
@@ -154,8 +155,7 @@ double misplaced(const sand::Replica& sand, const Right& right) {
 /// Returns how far the surface is above the underside of a tool at `at`, on a lattice of quarter cells. Counts only
 /// places on ground within 0.98 of the tool's outline, because the outline in a mesh is a polygon inside it.
 inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& at) {
-    const sand::ToolShape shape = sand.toolShape();
-    const sand::TurnedShape turned(shape, sand.heading());
+    const sand::TurnedShape turned(sand.tool());
     const bool tin = sand.rules().tin != 0;
     const int step = tin ? sand::kProbePerCell / 4 : sand::kProbePerCell;
     double most = 0;
@@ -165,7 +165,7 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& a
         for (std::int32_t x = step / 2; x < sand.rules().columns * sand::kProbePerCell; x += step) {
             const sand::Offset offset{std::int64_t{x} - at.x, std::int64_t{y} - at.y};
             const sand::Offset wider{offset.x * 50 / 49, offset.y * 50 / 49};
-            if (std::max(std::abs(offset.x), std::abs(offset.y)) > shape.radius || !turned.covers(wider) ||
+            if (std::max(std::abs(offset.x), std::abs(offset.y)) > sand.tool().radius || !turned.covers(wider) ||
                 (holes != nullptr && holes->holds({x, y})) ||
                 (ground != nullptr && ground->isWall(x / sand::kProbePerCell, y / sand::kProbePerCell))) {
                 continue;

@@ -21,8 +21,8 @@ inline scene::Scene writingSand(sand::Between between) {
     sand::ForceConstants constants;
     constants.between = between;
     scene::Scene scene = levelSand(constants);
-    scene.rules.sweepsPerStep = 18;  // a tool of ten cells with a settling time of 0.1 s
-    scene.rules.toolRadius = static_cast<std::int32_t>(std::lround(0.04 * 256 * sand::kProbePerCell));
+    scene.rules.tuning.sweepsPerStep = 18;  // a tool of ten cells with a settling time of 0.1 s
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(std::lround(0.04 * 256 * sand::kProbePerCell));
     return scene;
 }
 

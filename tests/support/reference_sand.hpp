@@ -75,7 +75,7 @@ private:
         const bool inertia = rules.scheme == sand::Scheme::isotropic;
         const auto k = float((inertia ? 0.46 : 0.4998) / (ratio * ratio + 1));
         const auto p = float(0.225 * std::min(1.0, 1 / (ratio * ratio)));
-        const auto t = float(rules.threshold * length), start = float(rules.startThreshold * length);
+        const auto t = float(rules.tuning.threshold * length), start = float(rules.tuning.startThreshold * length);
         const auto a = float(face.overRim ? std::max(seen.row(0)[i], 0) : seen.row(0)[i] - seen.row(0)[j]);
         const float b = float(0.25 * ratio) * (rise(i, face.side) + rise(j, face.side));
         const float square = a * a + b * b, m = std::sqrt(square);

@@ -35,8 +35,8 @@ inline constexpr bool kSlowBuild = true;
 
 /// All schemes. The default comes first.
 inline constexpr auto kSchemes = [] {
-    std::array<sand::Scheme, sand::kSchemes.size()> schemes{};
-    std::ranges::transform(sand::kSchemes, schemes.begin(), &sand::NamedScheme::scheme);
+    std::array<sand::Scheme, valuesOf(sand::Scheme{}).size()> schemes{};
+    std::ranges::transform(valuesOf(sand::Scheme{}), schemes.begin(), &base::Named<sand::Scheme>::value);
     return schemes;
 }();
 
@@ -65,8 +65,7 @@ inline std::vector<Law> laws() {
 }
 
 inline std::string nameOf(const Law& law) {
-    const auto* const known = std::ranges::find(sand::kSchemes, law.scheme, &sand::NamedScheme::scheme);
-    return fmt::format("scheme {}, band {}", known->name, law.band);
+    return fmt::format("scheme {}, band {}", base::nameOf(law.scheme), law.band);
 }
 
 /// Returns rules for a field with a closed rim and square cells. By default the threshold is 45 degrees, without a
@@ -76,8 +75,8 @@ inline sand::Rules rulesFor(const sand::HeightField& field, const Law& law = {},
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = threshold;
-    rules.startThreshold = threshold + static_cast<std::int32_t>(law.band * threshold);
+    rules.tuning.threshold = threshold;
+    rules.tuning.startThreshold = threshold + static_cast<std::int32_t>(law.band * threshold);
     rules.scheme = law.scheme;
     return rules;
 }

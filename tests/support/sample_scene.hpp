@@ -22,11 +22,12 @@ inline scene::Scene flatScene(int columns, int rows, double toolRadius = 0.04) {
     scene.terrain = sand::HeightField(columns, rows, kWidth / columns);
     scene.rules.columns = columns;
     scene.rules.rows = rows;
-    scene.rules.threshold = 44204;  // 34 degrees
-    scene.rules.startThreshold = 44204;
-    scene.rules.sweepsPerStep = 16;
+    scene.rules.tuning.threshold = 44204;  // 34 degrees
+    scene.rules.tuning.startThreshold = 44204;
+    scene.rules.tuning.sweepsPerStep = 16;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(toolRadius / scene.terrain.cellSize() * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius =
+        static_cast<std::int32_t>(toolRadius / scene.terrain.cellSize() * sand::kProbePerCell);
     return scene;
 }
 

@@ -21,10 +21,10 @@ inline scene::Scene flatScene(int columns, int rows, double toolCells = 4) {
     scene.terrain = sand::HeightField(columns, rows, 1.0);
     scene.rules.columns = columns;
     scene.rules.rows = rows;
-    scene.rules.threshold = scene.rules.startThreshold = sand::kUnitsPerCell;
-    scene.rules.sweepsPerStep = 8;
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = sand::kUnitsPerCell;
+    scene.rules.tuning.sweepsPerStep = 8;
     scene.rules.stepsPerSecond = 60;
-    scene.rules.toolRadius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(toolCells * sand::kProbePerCell);
     return scene;
 }
 
@@ -89,10 +89,10 @@ inline sand::Step wildStep(std::uint64_t number, const sand::Rules& rules, std::
         step.heading = sand::Heading{static_cast<std::int16_t>(x), static_cast<std::int16_t>(y), random() % 2 == 0};
     }
     if (random() % 7 == 0) {
-        sand::Tuning tuning = rules.tuning();
-        tuning.toolKind = static_cast<sand::ToolKind>(random() % sand::kToolKinds);
-        tuning.toolRadius = static_cast<std::int32_t>(random() % (20 * sand::kProbePerCell));
-        tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : tuning.toolRadius / 3;
+        sand::Tuning tuning = rules.tuning;
+        tuning.tool.kind = static_cast<sand::ToolKind>(random() % sand::kToolKinds);
+        tuning.tool.radius = static_cast<std::int32_t>(random() % (20 * sand::kProbePerCell));
+        tuning.tool.halfWidth = sand::isRound(tuning.tool.kind) ? 0 : tuning.tool.radius / 3;
         step.edit = sand::Edit::tuned(tuning);
     }
     return step;

@@ -48,13 +48,11 @@ void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& v
 
 }  // namespace
 
-Displacement::Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
-                           std::shared_ptr<Neighbourhood> neighbourhood)
-    : shape_(shape),
-      heading_(heading),
+Displacement::Displacement(const Tool& tool, const DetailRules& rules, std::shared_ptr<Neighbourhood> neighbourhood)
+    : tool_(tool),
       rules_(rules),
-      turned_(shape, heading),
-      outline_(Outline::of(shape, heading)),
+      turned_(tool),
+      outline_(Outline::of(tool)),
       neighbourhood_(std::move(neighbourhood)) {}
 
 Underside Displacement::underside(const ProbePoint& at) const {
@@ -123,7 +121,7 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
 
 void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
     neighbourhood_->look(layer.triangles(), chunk.box);
-    const Imprint::Stand here{chunk.presses.back().at, shape_, heading_};
+    const Imprint::Stand here{chunk.presses.back().at, tool_};
     const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
                                                             [&](const Press& press) { return press.at == here.at; });
     if (!still) {
@@ -147,7 +145,7 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
         lowest = std::min<std::int64_t>(lowest, press.at.z);
     }
     constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
-    const auto underside = static_cast<double>((lowest - shape_.radius) * kUnitsPerProbe);
+    const auto underside = static_cast<double>((lowest - tool_.radius) * kUnitsPerProbe);
     const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
     return std::any_of(neighbourhood_->triangles().begin(), neighbourhood_->triangles().end(), [&](std::int32_t slot) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
@@ -175,7 +173,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             }
         }
         if (chunk.last) {
-            imprint.stand = {at, shape_, heading_};
+            imprint.stand = {at, tool_};
             imprint.putInto(mesh, outline, rules_.maxVertices);
         }
         const auto wanted = [&](const Place& place) {

@@ -25,11 +25,9 @@ class Displacement {
 public:
     /// Code that decodes steps and rules must refuse poses beyond kMaxProbe and shapes beyond kLargestToolRadius.
     /// Other code may use `neighbourhood` between two calls.
-    Displacement(const ToolShape& shape, const Heading& heading, const DetailRules& rules,
+    Displacement(const Tool& tool, const DetailRules& rules,
                  std::shared_ptr<Neighbourhood> neighbourhood = std::make_shared<Neighbourhood>());
-    [[nodiscard]] bool is(const ToolShape& shape, const Heading& heading) const {
-        return shape_ == shape && heading_ == heading;
-    }
+    [[nodiscard]] const Tool& tool() const { return tool_; }
 
     /// The effects of a drag on the sand. The layer itself records the changes of the mesh.
     struct Work {
@@ -115,8 +113,7 @@ private:
     [[nodiscard]] Vertex partOf(Vertex vertex);
     [[nodiscard]] Vertex partOf(const VertexSand& layer, const Receiver& receiver);
 
-    ToolShape shape_;
-    Heading heading_;
+    Tool tool_;
     DetailRules rules_;
     TurnedShape turned_;
     Outline outline_;

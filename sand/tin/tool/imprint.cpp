@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <iterator>
 
-#include "sand/model/tuning.hpp"
-
 namespace sand::tin {
 namespace {
 
@@ -37,14 +35,14 @@ Imprint::Stand decodeStand(base::ByteReader& reader) {
     stand.at.y = reader.get<std::int32_t>();
     stand.at.z = reader.get<std::int32_t>();
     const auto kind = reader.get<std::uint8_t>();
-    stand.shape.kind = static_cast<ToolKind>(kind);
-    stand.shape.radius = reader.get<std::int32_t>();
-    stand.shape.halfWidth = reader.get<std::int32_t>();
-    stand.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
+    stand.tool.kind = static_cast<ToolKind>(kind);
+    stand.tool.radius = reader.get<std::int32_t>();
+    stand.tool.halfWidth = reader.get<std::int32_t>();
+    stand.tool.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
     const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
                       std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
-    if (kind >= kToolKinds || !near || stand.shape.radius < 0 || stand.shape.radius > kLargestToolRadius ||
-        stand.shape.halfWidth < 0 || stand.shape.halfWidth > stand.shape.radius) {
+    if (kind >= kToolKinds || !near || stand.tool.radius < 0 || stand.tool.radius > kLargestToolRadius ||
+        stand.tool.halfWidth < 0 || stand.tool.halfWidth > stand.tool.radius) {
         throw base::FormatError("an imprint with a tool out of range");
     }
     return stand;
@@ -136,11 +134,11 @@ void Imprint::encode(base::ByteWriter& writer) const {
         return;
     }
     encodePoint(stand->at, writer);
-    writer.put(static_cast<std::uint8_t>(stand->shape.kind));
-    writer.put(stand->shape.radius);
-    writer.put(stand->shape.halfWidth);
-    writer.put(static_cast<std::uint8_t>(stand->heading.mirrored ? 1 : 0));
-    stand->heading.encode(writer);
+    writer.put(static_cast<std::uint8_t>(stand->tool.kind));
+    writer.put(stand->tool.radius);
+    writer.put(stand->tool.halfWidth);
+    writer.put(static_cast<std::uint8_t>(stand->tool.heading.mirrored ? 1 : 0));
+    stand->tool.heading.encode(writer);
     writer.putVarint(points.size());
     for (const Point& point : points) {
         writer.put(point.vertex);

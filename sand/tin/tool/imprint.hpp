@@ -8,7 +8,7 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/model/step.hpp"
-#include "sand/model/tool_shape.hpp"
+#include "sand/model/tool.hpp"
 #include "sand/tin/mesh/mesh.hpp"
 #include "sand/tin/tool/outline.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
@@ -26,8 +26,7 @@ struct Imprint {
     /// Position of the outline, and the tool that it belongs to.
     struct Stand {
         ProbePoint at;
-        ToolShape shape;
-        Heading heading;
+        Tool tool;
         friend bool operator==(const Stand&, const Stand&) = default;
     };
     std::optional<Stand> stand;                    // nullopt if no tool is in the sand

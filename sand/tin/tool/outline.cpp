@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+#include <span>
 
 namespace sand::tin {
 namespace {
@@ -152,10 +153,10 @@ private:
     Outline outline_;
 };
 
-void drawSole(Drawing& drawing, double length, double width) {
+void drawSole(Drawing& drawing, std::span<const SolePiece> sole, double length, double width) {
     constexpr double kSmall = 0.2;  // [half length of the tool]; toes: 8 points do as well as 16 for a heel
     std::vector<Polygon> pieces;
-    for (const SolePiece& piece : solePieces()) {
+    for (const SolePiece& piece : sole) {
         pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
                                  piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 8 : 16));
     }
@@ -164,7 +165,7 @@ void drawSole(Drawing& drawing, double length, double width) {
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         if (!pieces[i].empty()) {  // the deepest place of the piece's bowl
-            drawing.point({solePieces()[i].along * length, solePieces()[i].across * width});
+            drawing.point({sole[i].along * length, sole[i].across * width});
         }
     }
 }
@@ -195,17 +196,17 @@ void drawBowl(Drawing& drawing, double length, double width) {
     drawing.point({0, 0});
 }
 
-Outline drawn(const ToolShape& shape) {
-    const double length = shape.radius, width = isRound(shape.kind) ? shape.radius : shape.halfWidth;
+Outline drawn(const Tool& tool) {
+    const double length = tool.radius, width = isRound(tool.kind) ? tool.radius : tool.halfWidth;
     Drawing drawing;
-    if (shape.kind == ToolKind::footprint) {
-        drawSole(drawing, length, width);
+    if (const auto sole = solePieces(tool.kind); !sole.empty()) {
+        drawSole(drawing, sole, length, width);
         return drawing.take();
     }
-    const Polygon ring = shape.kind == ToolKind::rectangle ? rectangle(length - kMargin, width - kMargin)
-                                                           : ellipse({0, 0}, length - kMargin, width - kMargin, 32);
+    const Polygon ring = tool.kind == ToolKind::rectangle ? rectangle(length - kMargin, width - kMargin)
+                                                          : ellipse({0, 0}, length - kMargin, width - kMargin, 32);
     drawing.ring({ring}, 0);
-    if ((shape.kind == ToolKind::sphere || shape.kind == ToolKind::ellipsoid) && !ring.empty()) {
+    if ((tool.kind == ToolKind::sphere || tool.kind == ToolKind::ellipsoid) && !ring.empty()) {
         drawBowl(drawing, length, width);
     }
     return drawing.take();
@@ -246,14 +247,14 @@ std::optional<std::pair<Place, Place>> clipped(Place a, Place b, std::int32_t wi
 
 }  // namespace
 
-Outline Outline::of(const ToolShape& shape, const Heading& heading) {
-    Outline outline = drawn(shape);
-    if (isRound(shape.kind)) {
+Outline Outline::of(const Tool& tool) {
+    Outline outline = drawn(tool);
+    if (isRound(tool.kind)) {
         return outline;
     }
-    const double x = heading.x, y = heading.y, scale = 1 / std::sqrt(x * x + y * y);
+    const double x = tool.heading.x, y = tool.heading.y, scale = 1 / std::sqrt(x * x + y * y);
     for (Place& point : outline.points) {
-        const double along = point.x, across = heading.mirrored ? -point.y : point.y;
+        const double along = point.x, across = tool.heading.mirrored ? -point.y : point.y;
         point = {rounded((along * x - across * y) * scale), rounded((along * y + across * x) * scale)};
     }
     return outline;

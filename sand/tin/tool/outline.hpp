@@ -24,7 +24,7 @@ struct Outline {
 
     /// Returns the outline of a tool. It depends only on the arguments, and uses only whole numbers and IEEE
     /// operations. If the tool turns by a right angle, the points turn with it.
-    static Outline of(const ToolShape& shape, const Heading& heading);
+    static Outline of(const Tool& tool);
 };
 
 /// The part of an outline that lies on ground, at a position of the tool. An edge across the rim or the border of a

@@ -88,7 +88,7 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
         return;
     }
     const Box field{0, 0, layer.triangles().width, layer.triangles().depth};
-    const std::int64_t step = std::max({rules_.spacing, shape_.radius / kSquaresBeyond, 1});
+    const std::int64_t step = std::max({rules_.spacing, tool_.radius / kSquaresBeyond, 1});
     const double share = 6 * static_cast<double>(step * step);  // star of a vertex of the lattice
     const auto first = [&](std::int32_t least) {                // centres of squares, as in refine()
         return static_cast<std::int64_t>(floorDivided(least, step)) * step + step / 2;

@@ -206,7 +206,7 @@ scene::Scene wideScene() {
     scene.terrain = sand::HeightField(200, 100, 0.01);
     scene.rules.columns = 200;
     scene.rules.rows = 100;
-    scene.rules.toolRadius = 4 * sand::kProbePerCell;
+    scene.rules.tuning.tool.radius = 4 * sand::kProbePerCell;
     for (int row = 0; row < 100; ++row) {
         for (int column = 0; column < 200; ++column) {
             scene.terrain.setHeight(column, row, column < 100 ? 0 : 10 * sand::kUnitsPerCell);

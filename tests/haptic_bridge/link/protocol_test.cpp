@@ -197,7 +197,7 @@ TEST(Protocol, RefusesAShareOfTheForceThatNoOperatorCanSet) {
 }
 
 TEST(Protocol, AnEditTakesItsDetailsAlong) {
-    for (sand::Edit edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4})}) {
+    for (sand::Edit edit : {sand::Edit::tuned({7, 11, 13, {.radius = 17}}), sand::Edit::loaded({3, 1, 4})}) {
         EXPECT_THROW((void)decode(withoutLength(encode(EditRequest{edit}))), base::FormatError) << "it has no number";
         edit.number = 1;
         const base::Bytes framed = encode(EditRequest{edit});

@@ -11,21 +11,21 @@
 namespace {
 
 using sand::Heading;
+using sand::Tool;
 using sand::ToolKind;
-using sand::ToolShape;
 using sand::force::Contour;
 using sand::force::contourOf;
 using sand::force::Vec3;
 
 constexpr double kCell = 0.01;
 
-ToolShape shapeOf(ToolKind kind) {
+Tool toolOf(ToolKind kind, const Heading& heading = {}) {
     const auto half = static_cast<std::int32_t>(20 * sand::kProbePerCell * sand::usualWidth(kind));
-    return {kind, 20 * sand::kProbePerCell, sand::isRound(kind) ? 0 : half};
+    return {kind, 20 * sand::kProbePerCell, sand::isRound(kind) ? 0 : half, heading};
 }
 
 TEST(Contour, OfASphereIsTheFirstPapers) {
-    const Contour contour = contourOf(shapeOf(ToolKind::sphere), {}, kCell), paper = Contour::sphere(20 * kCell);
+    const Contour contour = contourOf(toolOf(ToolKind::sphere), kCell), paper = Contour::sphere(20 * kCell);
     for (std::size_t i = 0; i < Contour::kPoints; ++i) {
         EXPECT_EQ(contour.points[i].x, paper.points[i].x);
         EXPECT_EQ(contour.points[i].y, paper.points[i].y);
@@ -36,11 +36,11 @@ TEST(Contour, OfASphereIsTheFirstPapers) {
 TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         for (const Heading& heading : {*sand::headingOf(0), *sand::headingOf(35), *sand::headingOf(35, true)}) {
-            const ToolShape shape = shapeOf(static_cast<ToolKind>(kind));
-            const sand::TurnedShape turned(shape, heading);
-            const Contour contour = contourOf(shape, heading, kCell);
+            const Tool tool = toolOf(static_cast<ToolKind>(kind), heading);
+            const sand::TurnedShape turned(tool);
+            const Contour contour = contourOf(tool, kCell);
             // Across the gaps between toes and at the waist of a foot the contour is straight.
-            const double close = (shape.kind == ToolKind::footprint ? 0.12 : 0.03) * shape.radius;
+            const double close = (tool.kind == ToolKind::footprint ? 0.12 : 0.03) * tool.radius;
             for (const Vec3& point : contour.points) {
                 int below = 0;
                 for (int i = 0; i < 16; ++i) {
@@ -62,7 +62,7 @@ TEST(Contour, LiesOnTheOutlineThatTheSandFeels) {
 // and are 3/16 R apart. The third is at (-R, -3/8 R) and is the farthest. A corner is 1.118 R away.
 TEST(Contour, ARectanglesReachIsItsFarthestControlPoint) {
     const double radius = 20 * kCell;
-    const Contour contour = contourOf(shapeOf(ToolKind::rectangle), {}, kCell);
+    const Contour contour = contourOf(toolOf(ToolKind::rectangle), kCell);
     double farthest = 0;
     for (const Vec3& point : contour.points) {
         farthest = std::max(farthest, std::hypot(point.x, point.y));
@@ -76,7 +76,7 @@ TEST(Contour, RunsCounterClockwiseInEqualPieces) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         for (const bool mirrored : {false, true}) {
             const Contour contour =
-                contourOf(shapeOf(static_cast<ToolKind>(kind)), *sand::headingOf(-70, mirrored), kCell);
+                contourOf(toolOf(static_cast<ToolKind>(kind), *sand::headingOf(-70, mirrored)), kCell);
             double area = 0, shortest = 1e9, longest = 0;
             for (std::size_t i = 0; i < Contour::kPoints; ++i) {
                 const Vec3& a = contour.points[i];

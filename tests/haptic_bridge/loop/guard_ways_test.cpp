@@ -71,7 +71,7 @@ protected:
     }
     /// Returns the tuning of the sand with another talus [deg].
     [[nodiscard]] sand::Edit talus(double degrees) const {
-        sand::Tuning tuning = server_->sand().rules().tuning();
+        sand::Tuning tuning = server_->sand().rules().tuning;
         tuning.threshold = tuning.startThreshold =
             static_cast<std::int32_t>(std::lround(std::tan(degrees * std::numbers::pi / 180) * sand::kUnitsPerCell));
         return sand::Edit::tuned(tuning);
@@ -253,8 +253,8 @@ TEST_F(WayAround, SandThatAnEditPutsOnAHandIsFeltInARamp) {
         std::function<sand::Edit(const VirtualServer&)> edit;
     };
     const Way wider{"a wider tool", [](const VirtualServer& server) {
-                        sand::Tuning tuning = server.sand().rules().tuning();
-                        tuning.toolRadius *= 4;
+                        sand::Tuning tuning = server.sand().rules().tuning;
+                        tuning.tool.radius *= 4;
                         return sand::Edit::tuned(tuning);
                     }};
     const Way reset{"reset", [](const VirtualServer&) { return sand::Edit(sand::Edit::reset); }};

@@ -174,7 +174,7 @@ private:
     }
     [[nodiscard]] ForceShare randomShare() { return {dice_.oneOf({0.0, 0.4, 1.0, 1.0, 1.0}), dice_.chance(0.5)}; }
     [[nodiscard]] sand::Edit randomEdit() {
-        sand::Tuning tuning = server_.sand().rules().tuning();
+        sand::Tuning tuning = server_.sand().rules().tuning;
         switch (dice_.below(6)) {
             case 0:
                 return sand::Edit::reset;
@@ -186,7 +186,7 @@ private:
                 tuning.threshold = tuning.startThreshold = test::talusOf(dice_.between(1, 60));
                 return sand::Edit::tuned(tuning);
             case 4:
-                test::randomTool(dice_, tuning);
+                test::randomTool(dice_, tuning.tool);
                 return sand::Edit::tuned(tuning);
             default:
                 return sand::Edit::loaded(otherSand().copySand()->encode());

@@ -17,13 +17,12 @@ inline std::int32_t talusOf(double degrees) {
     return static_cast<std::int32_t>(std::lround(std::tan(degrees * std::numbers::pi / 180) * sand::kUnitsPerCell));
 }
 
-/// Gives `rules` or a tuning a random tool.
-template <class Tool>
-void randomTool(Dice& dice, Tool& tool) {
-    tool.toolKind = static_cast<sand::ToolKind>(dice.below(sand::kToolKinds));
-    tool.toolRadius = static_cast<std::int32_t>(dice.scaled(0.7, 10) * sand::kProbePerCell);
-    const double width = sand::isRound(tool.toolKind) ? 0 : dice.between(0.2, 1);
-    tool.toolHalfWidth = static_cast<std::int32_t>(width * tool.toolRadius);
+/// Gives `tool` a random kind and size.
+inline void randomTool(Dice& dice, sand::Tool& tool) {
+    tool.kind = static_cast<sand::ToolKind>(dice.below(sand::kToolKinds));
+    tool.radius = static_cast<std::int32_t>(dice.scaled(0.7, 10) * sand::kProbePerCell);
+    const double width = sand::isRound(tool.kind) ? 0 : dice.between(0.2, 1);
+    tool.halfWidth = static_cast<std::int32_t>(width * tool.radius);
 }
 
 /// Returns small sand with a random surface, tool, material and law: in cells, or rarely as a TIN.
@@ -43,13 +42,13 @@ inline scene::Scene randomScene(Dice& dice) {
                 scene.terrain.setHeight(x, y, static_cast<std::int32_t>(height * sand::kUnitsPerCell));
             }
         }
-        randomTool(dice, scene.rules);
+        randomTool(dice, scene.rules.tuning.tool);
         scene.rules.scheme = dice.oneOf({sand::Scheme::isotropic, sand::Scheme::plainIsotropic});
         scene.rules.rim = dice.oneOf({sand::Rim::closed, sand::Rim::open});
     }
-    scene.rules.threshold = talusOf(dice.between(1, 55));
-    scene.rules.startThreshold = scene.rules.threshold + (dice.chance(0.5) ? 0 : 3000);
-    scene.rules.sweepsPerStep = 1 + dice.below(8);
+    scene.rules.tuning.threshold = talusOf(dice.between(1, 55));
+    scene.rules.tuning.startThreshold = scene.rules.tuning.threshold + (dice.chance(0.5) ? 0 : 3000);
+    scene.rules.tuning.sweepsPerStep = 1 + dice.below(8);
     scene.rules.stepsPerSecond = dice.oneOf({1, 5, 19, 30, 60, 60, 60, 120, 240});
     sand::ForceConstants& force = scene.force;
     force.law = dice.oneOf({sand::ForceLaw::repulse, sand::ForceLaw::controlPoints});

@@ -174,8 +174,8 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     Client client({"127.0.0.1", port}, offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 40));
-    sand::Tuning tuning = scene_.rules.tuning();
-    tuning.toolRadius *= 2;
+    sand::Tuning tuning = scene_.rules.tuning;
+    tuning.tool.radius *= 2;
     tuning.threshold /= 2;
     // The first load is too long for an ordinary message, because rough sand and its fluxes can hardly be compressed.
     std::mt19937 random(7);
@@ -200,7 +200,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     server = nullptr;
     server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_, port));
     ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server->errors();
-    EXPECT_EQ(wall.terrain.rules().tuning(), tuning);
+    EXPECT_EQ(wall.terrain.rules().tuning, tuning);
     EXPECT_EQ(wall.divergences, 0) << "the server computes with the operator's settings";
 }
 

@@ -39,7 +39,7 @@ protected:
         rules.stepsPerSecond = 60;
         base::ByteWriter writer;
         writer.putText("huge");
-        rules.encode(writer);
+        base::putMember(writer, rules);
         return writer.take();
     }
 

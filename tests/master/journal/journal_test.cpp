@@ -66,8 +66,8 @@ TEST_F(JournalFile, GivesBackWhatWasWritten) {
 TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
     const scene::Scene scene = samples::flatScene(20, 10);
     master::JournalFrame frame{1, 5, {}};
-    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded(base::Bytes(200'000, 9)),
-                                   sand::Edit(sand::Edit::undo)}) {
+    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, {.radius = 17}}),
+                                   sand::Edit::loaded(base::Bytes(200'000, 9)), sand::Edit(sand::Edit::undo)}) {
         frame.steps.push_back({1, frame.steps.size() + 1, false, {}, edit});
     }
     {

@@ -155,9 +155,9 @@ TEST_F(Replay, WritesEveryStepAsARow) {
     scene::Scene scene = samples::flatScene(40, 30);
     {
         master::JournalWriter writer(journal(), scene, "test");
-        sand::Tuning tuning = scene.rules.tuning();
-        tuning.toolKind = sand::ToolKind::circle;
-        tuning.toolRadius = 3 * sand::kProbePerCell;
+        sand::Tuning tuning = scene.rules.tuning;
+        tuning.tool.kind = sand::ToolKind::circle;
+        tuning.tool.radius = 3 * sand::kProbePerCell;
         const sand::Step first{.epoch = 7, .number = 1, .engaged = true, .path = {{256, 512, -64}, {384, 0, 0}}};
         const sand::Step second{
             .epoch = 7, .number = 2, .engaged = false, .path = {}, .edit = sand::Edit::tuned(tuning)};
@@ -339,7 +339,7 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     rules.stepsPerSecond = 60;
     base::ByteWriter scene;
     scene.putText("huge");
-    rules.encode(scene);
+    base::putMember(scene, rules);
     master::JournalHeader header;
     header.session = 1;
     header.scene = scene.take();

@@ -79,8 +79,8 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
     add(1, 20, 32, false);
     step();
     for (const int cells : {8, 2}) {
-        sand::Tuning tuning = terrain_.rules().tuning();
-        tuning.toolRadius = cells * kPerCell;
+        sand::Tuning tuning = terrain_.rules().tuning;
+        tuning.tool.radius = cells * kPerCell;
         terrain_.apply({0, terrain_.stepNumber() + 1, false, {}, sand::Edit::tuned(tuning)});
         const sand::Step hovers = step();
         EXPECT_FALSE(hovers.engaged);

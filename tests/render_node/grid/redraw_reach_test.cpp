@@ -133,7 +133,7 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
     Pixels before;
     for (const double radius : {0.05, 0.12, 0.02, 0.08}) {
         const auto probes = static_cast<std::int32_t>(radius / scene.terrain.cellSize() * sand::kProbePerCell);
-        view.setTool(place, true, {.radius = probes}, {});
+        view.setTool(place, true, {.radius = probes});
         view.drawIfChanged(above, inParts, memory);
         const Pixels now = inParts.read();
         ASSERT_TRUE(now == sample::draw(view, above, whole)) << "radius " << radius;
@@ -147,7 +147,7 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
 // low over the rim, so that the boards take their shadow.
 TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
     scene::Scene scene = sample::duneScene(128);
-    scene.rules.toolRadius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
     sand::Replica terrain(scene);
     ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera slanted = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
@@ -163,18 +163,18 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
         }
         step.heading = sand::headingOf(7.0 * i, i % 3 == 0);
         if (i % 10 == 8) {
-            sand::Tuning tuning = scene.rules.tuning();
-            tuning.toolKind = static_cast<sand::ToolKind>((i / 10) % sand::kToolKinds);
-            tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : tuning.toolRadius / 3;
+            sand::Tuning tuning = scene.rules.tuning;
+            tuning.tool.kind = static_cast<sand::ToolKind>((i / 10) % sand::kToolKinds);
+            tuning.tool.halfWidth = sand::isRound(tuning.tool.kind) ? 0 : tuning.tool.radius / 3;
             step.edit = sand::Edit::tuned(tuning);
         }
         terrain.apply(step);
         view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged(), terrain.toolShape(), terrain.heading());
+        view.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
         const PixelRect drawn = view.drawIfChanged(slanted, inParts, memory);
         inPart += !drawn.empty() && drawn.area() < 200 * 150 ? 1 : 0;
         ASSERT_TRUE(inParts.read() == sample::draw(view, slanted, whole))
-            << base::nameOf(terrain.toolShape().kind) << " in step " << i;
+            << base::nameOf(terrain.tool().kind) << " in step " << i;
     }
     EXPECT_GT(inPart, 60);
 }

@@ -47,7 +47,7 @@ sand::Step stepOf(const scene::Scene& scene, int i) {
 scene::Scene sessionScene(sand::Rim rim) {
     scene::Scene scene = sample::duneScene(128);
     scene.rules.rim = rim;
-    scene.rules.toolRadius = static_cast<std::int32_t>(0.05 / scene.terrain.cellSize() * sand::kProbePerCell);
+    scene.rules.tuning.tool.radius = static_cast<std::int32_t>(0.05 / scene.terrain.cellSize() * sand::kProbePerCell);
     return scene;
 }
 

@@ -39,7 +39,7 @@ void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridg
             const haptic_bridge::Pose pose = device.read(tick++ / 240.0);
             engaged = pose.engaged;
             path.push_back({lattice(half * (1 + pose.x)), lattice(half * (1 + pose.y)),
-                            lattice(level + pose.z * scene.rules.toolRadius)});
+                            lattice(level + pose.z * scene.rules.tuning.tool.radius)});
         }
         step(terrain, engaged, path);
     }
@@ -64,7 +64,7 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
     const sand::ProbePoint probe = terrain.probe();
     const std::vector<double>& sun = scene.look.sunDirection;
     const sample::Ball ball{glm::dvec3(probe.x, probe.y, probe.z) * unit,
-                            scene.rules.toolRadius * unit,
+                            scene.rules.tuning.tool.radius * unit,
                             {sun[0], sun[1], sun[2]},
                             [ground](const glm::dvec2&) { return ground; }};
     golden::expect(golden::folder("golden_tin"), "gis", sample::wallPicture(view, wall),
@@ -76,10 +76,10 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
 void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
     const double probe = terrain.cellSize() / kProbePerCell;  // [scene unit]
     constexpr double kDepth = 0.06;                           // [scene unit], below the sand's mean height
-    sand::Tuning stamp = terrain.rules().tuning();
-    stamp.toolHalfWidth = static_cast<std::int32_t>(radius / probe * stamp.toolHalfWidth / stamp.toolRadius);
-    stamp.toolRadius = static_cast<std::int32_t>(radius / probe);
-    stamp.toolHeading = sand::headingOf(heading).value();
+    sand::Tuning stamp = terrain.rules().tuning;
+    stamp.tool.halfWidth = static_cast<std::int32_t>(radius / probe * stamp.tool.halfWidth / stamp.tool.radius);
+    stamp.tool.radius = static_cast<std::int32_t>(radius / probe);
+    stamp.tool.heading = sand::headingOf(heading).value();
     const auto at = [&](double height) {
         return sand::ProbePoint{static_cast<std::int32_t>(place.x / probe), static_cast<std::int32_t>(place.y / probe),
                                 static_cast<std::int32_t>((height + radius) / probe)};

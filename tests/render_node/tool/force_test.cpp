@@ -24,7 +24,7 @@ constexpr double kNewtonsOfFloats = 4e-6;
 /// exact.
 scene::Scene rockScene() {
     scene::Scene scene = sample::flatScene(250, 250, kRadius);
-    scene.rules.toolRadius = 5 * sand::kProbePerCell;
+    scene.rules.tuning.tool.radius = 5 * sand::kProbePerCell;
     auto rock = std::make_shared<sand::Ground>(250, 250);
     for (int row = 0; row < 250; ++row) {
         for (int column = 0; column < 250; ++column) {

@@ -51,7 +51,7 @@ double upward(const std::string& shape, const std::string& tin, sand::ForceLaw l
     constants.unitLength = 0.96;
     const SurfacePatch patch(terrain);
     EXPECT_EQ(patch.facets().empty(), tin.empty());
-    const auto tool = sand::force::contourOf(terrain.toolShape(), terrain.heading(), terrain.cellSize());
+    const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     const sand::ProbePoint at = terrain.probe();
     const double probe = kNominal / 256;
     return respond(constants, patch, tool, {probe * at.x, probe * at.y, probe * at.z}).push.z;

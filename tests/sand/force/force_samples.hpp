@@ -71,11 +71,11 @@ inline scene::Scene levelScene(std::int32_t sweepsPerStep = 40) {
     scene.terrain = sand::HeightField(kSide, kSide, kCell);
     scene.rules = {.columns = kSide,
                    .rows = kSide,
-                   .threshold = 44204,
-                   .startThreshold = 44248,
-                   .sweepsPerStep = sweepsPerStep,
-                   .stepsPerSecond = 60,
-                   .toolRadius = 10 * sand::kProbePerCell};
+                   .tuning = {.threshold = 44204,
+                              .startThreshold = 44248,
+                              .sweepsPerStep = sweepsPerStep,
+                              .tool = {.radius = 10 * sand::kProbePerCell}},
+                   .stepsPerSecond = 60};
     return scene;
 }
 

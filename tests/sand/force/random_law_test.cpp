@@ -43,11 +43,10 @@ protected:
     }
     Contour anyTool(double radius) {
         const auto units = static_cast<std::int32_t>(1000);
-        const sand::ToolShape shape{
+        const sand::Tool tool{
             static_cast<sand::ToolKind>(std::uniform_int_distribution<int>(0, sand::kToolKinds - 1)(random_)), units,
-            static_cast<std::int32_t>(uniform(0.05, 1) * units)};
-        return contourOf(shape, sand::headingOf(uniform(-180, 180), false).value_or(sand::Heading{}),
-                         radius / units * sand::kProbePerCell);
+            static_cast<std::int32_t>(uniform(0.05, 1) * units), *sand::headingOf(uniform(-180, 180))};
+        return contourOf(tool, radius / units * sand::kProbePerCell);
     }
     /// Returns rough sand around a tool: from level sand to the steepest that heights can make.
     SurfacePatch anySand(double reach) {

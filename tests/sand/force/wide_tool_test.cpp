@@ -90,10 +90,10 @@ sand::Replica finelyMeshed(const Bowl& bowl) {
             .start);
     start.rules.columns = bowl.field.columns();
     start.rules.rows = bowl.field.rows();
-    start.rules.threshold = start.rules.startThreshold = sand::kUnitsPerCell;
-    start.rules.sweepsPerStep = 1;
+    start.rules.tuning.threshold = start.rules.tuning.startThreshold = sand::kUnitsPerCell;
+    start.rules.tuning.sweepsPerStep = 1;
     start.rules.stepsPerSecond = 60;
-    start.rules.toolRadius = bowl.radius * sand::kProbePerCell;
+    start.rules.tuning.tool.radius = bowl.radius * sand::kProbePerCell;
     return sand::Replica(start);
 }
 

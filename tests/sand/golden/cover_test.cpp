@@ -42,7 +42,7 @@ Way wayOf(std::size_t i) {
 /// Dunes on a field of odd size with an open rim.
 scene::Scene coveredScene() {
     scene::Scene scene = samples::flatScene(97, 61, 2.56);
-    scene.rules.sweepsPerStep = 4;
+    scene.rules.tuning.sweepsPerStep = 4;
     scene.rules.rim = sand::Rim::open;
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     return scene;

@@ -65,7 +65,7 @@ std::uint64_t hashOf(const Variant& variant) {
     scene::Scene scene = samples::flatScene(97, 61, 2.56);
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.aspect = variant.aspect;
-    scene.rules.startThreshold = variant.startThreshold;
+    scene.rules.tuning.startThreshold = variant.startThreshold;
     scene.rules.rim = variant.rim;
     if (variant.rock || variant.walls) {
         scene.ground = groundOf(variant, scene.terrain);
@@ -100,8 +100,8 @@ TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
     scene::Scene scene = samples::flatScene(45, 33, 6);
     sand::grid::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
     scene.rules.rim = sand::Rim::open;
-    scene.rules.toolKind = sand::ToolKind::footprint;
-    scene.rules.toolHalfWidth = scene.rules.toolRadius * 2 / 5;
+    scene.rules.tuning.tool.kind = sand::ToolKind::footprint;
+    scene.rules.tuning.tool.halfWidth = scene.rules.tuning.tool.radius * 2 / 5;
     sand::Replica terrain(scene);
     std::mt19937 random(73);
     for (std::uint64_t i = 1; i <= 400; ++i) {

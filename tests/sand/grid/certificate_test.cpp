@@ -21,7 +21,7 @@ sand::Rules certifiedRules(const HeightField& field) {
     sand::Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = rules.startThreshold = sand::kUnitsPerCell;
+    rules.tuning.threshold = rules.tuning.startThreshold = sand::kUnitsPerCell;
     return rules;
 }
 
@@ -154,8 +154,8 @@ TEST(Certificate, IsTakenAtAFieldThatIsNowhereTooSteep) {
             rules.rim = rim;
             rules.aspect = 2 * sand::kUnitsPerCell;
             sand::grid::QuadEnergy quads(rough, rules);
-            quads.flatten(rules.threshold);
-            EXPECT_LE(quads.steepest(), rules.threshold * (1 + 1e-12)) << columns << " x " << rows;
+            quads.flatten(rules.tuning.threshold);
+            EXPECT_LE(quads.steepest(), rules.tuning.threshold * (1 + 1e-12)) << columns << " x " << rows;
         }
     }
 }

@@ -20,7 +20,7 @@ Rules rulesFor(const HeightField& field, sand::Rim rim = sand::Rim::closed) {
     Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = rules.startThreshold = sand::kUnitsPerCell;
+    rules.tuning.threshold = rules.tuning.startThreshold = sand::kUnitsPerCell;
     rules.rim = rim;
     return rules;
 }

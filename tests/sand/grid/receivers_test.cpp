@@ -18,21 +18,19 @@ using sand::kProbePerCell;
 using sand::Offset;
 using sand::ProbePoint;
 using sand::ToolKind;
-using sand::ToolShape;
 using enum sand::ToolKind;
 
 constexpr int kSide = 110;  // [cell]
 
 std::int32_t probes(double cells) { return static_cast<std::int32_t>(std::floor(cells * kProbePerCell + 0.5)); }
 
-ToolShape shapeOf(ToolKind kind, double radius /* [cell] */) {
-    return {kind, probes(radius), sand::isRound(kind) ? 0 : probes(radius * sand::usualWidth(kind))};
+sand::Tool toolOf(ToolKind kind, double radius /* [cell] */, const Heading& heading = {}) {
+    return {kind, probes(radius), sand::isRound(kind) ? 0 : probes(radius * sand::usualWidth(kind)), heading};
 }
 
 /// Tool on level sand of height 0.
-struct Tool {
-    ToolShape shape;
-    Heading heading;
+struct PlacedTool {
+    sand::Tool tool;
     ProbePoint at{probes(54.3), probes(55.6), 0};
 
     [[nodiscard]] Offset offsetOf(int column, int row) const {
@@ -42,48 +40,49 @@ struct Tool {
     /// Returns a place in the tool's own axes, along the heading and to the left of it [probe unit / Heading::kLength].
     [[nodiscard]] std::pair<std::int64_t, std::int64_t> placeOf(int column, int row) const {
         const auto [x, y] = offsetOf(column, row);
-        const std::int64_t across = y * heading.x - x * heading.y;
-        return {x * heading.x + y * heading.y, heading.mirrored ? -across : across};
+        const std::int64_t across = y * tool.heading.x - x * tool.heading.y;
+        return {x * tool.heading.x + y * tool.heading.y, tool.heading.mirrored ? -across : across};
     }
     /// Returns how many pieces of the sole lie within `margin` [probe unit] of the cell's middle. Each piece is an
     /// ellipse. A tool without pieces is one.
     [[nodiscard]] int piecesWithin(long double margin, int column, int row) const {
-        const long double length = std::hypot(static_cast<long double>(heading.x), static_cast<long double>(heading.y));
+        const long double length =
+            std::hypot(static_cast<long double>(tool.heading.x), static_cast<long double>(tool.heading.y));
         const auto whole = placeOf(column, row);
         const long double along = static_cast<long double>(whole.first) / length;
         const long double across = static_cast<long double>(whole.second) / length;
         const sand::SolePiece all{0, 0, 1, 1, 0, 0};
-        const auto pieces = shape.kind == footprint ? sand::solePieces() : std::span(&all, 1);
+        const auto pieces = tool.kind == footprint ? sand::solePieces(footprint) : std::span(&all, 1);
         return static_cast<int>(std::count_if(pieces.begin(), pieces.end(), [&](const sand::SolePiece& piece) {
-            const long double x = (along - static_cast<long double>(piece.along) * shape.radius) /
-                                  (static_cast<long double>(piece.halfLength) * shape.radius + margin);
-            const long double y = (across - static_cast<long double>(piece.across) * shape.halfWidth) /
-                                  (static_cast<long double>(piece.halfWidth) * shape.halfWidth + margin);
+            const long double x = (along - static_cast<long double>(piece.along) * tool.radius) /
+                                  (static_cast<long double>(piece.halfLength) * tool.radius + margin);
+            const long double y = (across - static_cast<long double>(piece.across) * tool.halfWidth) /
+                                  (static_cast<long double>(piece.halfWidth) * tool.halfWidth + margin);
             return x * x + y * y <= 1;
         }));
     }
     /// Returns the width of the ring around the tool that takes sand [probe unit]. It is two cells. For all tools
     /// except a sphere it is larger by an eighth of the tool's width.
     [[nodiscard]] std::int64_t ring() const {
-        const std::int64_t half = sand::isRound(shape.kind) ? shape.radius : shape.halfWidth;
-        return 2 * kProbePerCell + (shape.kind == sphere ? 0 : half / 4);
+        const std::int64_t half = sand::isRound(tool.kind) ? tool.radius : tool.halfWidth;
+        return 2 * kProbePerCell + (tool.kind == sphere ? 0 : half / 4);
     }
     [[nodiscard]] bool takes(int column, int row) const {
         const Offset offset = offsetOf(column, row);
-        if (sand::isRound(shape.kind)) {
-            const std::int64_t inner = shape.radius, outer = inner + ring();
+        if (sand::isRound(tool.kind)) {
+            const std::int64_t inner = tool.radius, outer = inner + ring();
             const std::int64_t square = offset.x * offset.x + offset.y * offset.y;
             return square >= inner * inner && square <= outer * outer;
         }
         const auto width = static_cast<long double>(ring());
-        if (shape.kind == rectangle) {
+        if (tool.kind == rectangle) {
             const long double length =
-                std::hypot(static_cast<long double>(heading.x), static_cast<long double>(heading.y));
+                std::hypot(static_cast<long double>(tool.heading.x), static_cast<long double>(tool.heading.y));
             const auto whole = placeOf(column, row);
             const long double along = std::abs(static_cast<long double>(whole.first) / length);
             const long double across = std::abs(static_cast<long double>(whole.second) / length);
-            return (along >= shape.radius || across >= shape.halfWidth) && along <= shape.radius + width &&
-                   across <= shape.halfWidth + width;
+            return (along >= tool.radius || across >= tool.halfWidth) && along <= tool.radius + width &&
+                   across <= tool.halfWidth + width;
         }
         return piecesWithin(0, column, row) == 0 && piecesWithin(width, column, row) > 0 && !isBetweenToes(column, row);
     }
@@ -94,7 +93,7 @@ struct Tool {
     [[nodiscard]] HeightField dragged(const ProbePoint& way) const {
         HeightField field(kSide, kSide, 1.0);
         const ProbePoint from{at.x - way.x, at.y - way.y, at.z};
-        sand::grid::Displacement(shape, heading).drag(field, sand::Rim::closed, nullptr, from, at);
+        sand::grid::Displacement(tool).drag(field, sand::Rim::closed, nullptr, from, at);
         return field;
     }
     [[nodiscard]] HeightField pressed() const { return dragged({0, 0, 0}); }
@@ -127,28 +126,28 @@ std::int64_t takenFrom(const HeightField& field) {
     return taken;
 }
 
-std::vector<Tool> tools(std::initializer_list<ToolKind> kinds) {
-    std::vector<Tool> all;
+std::vector<PlacedTool> tools(std::initializer_list<ToolKind> kinds) {
+    std::vector<PlacedTool> all;
     for (const ToolKind kind : kinds) {
         for (const Heading& heading :
              {*sand::headingOf(0), *sand::headingOf(30), *sand::headingOf(217.3, true), *sand::headingOf(-101)}) {
-            all.push_back({.shape = shapeOf(kind, 24.1), .heading = heading});
+            all.push_back({.tool = toolOf(kind, 24.1, heading)});
         }
     }
     return all;
 }
 
-std::string nameOf(const Tool& tool) {
-    return std::string(base::nameOf(tool.shape.kind)) + " towards " + std::to_string(sand::degreesOf(tool.heading)) +
-           (tool.heading.mirrored ? ", mirrored" : "");
+std::string nameOf(const PlacedTool& placed) {
+    return std::string(base::nameOf(placed.tool.kind)) + " towards " +
+           std::to_string(sand::degreesOf(placed.tool.heading)) + (placed.tool.heading.mirrored ? ", mirrored" : "");
 }
 
-void expectTakers(const Tool& tool) {
-    const HeightField field = tool.pressed();
+void expectTakers(const PlacedTool& placed) {
+    const HeightField field = placed.pressed();
     for (int row = 0; row < kSide; ++row) {
         for (int column = 0; column < kSide; ++column) {
-            ASSERT_EQ(field.height(column, row) > 0, tool.takes(column, row))
-                << nameOf(tool) << " at " << column << ", " << row;
+            ASSERT_EQ(field.height(column, row) > 0, placed.takes(column, row))
+                << nameOf(placed) << " at " << column << ", " << row;
         }
     }
 }
@@ -156,63 +155,63 @@ void expectTakers(const Tool& tool) {
 TEST(Receivers, OfARoundToolAreTheCellsOfItsRing) {
     for (const ToolKind kind : {sphere, circle}) {
         for (const double radius : {0.7, 3.0, 11.3, 24.1}) {
-            expectTakers({.shape = shapeOf(kind, radius), .heading = {}});
+            expectTakers({.tool = toolOf(kind, radius)});
         }
     }
 }
 
 TEST(Receivers, OfALongToolAreTheCellsAroundItsOutline) {
-    for (const Tool& tool : tools({rectangle, ellipse, ellipsoid, footprint})) {
-        expectTakers(tool);
+    for (const PlacedTool& placed : tools({rectangle, ellipse, ellipsoid, footprint})) {
+        expectTakers(placed);
     }
 }
 
 TEST(Receivers, BetweenTheToesNoCellTakesSand) {
-    for (const Tool& tool : tools({footprint})) {
-        const HeightField field = tool.pressed();
+    for (const PlacedTool& placed : tools({footprint})) {
+        const HeightField field = placed.pressed();
         const std::vector<Cell> between =
-            cellsWhere([&](int column, int row) { return tool.isBetweenToes(column, row); });
+            cellsWhere([&](int column, int row) { return placed.isBetweenToes(column, row); });
         ASSERT_GT(between.size(), 20U) << "the test proves nothing without such cells";
         for (const Cell& cell : between) {
             EXPECT_EQ(field.height(cell.column, cell.row), 0)
-                << nameOf(tool) << " at " << cell.column << ", " << cell.row;
+                << nameOf(placed) << " at " << cell.column << ", " << cell.row;
         }
     }
 }
 
 /// Expects that the tool's sand was shared evenly among `order`, and that the first cells have got the remainder.
 /// Lowers the tool until there is a remainder.
-void expectEvenShares(Tool tool, const std::vector<Cell>& order) {
+void expectEvenShares(PlacedTool placed, const std::vector<Cell>& order) {
     const auto count = static_cast<std::int64_t>(order.size());
-    HeightField field = tool.pressed();
+    HeightField field = placed.pressed();
     for (int tries = 0; takenFrom(field) % count < 2 && tries < 20; ++tries) {
-        --tool.at.z;
-        field = tool.pressed();
+        --placed.at.z;
+        field = placed.pressed();
     }
     const std::int64_t taken = takenFrom(field);
-    ASSERT_GT(taken % count, 1) << nameOf(tool) << ": without a remainder the test proves nothing";
+    ASSERT_GT(taken % count, 1) << nameOf(placed) << ": without a remainder the test proves nothing";
     for (std::int64_t i = 0; i < count; ++i) {
         const Cell& cell = order[static_cast<std::size_t>(i)];
         ASSERT_EQ(field.height(cell.column, cell.row), taken / count + (i < taken % count ? 1 : 0))
-            << nameOf(tool) << ", cell " << i << " of " << count;
+            << nameOf(placed) << ", cell " << i << " of " << count;
     }
 }
 
 TEST(Receivers, TheRemainderOfARoundToolsSandGoesToTheFirstByRows) {
     for (const ToolKind kind : {sphere, circle}) {
-        const Tool tool{.shape = shapeOf(kind, 24.1), .heading = {}};
-        expectEvenShares(tool, cellsWhere([&](int column, int row) { return tool.takes(column, row); }));
+        const PlacedTool placed{.tool = toolOf(kind, 24.1)};
+        expectEvenShares(placed, cellsWhere([&](int column, int row) { return placed.takes(column, row); }));
     }
 }
 
 // The order turns and is mirrored with the tool: from back to front, and from right to left.
 TEST(Receivers, TheRemainderOfALongToolsSandGoesToTheHindmost) {
-    for (const Tool& tool : tools({rectangle, ellipse, ellipsoid, footprint})) {
-        std::vector<Cell> order = cellsWhere([&](int column, int row) { return tool.takes(column, row); });
+    for (const PlacedTool& placed : tools({rectangle, ellipse, ellipsoid, footprint})) {
+        std::vector<Cell> order = cellsWhere([&](int column, int row) { return placed.takes(column, row); });
         std::sort(order.begin(), order.end(), [&](const Cell& a, const Cell& b) {
-            return tool.placeOf(a.column, a.row) < tool.placeOf(b.column, b.row);
+            return placed.placeOf(a.column, a.row) < placed.placeOf(b.column, b.row);
         });
-        expectEvenShares(tool, order);
+        expectEvenShares(placed, order);
     }
 }
 
@@ -220,16 +219,16 @@ TEST(Receivers, TheRemainderOfALongToolsSandGoesToTheHindmost) {
 // remainder goes to the first cells by rows. The slowest hand moves by one probe unit, a 256th of a cell.
 TEST(Receivers, ASlowDragPushesSandInItsOwnDirection) {
     for (const ToolKind kind : {sphere, circle}) {
-        const Tool tool{.shape = shapeOf(kind, 11.3), .heading = {}};
+        const PlacedTool placed{.tool = toolOf(kind, 11.3)};
         for (const ProbePoint& way :
              {ProbePoint{40, 9, 0}, {9, 40, 0}, {-3, 200, 0}, {-90, -91, 0}, {1, 0, 0}, {2, -1, 0}}) {
-            const HeightField field = tool.dragged(way);
+            const HeightField field = placed.dragged(way);
             const auto weightOf = [&](const Cell& cell) {
-                const Offset offset = tool.offsetOf(cell.column, cell.row);
+                const Offset offset = placed.offsetOf(cell.column, cell.row);
                 return offset.x * way.x + offset.y * way.y;
             };
             const std::vector<Cell> ahead = cellsWhere([&](int column, int row) {
-                return tool.takes(column, row) && weightOf({column, row}) > 0;
+                return placed.takes(column, row) && weightOf({column, row}) > 0;
             });
             const std::int64_t taken = takenFrom(field);
             const std::int64_t total =
@@ -241,7 +240,7 @@ TEST(Receivers, ASlowDragPushesSandInItsOwnDirection) {
             }
             for (const Cell& cell : ahead) {
                 ASSERT_EQ(field.height(cell.column, cell.row), taken * weightOf(cell) / total + (rest-- > 0 ? 1 : 0))
-                    << nameOf(tool) << " by " << way.x << ", " << way.y << " at " << cell.column << ", " << cell.row;
+                    << nameOf(placed) << " by " << way.x << ", " << way.y << " at " << cell.column << ", " << cell.row;
             }
         }
     }

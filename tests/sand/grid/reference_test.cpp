@@ -39,16 +39,17 @@ public:
         if (below(2) == 0) {
             return std::nullopt;
         }
-        const sand::ToolShape shape{sand::ToolKind::sphere, (2 + below(8)) * sand::kProbePerCell, 0};
+        const sand::Tool tool{sand::ToolKind::sphere, (2 + below(8)) * sand::kProbePerCell, 0};
         const sand::ProbePoint place{below(field.columns() + 1) * sand::kProbePerCell,
                                      below(field.rows() + 1) * sand::kProbePerCell, below(12) * sand::kProbePerCell};
-        return sand::grid::Displacement(shape).obstacle(field, place);
+        return sand::grid::Displacement(tool).obstacle(field, place);
     }
 
     [[nodiscard]] std::string text() const {
         return fmt::format("{} x {} cells of aspect {}, {}, threshold {} to {}, rim {}, ground {}", rules.columns,
-                           rules.rows, rules.aspect, samples::nameOf(samples::Law(rules.scheme)), rules.threshold,
-                           rules.startThreshold, rules.rim == sand::Rim::open ? "open" : "closed", ground != nullptr);
+                           rules.rows, rules.aspect, samples::nameOf(samples::Law(rules.scheme)),
+                           rules.tuning.threshold, rules.tuning.startThreshold,
+                           rules.rim == sand::Rim::open ? "open" : "closed", ground != nullptr);
     }
 
     std::mt19937 random;
@@ -60,10 +61,11 @@ private:
     void chooseRules() {
         constexpr std::array kThresholds{0, 100, sand::kUnitsPerCell / 2, sand::kUnitsPerCell, 4 * sand::kUnitsPerCell};
         constexpr std::array kAspects{1, 1, 1, 2, 7};  // divided by 2
-        rules.threshold = kThresholds.at(random() % kThresholds.size());
+        rules.tuning.threshold = kThresholds.at(random() % kThresholds.size());
         // The default of scenes, one unit, and bands that are clearly visible.
-        const std::array bands{0, rules.threshold / 1000, 1, rules.threshold / 10, rules.threshold};
-        rules.startThreshold = rules.threshold + bands.at(random() % bands.size());
+        const std::array bands{0, rules.tuning.threshold / 1000, 1, rules.tuning.threshold / 10,
+                               rules.tuning.threshold};
+        rules.tuning.startThreshold = rules.tuning.threshold + bands.at(random() % bands.size());
         rules.scheme = samples::kSchemes.at(random() % samples::kSchemes.size());
         rules.rim = random() % 2 == 0 ? sand::Rim::open : sand::Rim::closed;
         rules.aspect =
@@ -76,7 +78,7 @@ private:
         if (kind == 0) {
             field = samples::randomField(field.columns(), field.rows(), 1 << (8 + below(20)), random);
         } else if (kind == 1) {
-            const std::int32_t east = below(rules.threshold + 2), north = below(rules.threshold + 2);
+            const std::int32_t east = below(rules.tuning.threshold + 2), north = below(rules.tuning.threshold + 2);
             for (int y = 0; y < field.rows(); ++y) {
                 for (int x = 0; x < field.columns(); ++x) {
                     field.setHeight(x, y, east * x - north * y + below(16) + (below(30) == 0 ? below(200000) : 0));
@@ -172,8 +174,9 @@ private:
 
     void changeRules() {
         sand::Rules& rules = expected_.rules;
-        rules.threshold = world_.below(2) == 0 ? rules.threshold : world_.below(2 * sand::kUnitsPerCell);
-        rules.startThreshold = rules.threshold + (world_.below(2) == 0 ? 0 : world_.below(sand::kUnitsPerCell));
+        rules.tuning.threshold = world_.below(2) == 0 ? rules.tuning.threshold : world_.below(2 * sand::kUnitsPerCell);
+        rules.tuning.startThreshold =
+            rules.tuning.threshold + (world_.below(2) == 0 ? 0 : world_.below(sand::kUnitsPerCell));
         erosion_.changeRules(rules);
         expected_.undisturbed = 0;
     }

@@ -20,7 +20,7 @@ Rules settlingRules(const HeightField& field, std::int32_t threshold = sand::kUn
     Rules rules;
     rules.columns = field.columns();
     rules.rows = field.rows();
-    rules.threshold = rules.startThreshold = threshold;
+    rules.tuning.threshold = rules.tuning.startThreshold = threshold;
     return rules;
 }
 
@@ -135,7 +135,7 @@ TEST(Settle, RestIsAFixedPoint) {
 // Sand that the start threshold holds is at rest. All other sand settles to the threshold.
 TEST(Settle, BandHoldsOrLetsGoOfEverything) {
     Rules rules = settlingRules(HeightField(40, 30, 1.0));
-    rules.startThreshold = rules.threshold * 5 / 4;
+    rules.tuning.startThreshold = rules.tuning.threshold * 5 / 4;
     for (const auto& [slope, moves] : {std::pair{1.2, false}, {1.3, true}}) {
         HeightField field = oracles::fieldOf(40, 30, [steep = slope](double x, double) { return steep * x; });
         const HeightField start = field;

@@ -90,7 +90,7 @@ TEST(GridHash, TakesEveryCellOfARectangleThatWasTouched) {
 // because it marks the blocks in which it flows.
 TEST(GridUndo, OfAToolAcrossTheBordersOfTilesRestoresSandThatDoesNotSlide) {
     scene::Scene scene = samples::flatScene(kColumns, kRows);
-    scene.rules.threshold = scene.rules.startThreshold = sand::kLargestThreshold;
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold = sand::kLargestThreshold;
     for (const int column : {64, 128}) {
         for (const int row : {64, 128}) {
             for (int beside = -9; beside <= 9; ++beside) {

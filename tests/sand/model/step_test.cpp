@@ -33,7 +33,7 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     for (int kind = 0; kind < sand::kEdits; ++kind) {
         sand::Edit edit = static_cast<sand::Edit::Kind>(kind);
         if (edit.kind == sand::Edit::tune) {
-            edit = sand::Edit::tuned({7, 11, 13, 17});
+            edit = sand::Edit::tuned({7, 11, 13, {.radius = 17}});
         } else if (edit.kind == sand::Edit::load) {
             edit = sand::Edit::loaded({3, 1, 4, 1, 5});
         }
@@ -52,7 +52,8 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
 
 // Journals and messages have exactly these bytes. A sphere is encoded as its radius alone.
 TEST(Step, OfASphereTakesTheseBytes) {
-    sand::Step step{3, 300, true, {{5, -6, 70}}, samples::withNumber(200, sand::Edit::tuned({7, 11, 13, 17}))};
+    sand::Step step{
+        3, 300, true, {{5, -6, 70}}, samples::withNumber(200, sand::Edit::tuned({7, 11, 13, {.radius = 17}}))};
     const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0,
                                0, 11,   0, 0, 0, 13, 0,  0,    0, 17,   0, 0, 0};
     EXPECT_EQ(bytesOf(step), expected);
@@ -65,10 +66,10 @@ TEST(Step, OfASphereTakesTheseBytes) {
 TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         for (const bool mirrored : {false, true}) {
-            sand::Tuning tuning{7, 11, 13, 2000};
-            tuning.toolKind = static_cast<sand::ToolKind>(kind);
-            tuning.toolHalfWidth = sand::isRound(tuning.toolKind) ? 0 : 700;
-            tuning.toolHeading = *sand::headingOf(77, mirrored);
+            sand::Tuning tuning{7, 11, 13, {.radius = 2000}};
+            tuning.tool.kind = static_cast<sand::ToolKind>(kind);
+            tuning.tool.halfWidth = sand::isRound(tuning.tool.kind) ? 0 : 700;
+            tuning.tool.heading = *sand::headingOf(77, mirrored);
             sand::Step step{1, 2, true, {{5, 6, 7}}, sand::Edit::tuned(tuning)};
             step.heading = *sand::headingOf(-123, !mirrored);
             const base::Bytes bytes = bytesOf(step);
@@ -88,10 +89,10 @@ TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {
     sand::Step crooked{1, 2, true, {}};
     crooked.heading = sand::Heading{100, 100};
     refused(crooked);
-    sand::Tuning wide{7, 11, 13, 17, sand::ToolKind::ellipse, 18};
+    sand::Tuning wide{7, 11, 13, {sand::ToolKind::ellipse, 17, 18}};
     refused({1, 2, true, {}, sand::Edit::tuned(wide)});
-    wide.toolHalfWidth = 3;
-    wide.toolKind = static_cast<sand::ToolKind>(sand::kToolKinds);
+    wide.tool.halfWidth = 3;
+    wide.tool.kind = static_cast<sand::ToolKind>(sand::kToolKinds);
     refused({1, 2, true, {}, sand::Edit::tuned(wide)});
 }
 
@@ -112,7 +113,8 @@ TEST(Step, RefusesEveryTruncation) {
 }
 
 TEST(Step, RefusesEveryTruncationOfAnEdit) {
-    for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, 17}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
+    for (const sand::Edit& edit :
+         {sand::Edit::tuned({7, 11, 13, {.radius = 17}}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
         const base::Bytes bytes = bytesOf({1, 2, true, {{5, 6, 7}}, edit});
         for (std::size_t length = 0; length < bytes.size(); ++length) {
             base::ByteReader reader{std::span(bytes).first(length)};
@@ -122,21 +124,24 @@ TEST(Step, RefusesEveryTruncationOfAnEdit) {
 }
 
 TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
-    const sand::Tuning good{7, 11, 13, 17};
+    const sand::Tuning good{7, 11, 13, {.radius = 17}};
     const auto refused = [](const sand::Tuning& tuning) {
         const base::Bytes bytes = bytesOf({1, 2, false, {}, sand::Edit::tuned(tuning)});
         base::ByteReader reader(bytes);
         EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
     };
-    for (std::int32_t sand::Tuning::*number : {&sand::Tuning::threshold, &sand::Tuning::startThreshold,
-                                               &sand::Tuning::sweepsPerStep, &sand::Tuning::toolRadius}) {
-        for (const std::int32_t bad : {-1, sand::kLargestThreshold + 1}) {
-            sand::Tuning tuning = good;
-            tuning.*number = bad;
-            refused(tuning);
-        }
+    const auto with = [&good](const auto& change) {
+        sand::Tuning tuning = good;
+        change(tuning);
+        return tuning;
+    };
+    for (const std::int32_t bad : {-1, sand::kLargestThreshold + 1}) {
+        refused(with([bad](sand::Tuning& tuning) { tuning.threshold = bad; }));
+        refused(with([bad](sand::Tuning& tuning) { tuning.startThreshold = bad; }));
+        refused(with([bad](sand::Tuning& tuning) { tuning.sweepsPerStep = bad; }));
+        refused(with([bad](sand::Tuning& tuning) { tuning.tool.radius = bad; }));
     }
-    refused({12, 11, 13, 17});  // the start threshold would be below the threshold
+    refused({12, 11, 13, {.radius = 17}});  // the start threshold would be below the threshold
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {

@@ -24,8 +24,8 @@ using sand::kProbePerCell;
 using sand::kUnitsPerCell;
 using sand::ProbePoint;
 using sand::Rim;
+using sand::Tool;
 using sand::ToolKind;
-using sand::ToolShape;
 using sand::grid::Displacement;
 using enum sand::ToolKind;
 
@@ -34,8 +34,8 @@ constexpr std::array kTurned{rectangle, ellipse, ellipsoid, footprint};
 
 std::int32_t probes(double cells) { return static_cast<std::int32_t>(std::floor(cells * kProbePerCell + 0.5)); }
 
-ToolShape shapeOf(ToolKind kind, double radius /* [cell] */) {
-    return {kind, probes(radius), sand::isRound(kind) ? 0 : probes(radius * sand::usualWidth(kind))};
+Tool toolOf(ToolKind kind, double radius /* [cell] */, const Heading& heading = {}) {
+    return {kind, probes(radius), sand::isRound(kind) ? 0 : probes(radius * sand::usualWidth(kind)), heading};
 }
 
 Heading heading(double degrees, bool mirrored = false) { return *sand::headingOf(degrees, mirrored); }
@@ -54,7 +54,7 @@ std::optional<long double> depthBelow(ToolKind kind, long double along, long dou
         return square < 1 ? std::optional(1.0L) : std::nullopt;
     }
     std::optional<long double> deepest;
-    for (const sand::SolePiece& piece : sand::solePieces()) {
+    for (const sand::SolePiece& piece : sand::solePieces(kind)) {
         const long double x = (along - piece.along) / piece.halfLength, y = (across - piece.across) / piece.halfWidth;
         if (x * x + y * y < 1) {
             deepest = std::max(deepest.value_or(0), 1 - piece.lift - piece.bulge * (x * x + y * y));
@@ -64,32 +64,33 @@ std::optional<long double> depthBelow(ToolKind kind, long double along, long dou
 }
 
 /// Returns the depth at (x, y), turned into the tool's own axes by the quantised heading.
-std::optional<long double> depthAt(const ToolShape& shape, const Heading& heading, long double x, long double y) {
+std::optional<long double> depthAt(const Tool& tool, long double x, long double y) {
+    const Heading& heading = tool.heading;
     const long double length = std::hypot(static_cast<long double>(heading.x), static_cast<long double>(heading.y));
     const long double along = (x * heading.x + y * heading.y) / length;
     const long double across = (y * heading.x - x * heading.y) / length * (heading.mirrored ? -1 : 1);
-    const long double width = sand::isRound(shape.kind) ? shape.radius : shape.halfWidth;
-    return depthBelow(shape.kind, along / shape.radius, across / width);
+    const long double width = sand::isRound(tool.kind) ? tool.radius : tool.halfWidth;
+    return depthBelow(tool.kind, along / tool.radius, across / width);
 }
 
 TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
     for (const ToolKind kind : kEvery) {
         for (const Heading& turn : {heading(0), heading(90), heading(30), heading(217.3, true)}) {
             sand::HeightField field(90, 80, 1.0);
-            const ToolShape shape = shapeOf(kind, 24);
+            const Tool tool = toolOf(kind, 24, turn);
             const ProbePoint at{probes(44.3), probes(39.6), probes(20)};
-            Displacement(shape, turn).drag(field, Rim::closed, nullptr, at, at);
+            Displacement(tool).drag(field, Rim::closed, nullptr, at, at);
             int below = 0;
             for (int row = 0; row < field.rows(); ++row) {
                 for (int column = 0; column < field.columns(); ++column) {
                     const long double x = (column + 0.5L) * kProbePerCell - at.x,
                                       y = (row + 0.5L) * kProbePerCell - at.y;
-                    const auto depth = depthAt(shape, turn, x, y);
+                    const auto depth = depthAt(tool, x, y);
                     if (!depth) {
                         EXPECT_GE(field.height(column, row), 0) << base::nameOf(kind) << " beside";
                         continue;
                     }
-                    const long double underside = (at.z - *depth * shape.radius) * kUnitsPerCell / kProbePerCell;
+                    const long double underside = (at.z - *depth * tool.radius) * kUnitsPerCell / kProbePerCell;
                     const long double expected = std::min(0.0L, underside);
                     ASSERT_NEAR(static_cast<double>(field.height(column, row) - expected), 0, 1)
                         << base::nameOf(kind) << " at " << column << ", " << row;
@@ -165,9 +166,7 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
         for (const double degrees : {0.0, 33.0, 90.0, -140.0}) {
             scene::Scene scene = samples::flatScene(75, 52, 0);
             scene.terrain = samples::randomField(75, 52, 1 << 18, random);
-            scene.rules.toolRadius = shapeOf(kind, 11).radius;
-            scene.rules.toolKind = kind;
-            scene.rules.toolHalfWidth = shapeOf(kind, 11).halfWidth;
+            scene.rules.tuning.tool = toolOf(kind, 11);
             const std::vector<ProbePoint> path{{probes(20.2), probes(24.7), probes(9)},
                                                {probes(43.9), probes(31.4), probes(7)},
                                                {probes(41.0), probes(3.3), probes(8)}};
@@ -216,7 +215,7 @@ std::int64_t raisedWhere(const sand::HeightField& field, const auto& side) {
 TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
     for (const ToolKind kind : {rectangle, ellipse, footprint}) {
         sand::HeightField field(90, 90, 1.0);
-        const Displacement tool(shapeOf(kind, 16), heading(90));  // the long side points east
+        const Displacement tool(toolOf(kind, 16, heading(90)));  // the long side points east
         const ProbePoint from{probes(30), probes(45), probes(14)}, to{probes(50), probes(45), probes(14)};
         tool.drag(field, Rim::closed, nullptr, from, from);
         const std::int64_t imprint = raisedWhere(field, [](double, double) { return true; });
@@ -229,7 +228,7 @@ TEST(ToolShape, DraggedSidewaysItPushesToTheSideAhead) {
     }
     // Along its length, the same blade cuts a furrow that is no wider than the blade.
     sand::HeightField field(120, 90, 1.0);
-    const Displacement blade(shapeOf(rectangle, 16), heading(0));
+    const Displacement blade(toolOf(rectangle, 16));
     blade.drag(field, Rim::closed, nullptr, {probes(30), probes(45), probes(14)}, {probes(80), probes(45), probes(14)});
     for (int row = 0; row < 90; ++row) {
         EXPECT_EQ(field.height(60, row) < 0, std::abs(row + 0.5 - 45) < 8) << row;
@@ -240,8 +239,8 @@ scene::Scene sceneWith(ToolKind kind, double radius, Rim rim = Rim::closed) {
     scene::Scene scene = samples::flatScene(45, 33, radius);
     sand::grid::makeDunes({.bed = 2, .height = 4, .length = 20, .seed = 3}, scene.terrain);
     scene.rules.rim = rim;
-    scene.rules.toolKind = kind;
-    scene.rules.toolHalfWidth = shapeOf(kind, radius).halfWidth;
+    scene.rules.tuning.tool.kind = kind;
+    scene.rules.tuning.tool.halfWidth = toolOf(kind, radius).halfWidth;
     return scene;
 }
 
@@ -272,7 +271,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
 TEST(ToolShape, OfNoRadiusItDigsNothing) {
     for (const ToolKind kind : kEvery) {
         scene::Scene scene = samples::flatScene(45, 33, 0);
-        scene.rules.toolKind = kind;
+        scene.rules.tuning.tool.kind = kind;
         sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
         EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << base::nameOf(kind);
@@ -303,15 +302,14 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
 TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
     for (const ToolKind kind : kTurned) {
         scene::Scene scene = samples::flatScene(60, 60, 12);
-        scene.rules.toolKind = kind;
-        scene.rules.toolHalfWidth = shapeOf(kind, 12).halfWidth;
+        scene.rules.tuning.tool = toolOf(kind, 12);
         sand::Replica terrain(scene);
         terrain.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
         sand::Step turn{1, 2, true, {}};
         turn.heading = heading(90);
         terrain.apply(turn);
         const sand::grid::Obstacle under =
-            Displacement(terrain.toolShape(), terrain.heading()).obstacle(samples::fieldOf(terrain), terrain.probe());
+            Displacement(terrain.tool()).obstacle(samples::fieldOf(terrain), terrain.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
                 ASSERT_LE(samples::fieldOf(terrain).height(column, row), under.row(row)[column - under.cells.x0])
@@ -332,11 +330,11 @@ TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     sand::Step turned{1, 1, false, {}};
     turned.heading = heading(40);
     terrain.apply(turned);
-    sand::Tuning tuning = scene.rules.tuning();
-    tuning.toolKind = footprint;
+    sand::Tuning tuning = scene.rules.tuning;
+    tuning.tool.kind = footprint;
     terrain.apply({1, 2, false, {}, sand::Edit::tuned(tuning)});
     EXPECT_EQ(terrain.heading(), heading(40));
-    tuning.toolHeading = heading(70);
+    tuning.tool.heading = heading(70);
     terrain.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
     EXPECT_EQ(terrain.heading(), heading(70)) << "the operator turned it";
 }
@@ -352,15 +350,15 @@ TEST(ToolShape, ARowOfUndersidesIsEachOfThem) {
         const auto radius =
             static_cast<std::int32_t>(anyOf(1, i % 2 == 0 ? 20 * kProbePerCell : sand::kLargestToolRadius));
         const ToolKind kind = kEvery[static_cast<std::size_t>(i) % kEvery.size()];
-        const ToolShape shape{kind, radius, sand::isRound(kind) ? 0 : radius / 2};
+        const Tool tool{kind, radius, sand::isRound(kind) ? 0 : radius / 2};
         const auto z = static_cast<std::int32_t>(anyOf(-sand::kMaxProbe, sand::kMaxProbe) >> (i % 3 * 6));
         const sand::Offset first{anyOf(-radius, radius), anyOf(-radius, radius)};
         std::array<std::int32_t, 37> row{};
         for (const base::CodePath path : {base::CodePath::baseline, base::fastestCodePath()}) {
-            const sand::TurnedShape tool(shape, {}, path);
-            tool.undersides(z, first, row);
+            const sand::TurnedShape shape(tool, path);
+            shape.undersides(z, first, row);
             for (std::int64_t x = 0; x < std::ssize(row); ++x) {
-                ASSERT_EQ(row[static_cast<std::size_t>(x)], tool.underside(z, {first.x + x * kProbePerCell, first.y}))
+                ASSERT_EQ(row[static_cast<std::size_t>(x)], shape.underside(z, {first.x + x * kProbePerCell, first.y}))
                     << base::nameOf(kind) << " of radius " << radius << ", cell " << x;
             }
         }

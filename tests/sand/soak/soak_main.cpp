@@ -34,7 +34,7 @@ double peakGibibytes() {
 scene::Scene dunes(const Options& options) {
     scene::Scene scene = samples::flatScene(options.columns, options.rows, 2.56);
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
-    scene.rules.sweepsPerStep = 4;
+    scene.rules.tuning.sweepsPerStep = 4;
     return scene;
 }
 

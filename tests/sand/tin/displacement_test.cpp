@@ -58,7 +58,7 @@ TEST(TinTool, VolumeIsExactAfterRandomStrokesOfAllTools) {
             DetailRules rules = fineRules();
             rules.keepsConstraints = stroke % 3 == 0;
             const auto kind = static_cast<ToolKind>(stroke % sand::kToolKinds);
-            Displacement tool(shapeOf(kind, within(0.2, 8)), *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
+            Displacement tool(toolOf(kind, within(0.2, 8), *sand::headingOf(within(0, 360), stroke % 2 == 0)), rules);
             std::vector<ProbePoint> path{probeAt(within(-3, 43), within(-3, 33), within(-1, 3))};
             for (int point = 0; point < 3; ++point) {
                 const ProbePoint last = path.back();
@@ -81,29 +81,29 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
     VertexSand layer = levelLayer(60, 40, 512);
     DetailRules rules = fineRules();
     rules.keepsConstraints = true;
-    const sand::ToolShape shape = shapeOf(ToolKind::ellipse, 8);
+    const sand::Tool ellipse = toolOf(ToolKind::ellipse, 8);
     const std::array<std::pair<ProbePoint, double>, 3> poses{
         {{probeAt(12, 12, 6), 20}, {probeAt(30, 27, 6.5), -40}, {probeAt(46, 12, 7), 75}}};
     Imprint imprint;
     for (const auto& [at, degrees] : poses) {
-        Displacement tool(shape, *sand::headingOf(degrees), rules);
+        Displacement tool(ellipse.turnedTo(*sand::headingOf(degrees)), rules);
         press(layer, imprint, tool, at);
         expectClear(layer, tool, at);
         tool.leave(layer, imprint);
     }
     EXPECT_EQ(layer.mesh().constraints().size(), 3U * 32);
     for (const auto& [at, degrees] : poses) {
-        const Heading heading = *sand::headingOf(degrees);
-        const double depth = (at.z - shape.radius) * 256.0;
+        const sand::Tool turned = ellipse.turnedTo(*sand::headingOf(degrees));
+        const double depth = (at.z - turned.radius) * 256.0;
         int inside = 0;
         forEachVertex(layer, [&, tool = at](Vertex vertex, const Place& place, double height) {
-            if (sand::TurnedShape(shape, heading).covers({place.x - tool.x, place.y - tool.y})) {
+            if (sand::TurnedShape(turned).covers({place.x - tool.x, place.y - tool.y})) {
                 EXPECT_EQ(height, depth) << "vertex " << vertex;
                 ++inside;
             }
         });
         EXPECT_GT(inside, 32 + 60);
-        const auto outline = sand::tin::placed(sand::tin::Outline::of(shape, heading), at.x, at.y, layer.triangles());
+        const auto outline = sand::tin::placed(sand::tin::Outline::of(turned), at.x, at.y, layer.triangles());
         for (const auto& [from, to] : outline.edges) {
             const auto vertexAt = [&](const Place& wanted) {
                 Vertex found = sand::tin::kNobody;
@@ -134,7 +134,7 @@ TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
     VertexSand layer = levelLayer(60, 40, 256);
     DetailRules rules = fineRules();
     rules.keepsConstraints = true;
-    Displacement tool(shapeOf(ToolKind::rectangle, 4), {}, rules);
+    Displacement tool(toolOf(ToolKind::rectangle, 4), rules);
     Imprint imprint;
     press(layer, imprint, tool, probeAt(15, 20, 3.5));
     tool.leave(layer, imprint);
@@ -153,7 +153,7 @@ TEST(TinTool, DraggedAwayItLeavesTheEarlierOutlineItStoodOn) {
 TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         VertexSand layer = levelLayer(40, 30, 256);
-        Displacement tool(shapeOf(static_cast<ToolKind>(kind), 7), *sand::headingOf(31), fineRules());
+        Displacement tool(toolOf(static_cast<ToolKind>(kind), 7, *sand::headingOf(31)), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
         const ProbePoint at = probeAt(20, 15, 6);
@@ -172,7 +172,7 @@ TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
 TEST(TinTool, HeldStillItChangesNothing) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         VertexSand layer = levelLayer(40, 30, 256);
-        Displacement tool(shapeOf(static_cast<ToolKind>(kind), 6), *sand::headingOf(31), fineRules());
+        Displacement tool(toolOf(static_cast<ToolKind>(kind), 6, *sand::headingOf(31)), fineRules());
         Imprint imprint;
         const ProbePoint from = probeAt(18, 14, 5), to = probeAt(20, 15.5, 4.5);
         tool.drag(layer, imprint, Rim::closed, std::array{from, to});
@@ -191,7 +191,7 @@ TEST(TinTool, HeldStillItChangesNothing) {
 
 TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
     VertexSand layer = levelLayer(60, 40, 256);
-    Displacement tool(shapeOf(ToolKind::sphere, 5), {}, fineRules());
+    Displacement tool(toolOf(ToolKind::sphere, 5), fineRules());
     Imprint imprint;
     const ProbePoint from = probeAt(20, 20, 4), to = probeAt(35, 20, 4);
     tool.drag(layer, imprint, Rim::closed, std::array{from, to});
@@ -213,7 +213,7 @@ TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
     VertexSand layer = levelLayer(30, 30, 256);
     const base::Bytes before = bytesOf(layer);
     Imprint imprint;
-    Displacement tool(shapeOf(ToolKind::ellipsoid, 4), {}, fineRules());
+    Displacement tool(toolOf(ToolKind::ellipsoid, 4), fineRules());
     const std::array<ProbePoint, 4> poses{probeAt(-20, 15, 0), probeAt(60, 60, -10), probeAt(15, 15, 4.5),
                                           ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, -sand::kMaxProbe}};
     for (const ProbePoint& at : poses) {
@@ -226,7 +226,7 @@ TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
 TEST(TinTool, OfRadiusZeroItDoesNothing) {
     VertexSand layer = levelLayer(20, 20, 256);
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        Displacement tool({static_cast<ToolKind>(kind), 0, 0}, {}, DetailRules{});
+        Displacement tool({static_cast<ToolKind>(kind), 0, 0}, DetailRules{});
         Imprint imprint;
         const auto before = layer.volumes();
         EXPECT_TRUE(press(layer, imprint, tool, probeAt(10.5, 10.5, -3)).touched.empty());
@@ -237,7 +237,7 @@ TEST(TinTool, OfRadiusZeroItDoesNothing) {
 TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
     VertexSand layer = levelLayer(12, 8, 256);
     const auto before = layer.volume();
-    Displacement tool(shapeOf(ToolKind::circle, 40), {}, fineRules());
+    Displacement tool(toolOf(ToolKind::circle, 40), fineRules());
     Imprint imprint;
     const Displacement::Work done = press(layer, imprint, tool, probeAt(6, 4, 30));
     EXPECT_TRUE(done.touched.empty());
@@ -252,7 +252,7 @@ TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
 TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
         VertexSand layer = levelLayer(30, 30, 256);
-        Displacement tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
+        Displacement tool(toolOf(ToolKind::sphere, 4), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
         const ProbePoint at = probeAt(0, 0, 2);
@@ -285,7 +285,7 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
 
 TEST(TinTool, TeleportingItSweepsTheWholeWay) {
     VertexSand layer = levelLayer(120, 120, 1024);
-    Displacement tool(shapeOf(ToolKind::circle, 3), {}, fineRules());
+    Displacement tool(toolOf(ToolKind::circle, 3), fineRules());
     Imprint imprint;
     const auto before = layer.volume();
     tool.drag(layer, imprint, Rim::closed, std::array{probeAt(5, 5, 1), probeAt(115, 115, 1)});
@@ -299,7 +299,7 @@ TEST(TinTool, TeleportingItSweepsTheWholeWay) {
 TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
     VertexSand layer = levelLayer(40, 30, 512);
     Imprint imprint;
-    Displacement tool(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
+    Displacement tool(toolOf(ToolKind::footprint, 8, *sand::headingOf(25)), fineRules());
     for (int step = 0; step < 4; ++step) {
         tool.drag(layer, imprint, Rim::open,
                   std::array{probeAt(12 + step, 12, 7.5), probeAt(13 + step, 12 + step, 7.2)});
@@ -314,7 +314,7 @@ TEST(TinTool, GoesOnTheSameFromARestoredLayer) {
     };
     auto [otherLayer, otherImprint] = restore();
     EXPECT_EQ(otherImprint, imprint);
-    Displacement other(shapeOf(ToolKind::footprint, 8), *sand::headingOf(25), fineRules());
+    Displacement other(toolOf(ToolKind::footprint, 8, *sand::headingOf(25)), fineRules());
     for (int step = 0; step < 6; ++step) {
         const std::array path{probeAt(17 + step, 13, 7.2), probeAt(18 + step, 14, 7.1)};
         const Displacement::Work one = tool.drag(layer, imprint, Rim::open, path);
@@ -332,7 +332,7 @@ TEST(TinTool, KeepsTheBudgetOfVertices) {
     VertexSand layer = levelLayer(60, 60, 1024);
     DetailRules rules = fineRules();
     rules.maxVertices = layer.mesh().vertexCount() + 150;
-    Displacement tool(shapeOf(ToolKind::ellipsoid, 6), *sand::headingOf(40), rules);
+    Displacement tool(toolOf(ToolKind::ellipsoid, 6, *sand::headingOf(40)), rules);
     Imprint imprint;
     const auto before = layer.volume();
     int most = 0;
@@ -349,7 +349,7 @@ TEST(TinTool, KeepsTheBudgetOfVertices) {
 TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
     sand::tin::Mesh bare(40 * 256, 40 * 256);
     VertexSand layer(std::move(bare));
-    Displacement tool(shapeOf(ToolKind::rectangle, 5), *sand::headingOf(10), DetailRules{});
+    Displacement tool(toolOf(ToolKind::rectangle, 5, *sand::headingOf(10)), DetailRules{});
     Imprint imprint;
     const auto before = layer.volume();
     const ProbePoint at = probeAt(20, 20, 4);
@@ -363,7 +363,7 @@ TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
 TEST(TinTool, RefusesADamagedImprint) {
     VertexSand layer = levelLayer(20, 20, 512);
     Imprint imprint;
-    Displacement tool(shapeOf(ToolKind::sphere, 4), {}, fineRules());
+    Displacement tool(toolOf(ToolKind::sphere, 4), fineRules());
     press(layer, imprint, tool, probeAt(10, 10, 3));
     base::ByteWriter writer;
     imprint.encode(writer);

@@ -246,8 +246,8 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         sand::tin::DetailRules rules = fineRules();
         rules.keepsConstraints = stroke % 4 == 0;
         const auto kind = static_cast<sand::ToolKind>(stroke % sand::kToolKinds);
-        const sand::ToolShape shape = shapeOf(kind, within(0.3, 4));
-        Displacement tool(shape, *sand::headingOf(within(0, 360), stroke % 2 == 0), rules);
+        const sand::Tool unturned = toolOf(kind, within(0.3, 4));
+        Displacement tool(unturned.turnedTo(*sand::headingOf(within(0, 360), stroke % 2 == 0)), rules);
         const ProbePoint from = probeAt(within(2, 22), within(2, 22), within(-1, 1));
         const std::array path{from, probeAt(within(2, 22), within(2, 22), within(-1, 1))};
         (void)tool.drag(layer, imprint, sand::Rim::closed, path);
@@ -260,7 +260,7 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         forEachVertex(layer, [&](Vertex, const Place& place, double) { places.insert(place); });
         ASSERT_TRUE(std::ranges::includes(places, corners)) << "stroke " << stroke << ": a corner of a hole is gone";
         // A tool digs down to its underside. Sand that slides makes no hole deeper than the deepest one.
-        const std::int32_t underside = std::min(path[0].z, path[1].z) - shape.radius;  // [probe unit]
+        const std::int32_t underside = std::min(path[0].z, path[1].z) - unturned.radius;  // [probe unit]
         deepest = std::min(deepest, static_cast<double>(underside) * sand::kUnitsPerCell / sand::kProbePerCell);
         forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
             ASSERT_GE(height, deepest) << "stroke " << stroke << ", vertex " << vertex;

@@ -19,8 +19,8 @@ inline scene::Scene levelScene(int side /* [cell] */, std::uint32_t seed, std::i
     start.settings.mostVertices = 1 << 19;
     scene::Scene scene;
     scene.rules.columns = scene.rules.rows = side;
-    scene.rules.threshold = 65536;
-    scene.rules.startThreshold = 65536 + 65536 / 1000;
+    scene.rules.tuning.threshold = 65536;
+    scene.rules.tuning.startThreshold = 65536 + 65536 / 1000;
     scene.tin = std::make_shared<const sand::tin::TinStart>(std::move(start));
     return scene;
 }

@@ -166,7 +166,7 @@ TEST(TinOpenRim, ARingOfHolesKeepsItsSandFromTheRim) {
 TEST(TinOpenRim, AToolBesideARimRefinesItOpenOrClosed) {
     for (const Rim rim : {Rim::closed, Rim::open}) {
         VertexSand layer = tin_samples::levelLayer(40, 30, 4096);
-        sand::tin::Displacement tool(tin_samples::shapeOf(sand::ToolKind::sphere, 4), {}, tin_samples::fineRules());
+        sand::tin::Displacement tool(tin_samples::toolOf(sand::ToolKind::sphere, 4), tin_samples::fineRules());
         sand::tin::Imprint imprint;
         const std::array path{tin_samples::probeAt(20, 3, 3)};
         (void)tool.drag(layer, imprint, rim, path);

@@ -126,7 +126,7 @@ scene::Scene levelScene(int side, double height /* [cell] */, double talusDegree
         std::fill_n(scene.terrain.row(row), side, static_cast<std::int32_t>(height * kHeight));
     }
     scene.rules.rim = rim;
-    scene.rules.threshold = scene.rules.startThreshold =
+    scene.rules.tuning.threshold = scene.rules.tuning.startThreshold =
         static_cast<std::int32_t>(std::tan(talusDegrees * std::numbers::pi / 180) * kHeight);
     return scene;
 }

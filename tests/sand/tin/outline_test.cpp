@@ -10,19 +10,20 @@
 namespace {
 
 using sand::Heading;
+using sand::Tool;
 using sand::ToolKind;
-using sand::ToolShape;
 using sand::tin::Outline;
 using sand::tin::Place;
 
-ToolShape shapeOf(int kind, std::int32_t radius) {
+Tool toolOf(int kind, std::int32_t radius, const Heading& heading = {}) {
     const auto which = static_cast<ToolKind>(kind);
     const auto width = static_cast<std::int32_t>(radius * sand::usualWidth(which));
-    return {which, radius, sand::isRound(which) ? 0 : width};
+    return {which, radius, sand::isRound(which) ? 0 : width, heading};
 }
 
-std::string nameOf(const ToolShape& shape, const Heading& heading) {
-    return fmt::format("{} of radius {}, heading {} {}", base::nameOf(shape.kind), shape.radius, heading.x, heading.y);
+std::string nameOf(const Tool& tool) {
+    return fmt::format("{} of radius {}, heading {} {}", base::nameOf(tool.kind), tool.radius, tool.heading.x,
+                       tool.heading.y);
 }
 
 template <class Check>
@@ -31,10 +32,9 @@ void forEveryTool(const Check& check) {
         for (const std::int32_t radius : {100, 655, 3072, 100000}) {
             for (const double degrees : {0.0, 17.3, 90.0, 211.0}) {
                 for (const bool mirrored : {false, true}) {
-                    const ToolShape shape = shapeOf(kind, radius);
-                    const Heading heading = *sand::headingOf(degrees, mirrored);
-                    SCOPED_TRACE(nameOf(shape, heading));
-                    check(shape, heading, Outline::of(shape, heading));
+                    const Tool tool = toolOf(kind, radius, *sand::headingOf(degrees, mirrored));
+                    SCOPED_TRACE(nameOf(tool));
+                    check(tool, Outline::of(tool));
                 }
             }
         }
@@ -42,17 +42,17 @@ void forEveryTool(const Check& check) {
 }
 
 TEST(Outline, EveryPointLiesBelowTheTool) {
-    forEveryTool([](const ToolShape& shape, const Heading& heading, const Outline& outline) {
-        const sand::TurnedShape turned(shape, heading);
+    forEveryTool([](const Tool& tool, const Outline& outline) {
+        const sand::TurnedShape turned(tool);
         for (const Place& point : outline.points) {
             EXPECT_TRUE(turned.covers({point.x, point.y})) << point.x << ' ' << point.y;
         }
-        EXPECT_TRUE(shape.kind == ToolKind::footprint || !outline.points.empty());
+        EXPECT_TRUE(tool.kind == ToolKind::footprint || !outline.points.empty());
     });
 }
 
 TEST(Outline, EdgesMakeClosedRings) {
-    forEveryTool([](const ToolShape& shape, const Heading&, const Outline& outline) {
+    forEveryTool([](const Tool& tool, const Outline& outline) {
         std::map<int, int> ends;
         for (const auto& [a, b] : outline.edges) {
             EXPECT_NE(a, b);
@@ -63,9 +63,9 @@ TEST(Outline, EdgesMakeClosedRings) {
             const Place& place = outline.points[static_cast<std::size_t>(point)];
             EXPECT_EQ(count, 2) << "edges end at " << place.x << ' ' << place.y;
         }
-        if (shape.radius >= 655 && shape.kind != ToolKind::footprint) {
-            const bool bowl = shape.kind == ToolKind::sphere || shape.kind == ToolKind::ellipsoid;
-            const double narrow = bowl && shape.halfWidth > 0 ? shape.halfWidth : shape.radius;
+        if (tool.radius >= 655 && tool.kind != ToolKind::footprint) {
+            const bool bowl = tool.kind == ToolKind::sphere || tool.kind == ToolKind::ellipsoid;
+            const double narrow = bowl && tool.halfWidth > 0 ? tool.halfWidth : tool.radius;
             std::size_t rings = 1;
             for (const double gap : {0.04, 0.01}) {  // a bowl has more rings, if there is room for them
                 rings += bowl && gap * narrow >= 18 ? 1 : 0;
@@ -76,7 +76,7 @@ TEST(Outline, EdgesMakeClosedRings) {
 }
 
 TEST(Outline, ASoleHasFivePartsWhoseOutlinesDoNotCross) {
-    const Outline outline = Outline::of(shapeOf(static_cast<int>(ToolKind::footprint), 3072), {});
+    const Outline outline = Outline::of(toolOf(static_cast<int>(ToolKind::footprint), 3072));
     std::vector<int> part(outline.points.size());
     for (std::size_t i = 0; i < part.size(); ++i) {
         part[i] = static_cast<int>(i);
@@ -100,23 +100,23 @@ TEST(Outline, ASoleHasFivePartsWhoseOutlinesDoNotCross) {
 
 TEST(Outline, AToolTurnedByARightAngleHasItsPointsTurned) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        const ToolShape shape = shapeOf(kind, 2000);
         const Heading heading = *sand::headingOf(17.3);
+        const Tool tool = toolOf(kind, 2000, heading);
         const Heading turned{static_cast<std::int16_t>(-heading.y), heading.x, false};
-        const Outline before = Outline::of(shape, heading), after = Outline::of(shape, turned);
+        const Outline before = Outline::of(tool), after = Outline::of(tool.turnedTo(turned));
         EXPECT_EQ(before.edges, after.edges);
         std::vector<Place> expected, points = after.points;
         for (const Place& point : before.points) {
-            expected.push_back(sand::isRound(shape.kind) ? point : Place{-point.y, point.x});
+            expected.push_back(sand::isRound(tool.kind) ? point : Place{-point.y, point.x});
         }
-        EXPECT_EQ(points, expected) << nameOf(shape, heading);
+        EXPECT_EQ(points, expected) << nameOf(tool);
     }
 }
 
 TEST(Outline, AToolOfNoSizeHasNoPoints) {
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
         for (const std::int32_t radius : {0, 1, 5, 20}) {
-            EXPECT_TRUE(Outline::of(shapeOf(kind, radius), {}).points.empty()) << nameOf(shapeOf(kind, radius), {});
+            EXPECT_TRUE(Outline::of(toolOf(kind, radius)).points.empty()) << nameOf(toolOf(kind, radius));
         }
     }
 }
@@ -126,7 +126,7 @@ TEST(Outline, EndsAtTheRim) {
     field.width = 5000;
     field.depth = 3000;
     for (int kind = 0; kind < sand::kToolKinds; ++kind) {
-        const Outline outline = Outline::of(shapeOf(kind, 2000), *sand::headingOf(33));
+        const Outline outline = Outline::of(toolOf(kind, 2000, *sand::headingOf(33)));
         for (const auto& [x, y] : {std::pair{0, 0}, {5000, 10}, {4990, 3000}, {-10, 1500}, {2500, 1500}, {-5000, 0}}) {
             const auto placed = sand::tin::placed(outline, x, y, field);
             for (const auto& [from, to] : placed.edges) {

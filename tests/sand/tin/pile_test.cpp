@@ -206,7 +206,7 @@ TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
         kSide, kSide, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return cylinder.start(r); }));
     sand::Rules rules;
     rules.columns = rules.rows = kSide;
-    rules.threshold = rules.startThreshold = kTalus;
+    rules.tuning.threshold = rules.tuning.startThreshold = kTalus;
     sand::grid::settle(field, rules);
     double sum = 0, all = 0;
     std::int32_t triangle = sand::tin::kNobody;

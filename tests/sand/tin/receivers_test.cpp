@@ -28,9 +28,8 @@ struct Pressed {
     std::map<Vertex, std::int64_t> expected;
     std::int64_t remainder = 0;  // units that could not be shared evenly
 
-    explicit Pressed(const sand::ToolShape& tool, const sand::Heading& heading, const ProbePoint& way)
-        : shape(tool, heading) {
-        sand::tin::Displacement displacement(tool, heading, fineRules());
+    Pressed(const sand::Tool& tool, const ProbePoint& way) : shape(tool) {
+        sand::tin::Displacement displacement(tool, fineRules());
         Imprint imprint;
         const ProbePoint from{at.x - way.x, at.y - way.y, at.z};
         if (way == ProbePoint{}) {
@@ -88,7 +87,7 @@ void expectShares(const Pressed& pressed) {
 TEST(TinReceivers, TheRemainderGoesToTheVerticesWithTheSmallestNumbersOneUnitEach) {
     int remainders = 0;
     for (const ToolKind kind : {ToolKind::sphere, ToolKind::circle, ToolKind::ellipse, ToolKind::footprint}) {
-        const Pressed pressed(shapeOf(kind, 12), *sand::headingOf(30), {});
+        const Pressed pressed(toolOf(kind, 12, *sand::headingOf(30)), {});
         SCOPED_TRACE(std::string(base::nameOf(kind)));
         expectShares(pressed);
         remainders += pressed.remainder > 1 ? 1 : 0;
@@ -100,7 +99,7 @@ TEST(TinReceivers, ASlowDragPushesSandInItsOwnDirection) {
     for (const ProbePoint& way :
          {ProbePoint{40, 9, 0}, {9, 40, 0}, {-3, 200, 0}, {-90, -91, 0}, {1, 0, 0}, {2, -1, 0}}) {
         SCOPED_TRACE(testing::Message() << way.x << ", " << way.y);
-        expectShares(Pressed(shapeOf(ToolKind::sphere, 12), {}, way));
+        expectShares(Pressed(toolOf(ToolKind::sphere, 12), way));
     }
 }
 

@@ -14,10 +14,10 @@ namespace {
 /// Level sand with a narrow plate of 30 cells.
 scene::Scene tinPlateScene(std::int32_t spacing) {
     scene::Scene scene = tin_samples::levelScene(60, 1, spacing);
-    scene.rules.sweepsPerStep = 8;
-    scene.rules.toolKind = sand::ToolKind::rectangle;
-    scene.rules.toolRadius = 15 * sand::kProbePerCell;
-    scene.rules.toolHalfWidth = 2 * sand::kProbePerCell;
+    scene.rules.tuning.sweepsPerStep = 8;
+    scene.rules.tuning.tool.kind = sand::ToolKind::rectangle;
+    scene.rules.tuning.tool.radius = 15 * sand::kProbePerCell;
+    scene.rules.tuning.tool.halfWidth = 2 * sand::kProbePerCell;
     return scene;
 }
 

@@ -21,9 +21,9 @@ using tin_samples::verticesOf;
 /// Returns level sand. Its tool is a quarter as wide as the field and is pressed at random places.
 scene::Scene levelSand(int side, std::uint32_t seed) {
     scene::Scene scene = tin_samples::levelScene(side, seed);
-    scene.rules.sweepsPerStep = 64;
-    scene.rules.toolKind = sand::ToolKind::circle;
-    scene.rules.toolRadius = 13 * sand::kProbePerCell;
+    scene.rules.tuning.sweepsPerStep = 64;
+    scene.rules.tuning.tool.kind = sand::ToolKind::circle;
+    scene.rules.tuning.tool.radius = 13 * sand::kProbePerCell;
     return scene;
 }
 
@@ -71,7 +71,7 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
     const int rested = verticesOf(terrain);
     Replica joined(scene());  // the coarsening of `joined` has not examined any vertex yet
     joined.decodeState(terrain.encodeState());
-    sand::Tuning softer = terrain.rules().tuning();
+    sand::Tuning softer = terrain.rules().tuning;
     softer.threshold /= 4;
     softer.startThreshold /= 4;
     for (int i = 0; i < 300; ++i) {
@@ -127,7 +127,7 @@ TEST_F(TinTerrain, SandSlidesThatLeansOnAToolWhichHasMovedNone) {
     const scene::Scene scene = scene::loadScene(folder_ / "slope.toml");
     int slid = 0;
     for (sand::ProbePoint at : places) {
-        at.z += scene.rules.toolRadius;
+        at.z += scene.rules.tuning.tool.radius;
         Replica terrain(scene), fresh(scene);
         terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
         ASSERT_TRUE(terrain.settled());

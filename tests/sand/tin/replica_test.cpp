@@ -147,7 +147,7 @@ TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
 // A slide would hide a vertex that the tool has changed and that was not marked for the undo.
 TEST_F(TinTerrain, AnUndoRestoresSandThatDoesNotSlide) {
     scene::Scene start = scene();
-    start.rules.threshold = start.rules.startThreshold = sand::kLargestThreshold;
+    start.rules.tuning.threshold = start.rules.tuning.startThreshold = sand::kLargestThreshold;
     Replica terrain(start);
     const auto stroke = [&terrain](std::int32_t x) {
         for (std::int32_t y = 4000; y <= 12000; y += 1000) {

@@ -78,7 +78,7 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
     const auto with = [&layer](const std::function<void(TinState&)>& change) {
         TinState state;
         state.imprint.stand.emplace();
-        state.imprint.stand->shape = {sand::ToolKind::ellipse, 500, 200};
+        state.imprint.stand->tool = {sand::ToolKind::ellipse, 500, 200};
         state.imprint.points = {{4, {1000, 1200}}};
         state.imprint.edges = {{0, 4}};
         change(state);
@@ -92,11 +92,11 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
     hashes.add("x", with([](TinState& state) { state.imprint.stand->at.x = 1; }));
     hashes.add("y", with([](TinState& state) { state.imprint.stand->at.y = 1; }));
     hashes.add("z", with([](TinState& state) { state.imprint.stand->at.z = 1; }));
-    hashes.add("kind", with([](TinState& state) { state.imprint.stand->shape.kind = sand::ToolKind::footprint; }));
-    hashes.add("radius", with([](TinState& state) { state.imprint.stand->shape.radius = 501; }));
-    hashes.add("width", with([](TinState& state) { state.imprint.stand->shape.halfWidth = 201; }));
-    hashes.add("heading", with([](TinState& state) { state.imprint.stand->heading = *sand::headingOf(1); }));
-    hashes.add("mirrored", with([](TinState& state) { state.imprint.stand->heading.mirrored = true; }));
+    hashes.add("kind", with([](TinState& state) { state.imprint.stand->tool.kind = sand::ToolKind::footprint; }));
+    hashes.add("radius", with([](TinState& state) { state.imprint.stand->tool.radius = 501; }));
+    hashes.add("width", with([](TinState& state) { state.imprint.stand->tool.halfWidth = 201; }));
+    hashes.add("heading", with([](TinState& state) { state.imprint.stand->tool.heading = *sand::headingOf(1); }));
+    hashes.add("mirrored", with([](TinState& state) { state.imprint.stand->tool.heading.mirrored = true; }));
     hashes.add("no point", with([](TinState& state) { state.imprint.points.clear(); }));
     hashes.add("another point", with([](TinState& state) { state.imprint.points[0].vertex = 3; }));
     hashes.add("a point elsewhere", with([](TinState& state) { state.imprint.points[0].place.y = 1201; }));

@@ -69,9 +69,9 @@ inline sand::tin::DetailRules fineRules() {
     return rules;
 }
 
-inline sand::ToolShape shapeOf(sand::ToolKind kind, double radius /* [cell] */) {
+inline sand::Tool toolOf(sand::ToolKind kind, double radius /* [cell] */, const sand::Heading& heading = {}) {
     const auto size = static_cast<std::int32_t>(radius * sand::kProbePerCell);
-    return {kind, size, sand::isRound(kind) ? 0 : static_cast<std::int32_t>(size * sand::usualWidth(kind))};
+    return {kind, size, sand::isRound(kind) ? 0 : static_cast<std::int32_t>(size * sand::usualWidth(kind)), heading};
 }
 
 template <class Visit>

@@ -45,7 +45,7 @@ TEST_F(Relax, GivesWhatTheLibraryGives) {
     const sand::HeightField start = samples::cylinder(64, 16, 9.6);
     writeGrid("in.asc", 64, 64, heightsOf(start));
     sand::Rules rules = samples::flatScene(64, 64).rules;
-    for (const auto& [scheme, name] : sand::kSchemes) {
+    for (const auto& [scheme, name] : valuesOf(sand::Scheme{})) {
         rules.scheme = scheme;
         sand::HeightField expected = start;
         sand::grid::Erosion erosion(expected, rules);
@@ -96,7 +96,7 @@ sand::grid::Certificate certificateOf(const std::string& scheme, const sand::Hei
     if (scheme == "settle") {
         (void)sand::grid::settle(rest, rules, &flux);
     } else if (scheme == "g_plain") {
-        flux = reference::relax(rest, rules.threshold, reference::Isotropic());
+        flux = reference::relax(rest, rules.tuning.threshold, reference::Isotropic());
     } else {
         sand::grid::Erosion erosion(rest, rules);
         while (!erosion.settled()) {
@@ -112,7 +112,7 @@ TEST_F(Relax, CertifiesHowFarThePileIsFromTheRightOne) {
     const sand::HeightField start = samples::cylinder(24, 6, 4);
     writeGrid("in.asc", 24, 24, heightsOf(start));
     sand::Rules rules = samples::flatScene(24, 24).rules;
-    rules.threshold = rules.startThreshold = sand::kUnitsPerCell;
+    rules.tuning.threshold = rules.tuning.startThreshold = sand::kUnitsPerCell;
     reference::TightProjection right(start, sand::kUnitsPerCell);
     ASSERT_TRUE(right.solve());
     for (const std::string scheme : {"g", "g_plain", "settle"}) {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "base/byte_stream.hpp"
+#include "base/names.hpp"
+#include "sand/model/heading.hpp"
+
+namespace sand {
+
+inline constexpr std::int32_t kLargestToolRadius = 2048 << 8;  // [probe unit]; 2048 cells
+
+/// Kind of a tool. The underside of a flat tool is level.
+enum class ToolKind : std::uint8_t {
+    sphere,
+    circle,     // flat
+    rectangle,  // flat
+    ellipse,    // flat
+    ellipsoid,
+    footprint  // sole of a bare right foot
+};
+/// The names are those of scene files and operator commands.
+constexpr auto valuesOf(ToolKind) {
+    using enum ToolKind;
+    return std::array{base::Named{sphere, "sphere"},       base::Named{circle, "circle"},
+                      base::Named{rectangle, "rectangle"}, base::Named{ellipse, "ellipse"},
+                      base::Named{ellipsoid, "ellipsoid"}, base::Named{footprint, "footprint"}};
+}
+inline constexpr int kToolKinds = static_cast<int>(valuesOf(ToolKind{}).size());
+
+/// Returns whether the tool is a sphere or a circle. A round tool ignores width and heading.
+[[nodiscard]] constexpr bool isRound(ToolKind kind) { return kind == ToolKind::sphere || kind == ToolKind::circle; }
+/// Returns the default ratio of width to length.
+[[nodiscard]] constexpr double usualWidth(ToolKind kind) {
+    return isRound(kind) ? 1.0 : kind == ToolKind::footprint ? 0.4 : 0.5;
+}
+
+/// Kind, size and heading of a tool, without its position.
+///
+/// The lowest point of every tool is `radius` below its centre. A flat tool is a stamp whose underside is that far
+/// below its centre.
+struct Tool {
+    ToolKind kind = ToolKind::sphere;
+    std::int32_t radius = 0;     // half of the length [probe unit]
+    std::int32_t halfWidth = 0;  // half of the width, at most the radius [probe unit]; 0 for a round tool
+    Heading heading{};           // in rules: the heading until a hand turns the tool
+
+    /// Returns the tool with another heading.
+    [[nodiscard]] Tool turnedTo(const Heading& to) const { return {kind, radius, halfWidth, to}; }
+    /// Returns whether the tool is a sphere that points east. Its encoding is its radius alone. The encoding of any
+    /// other tool is −1 − radius, kind, half width and heading.
+    [[nodiscard]] bool plain() const { return kind == ToolKind::sphere && heading == Heading{}; }
+    void put(base::ByteWriter& writer) const;
+    /// Reads what put() wrote. Throws base::FormatError for a tool that no scene file can contain.
+    void get(base::ByteReader& reader);
+    friend bool operator==(const Tool&, const Tool&) = default;
+};
+
+/// Returns the heading of the tool in the hand, until now `held`, after an operator has replaced the tool of the rules.
+/// A tool that a hand has turned keeps its heading, unless the operator turns the tool.
+[[nodiscard]] inline Heading headingAfter(const Tool& before, const Tool& after, const Heading& held) {
+    return after.heading != before.heading ? after.heading : held;
+}
+
+}  // namespace sand
