@@ -178,14 +178,14 @@ TEST(Grant, TakesAnEditOnceAndOnlyIfItWasAskedFor) {
 TEST(Grant, GivesAStepTheEditThatWasAskedFor) {
     Grant grant({1, 0, 0}, {}, {});
     const sand::Edit load = withNumber(7, sand::Edit::loaded({1, 2, 3}));
-    const sand::Edit tune = withNumber(8, sand::Edit::tuned({7, 11, 13, 17}));
+    const sand::Edit tune = withNumber(8, sand::Edit::tuned({7, 11, 13, {.radius = 17}}));
     grant.asked(load);
     grant.asked(tune);
     sand::Step loads = withEdit(1, withNumber(7, sand::Edit::loaded({6, 6, 6})));
     ASSERT_EQ(grant.arrived(loads), Grant::Arrival::next);
     EXPECT_EQ(loads.edit.sand, load.sand) << "the same bytes in memory";
     EXPECT_EQ(loads.edit.number, 7U);
-    sand::Step tunes = withEdit(2, withNumber(8, sand::Edit::tuned({1, 1, 1, 1})));
+    sand::Step tunes = withEdit(2, withNumber(8, sand::Edit::tuned({1, 1, 1, {.radius = 1}})));
     ASSERT_EQ(grant.arrived(tunes), Grant::Arrival::next);
     EXPECT_EQ(tunes.edit, tune);
 }
