@@ -61,7 +61,9 @@ class Package(unittest.TestCase):
             self.assertRegex(depends, package)
 
     def test_it_holds_only_what_a_session_needs(self):
-        found = sorted(path.name for path in (self.prefix / "lib" / "sandwall").iterdir())
+        found = sorted(path.name for path in (self.prefix / "lib" / "sandwall").iterdir() if path.suffix != ".json")
+        lists = sorted(path.stem for path in (self.prefix / "lib" / "sandwall").glob("*.json"))
+        self.assertEqual(lists, [name for name in found if name.startswith("sandwall-") and "." not in name], "options of each program")
         self.assertEqual(found, ["python", *sorted(
             f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", *(["gl-osmesa.so"] if osmesa() else []), "haptic-server", "import.so",
                                             "master", "relax", "render-node", "replay", "security.so", "track", "watch"))])
