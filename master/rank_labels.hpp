@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fmt/format.h>
-
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -19,25 +16,10 @@ struct RankLabels {
     std::vector<std::string> hosts;  // hosts that the ranks run on
     std::vector<std::string> tiles;  // names of the tiles; empty for the master
 
-    static RankLabels of(const lockstep::Cluster& cluster, const walls::Wall& wall) {
-        RankLabels labels{{"the master"}, {cluster.hosts().front().name}, {""}};
-        for (const walls::Tile& tile : wall.tiles) {
-            const std::string& host = cluster.hosts()[static_cast<std::size_t>(tile.rank)].name;
-            labels.names.push_back(fmt::format("rank {} (tile {}) on {}", tile.rank, tile.name, host));
-            labels.hosts.push_back(host);
-            labels.tiles.push_back(tile.name);
-        }
-        return labels;
-    }
+    static RankLabels of(const lockstep::Cluster& cluster, const walls::Wall& wall);
 
     /// Returns the report of a failure. `what` and `rank` are as in FailureReport; `line` is its message.
-    [[nodiscard]] FailureReport failure(const std::string& what, int rank, const std::string& line) const {
-        if (rank < 0) {
-            return {what, rank, "", "", line};
-        }
-        const auto index = static_cast<std::size_t>(rank);
-        return {what, rank, hosts[index], tiles[index], line};
-    }
+    [[nodiscard]] FailureReport failure(const std::string& what, int rank, const std::string& line) const;
 };
 
 }  // namespace master
