@@ -258,7 +258,9 @@ std::optional<int> CommandLine::parse(int argc, char** argv) {
 }
 
 Option addSandThreads(CommandLine& line, int& threads) {
-    return line.option("--sand-threads", threads, "threads that sweep the sand; the sand is the same with any number")
+    return line
+        .option("--sand-threads", threads,
+                "threads that sweep the sand (default: 1); the sand is the same with any number")
         .metavar("N")
         .range(1, kMostThreads);
 }

@@ -19,11 +19,21 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, **options):
         super().__init__(**options)
         os.umask(os.umask(0o022) | 0o022)
-        self.later = None
+        self.later = self.help_later = None
 
     def add_later(self, complete):
         """Calls `complete` before the first parse. A command of many has options then only if it is the chosen one."""
         self.later = complete
+
+    def add_help_later(self, complete):
+        """Calls `complete` before the first help. For texts that need a build, in a command that does not."""
+        self.help_later = complete
+
+    def format_help(self):
+        if self.help_later is not None:
+            complete, self.help_later = self.help_later, None
+            complete()
+        return super().format_help()
 
     def parse_known_args(self, *args, **options):
         if self.later is not None:

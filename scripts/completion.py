@@ -23,7 +23,7 @@ def answer(commands, words):
         found = [*commands, "--help", "--version"]
     elif command in programs.TOOLS:
         listed = program_options.listed(f"sandwall-{command}")
-        found = [entry["name"] for entry in [*listed.get("commands", ()), *listed["options"]]] + ["--help"]
+        found = [entry["name"] for entry in [*listed.get("commands", ()), *listed["options"]]] + ["--help", "--version"]
     elif command not in commands:
         found = []
     elif option is None:

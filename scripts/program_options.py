@@ -59,7 +59,7 @@ def whole(value):
 
 def add_option(parser, option):
     """Adds an option of a program to a parser of the launcher."""
-    help_text = option["help"].replace("%", "%%") + (" (default: %(default)s)" if "default" in option else "")
+    help_text = (option["help"] + option.get("more", "")).replace("%", "%%") + (" (default: %(default)s)" if "default" in option else "")
     if option["kind"] == "flag":
         parser.add_argument(option["name"], action="store_true", help=help_text)
         return
@@ -68,10 +68,11 @@ def add_option(parser, option):
                         action="append" if several else "store", default=[] if several else option.get("default"), help=help_text)
 
 
-def add(parser, command, groups=None):
+def add(parser, command, groups=None, changes=None):
     """Adds all options that the programs offer to this command. Options that exclude each other share a group.
 
-    `groups` has a group of argparse for some options, which options of the launcher exclude.
+    `groups` has a group of argparse for some options, which options of the launcher exclude. `changes` has what the launcher
+    changes in some of them: another default, fewer values, or more help.
     """
     groups, added = dict(groups or {}), set()
     for program in PROGRAMS:
@@ -85,7 +86,7 @@ def add(parser, command, groups=None):
             if name in excluded and name not in groups:
                 groups[name] = parser.add_mutually_exclusive_group()
             place = next((groups[other] for other in [name, *option.get("excludes", ())] if other in groups), parser)
-            add_option(place, option)
+            add_option(place, {**option, **(changes or {}).get(name, {})})
 
 
 def words(args, command, program, **instead):

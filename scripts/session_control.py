@@ -98,8 +98,12 @@ def ctl(args):
 def add_parser(commands, remainder):
     """Adds `ctl` to the launcher's commands, and returns its parser. `remainder` is argparse.REMAINDER."""
     parser = commands.add_parser("ctl", help="command a running session",
-                                 description="Commands a session that runs on this machine; docs/operator.md. "
-                                             "SESSION and the verb help list the commands.")
+                                 description="Commands a session that runs on this machine; docs/operator.md.")
+
+    def complete():
+        parser.epilog = f"Commands: help, {', '.join(verbs())}."
+
+    parser.add_help_later(complete)
     parser.set_defaults(run=ctl)
     parser.add_argument("session", metavar="SESSION", help="the session's folder, or the journal in it")
     parser.add_argument("words", metavar="VERB", nargs=remainder, help="command and its arguments")

@@ -14,7 +14,6 @@ import unittest
 from launcher_fixture import ROOT, LauncherTest
 
 import layout
-import program_options
 from rank_hosts import BadInput
 
 
@@ -43,18 +42,6 @@ class Names(unittest.TestCase):
     def test_an_unknown_name_lists_the_known_ones(self):
         with self.assertRaisesRegex(BadInput, "^dnes: no file and no known name; scenes .*: dunes, .*, writing$"):
             layout.found("scenes", "dnes")
-
-    def test_known_strokes_are_a_device(self):
-        self.assertEqual(program_options.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
-        (self.folder / "stroke").write_text("")
-        for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "pointer", "none"):
-            self.assertEqual(program_options.device(spec), spec)
-
-    def test_an_unknown_device_names_the_known_ones(self):
-        with self.assertRaisesRegex(BadInput, "^giss: no file and no known name; strokes .*: ellipses, .*, stroke$"):
-            program_options.device("script:giss")
-        with self.assertRaisesRegex(BadInput, "--device pointer"):
-            program_options.device("mouse")
 
     def test_a_journal_and_its_folder_name_the_same_session(self):
         session = self.folder / "session"

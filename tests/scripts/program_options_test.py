@@ -7,6 +7,7 @@ Needs the lists of options beside the built programs. usage: program_options_tes
 
 import contextlib
 import io
+import os
 import subprocess
 import unittest
 
@@ -15,6 +16,7 @@ from launcher_fixture import BIN, ROOT, LauncherTest
 import program_options
 from command_line import Parser
 from program_options import MASTER, NODE, PROGRAMS, SERVER
+from rank_hosts import BadInput
 
 
 def good_value(option):
@@ -78,6 +80,26 @@ class Offered(unittest.TestCase):
         with contextlib.redirect_stderr(io.StringIO()) as said, self.assertRaises(SystemExit):
             parser_of("run").parse_args(["--steps", "1", "--frames", "1"])
         self.assertIn("not allowed with argument --steps", said.getvalue())
+
+
+class Devices(LauncherTest):
+    def setUp(self):
+        super().setUp()
+        folder = os.getcwd()
+        self.addCleanup(os.chdir, folder)
+        os.chdir(self.folder)
+
+    def test_known_strokes_are_a_device(self):
+        self.assertEqual(program_options.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
+        (self.folder / "stroke").write_text("")
+        for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "pointer", "none"):
+            self.assertEqual(program_options.device(spec), spec)
+
+    def test_an_unknown_device_names_the_known_ones(self):
+        with self.assertRaisesRegex(BadInput, "^giss: no file and no known name; strokes .*: ellipses, .*, stroke$"):
+            program_options.device("script:giss")
+        with self.assertRaisesRegex(BadInput, "--device pointer"):
+            program_options.device("mouse")
 
 
 class WithoutABuild(LauncherTest):

@@ -50,6 +50,10 @@ class Ctl(Supervised):
             status, printed, error = self.ctl(word)
             self.assertEqual((status, error), (0, ""), word)
             self.assertEqual([line.split()[0] for line in printed.splitlines()], listed)
+        told = subprocess.run([ROOT / "scripts" / "sandwall", "ctl", "--help"], env=self.environment, capture_output=True, text=True, timeout=60)
+        self.assertEqual((told.returncode, told.stderr), (0, ""))
+        for verb in listed:
+            self.assertRegex(told.stdout, rf"[ \n]{verb}\b")
 
 
 if __name__ == "__main__":
