@@ -31,16 +31,17 @@ bool MessageReader::mayBeLong(std::uint8_t type) const {
     return type == typeOf<State>() ? stateExpected_ : type == typeOf<EditRequest>() && loadsExpected_;
 }
 
-void MessageReader::feed(std::span<const std::uint8_t> bytes) {
-    if (begin_ > 0) {
-        const auto rest = std::span<const std::uint8_t>(buffer_).subspan(begin_);
-        if (buffer_.capacity() > kMaxKept && rest.size() <= kMaxKept) {
-            buffer_ = base::Bytes(rest.begin(), rest.end());  // frees the memory of a long message
-        } else {
-            buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
-        }
+void MessageReader::freeLongMessage() {
+    const auto rest = std::span<const std::uint8_t>(buffer_).subspan(begin_);
+    if (buffer_.capacity() > kMaxKept && rest.size() <= kMaxKept) {
+        buffer_ = base::Bytes(rest.begin(), rest.end());  // `= {}` would keep the memory
         begin_ = 0;
     }
+}
+
+void MessageReader::feed(std::span<const std::uint8_t> bytes) {
+    buffer_.erase(buffer_.begin(), buffer_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
     const std::size_t end = buffer_.size();
     buffer_.resize(end + bytes.size());
     std::copy(bytes.begin(), bytes.end(), buffer_.begin() + static_cast<std::ptrdiff_t>(end));
@@ -67,10 +68,7 @@ std::optional<Message> MessageReader::next() {
         throw base::FormatError("a state that was not requested");
     }
     Message message = decode(stream.subspan(kLengthBytes, length));
-    if (begin_ == buffer_.size() && buffer_.capacity() > kMaxKept) {  // frees the memory of a long message
-        buffer_ = {};
-        begin_ = 0;
-    }
+    freeLongMessage();
     return message;
 }
 

@@ -25,8 +25,11 @@ public:
     void limit(std::size_t most) { most_ = most; }
     /// Returns whether the stream ends in the middle of a message.
     [[nodiscard]] bool midMessage() const { return begin_ < buffer_.size(); }
+    /// Returns the memory that the reader holds [byte]. It holds no long message that next() has returned.
+    [[nodiscard]] std::size_t bytes() const { return buffer_.capacity(); }
 
 private:
+    void freeLongMessage();
     [[nodiscard]] bool mayBeLong(std::uint8_t type) const;
 
     base::Bytes buffer_;

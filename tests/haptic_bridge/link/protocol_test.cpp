@@ -231,6 +231,22 @@ TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
     }
 }
 
+// A load has up to 192 MiB, and its step may wait for seconds.
+TEST(Protocol, ALongMessageIsNotKeptAfterItWasRead) {
+    const base::Bytes load = encode(EditRequest{samples::withNumber(3, sand::Edit::loaded(base::Bytes(8 << 20, 7)))});
+    const base::Bytes next = encode(Ping{5});
+    for (const std::size_t behind : {std::size_t{0}, std::size_t{3}, next.size()}) {
+        MessageReader reader;
+        reader.expectLoads(true);
+        reader.feed(load);
+        reader.feed(std::span(next).first(behind));
+        ASSERT_TRUE(reader.next());
+        EXPECT_LE(reader.bytes(), std::size_t{1} << 20) << behind << " bytes of the next message";
+        reader.feed(std::span(next).subspan(behind));
+        EXPECT_EQ(reader.next(), Message(Ping{5}));
+    }
+}
+
 TEST(Protocol, SurvivesRandomMutations) {
     const unsigned seed = test::randomSeed();
     SCOPED_TRACE(test::again(seed));
