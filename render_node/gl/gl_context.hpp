@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "render_node/gl/gl_platform.hpp"
 #include "base/names.hpp"
+#include "render_node/gl/gl_platform.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {

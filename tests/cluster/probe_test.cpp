@@ -100,8 +100,10 @@ TEST_F(Probe, WindowsThatAreNotAsWishedAreTold) {
 
 TEST_F(Probe, WhatCannotBeTriedIsOneLine) {
     const std::string file = placedWall("windows = [[10, 20]]");
-    for (const auto& [options, named] :
-         {std::pair{"3", "--probe"}, {"2", "--gl glfw"}, {"1 --gl cray", "cray not in {auto,osmesa,egl,glfw}"}, {"-1", "--probe"}}) {
+    for (const auto& [options, named] : {std::pair{"3", "--probe"},
+                                         {"2", "--gl glfw"},
+                                         {"1 --gl cray", "cray not in {auto,osmesa,egl,glfw}"},
+                                         {"-1", "--probe"}}) {
         const support::Ran ran = probe(file, options);
         expectOneLine({ran.status, ran.output}, named);
     }

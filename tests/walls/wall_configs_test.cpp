@@ -93,7 +93,8 @@ TEST(WallConfigs, TheSandFillsMostOfAWallAndNoneOfItFallsOff) {
             EXPECT_GT((highest - lowest).y, 2 * 0.7) << name << ": of the picture's height";
         }
     }
-    EXPECT_EQ(corners, std::vector<std::string>{"flex_cave.toml"}) << "walls that are not flat, which no single camera sees";
+    EXPECT_EQ(corners, std::vector<std::string>{"flex_cave.toml"})
+        << "walls that are not flat, which no single camera sees";
 }
 
 TEST(WallConfigs, TheSandStandsPartlyBeforeAndPartlyBehindTheWall) {

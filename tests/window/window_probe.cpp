@@ -121,7 +121,8 @@ int show(const Options& options) {
     wall.stereo = options.active ? walls::Stereo::active : walls::Stereo::mono;
     wall.refreshHz = options.refresh;
     wall.tiles = {tileOf(options)};
-    const auto context = render_node::makeContext(base::valueNamed<render_node::Backend>(options.gl).value(), wall, wall.tiles[0]);
+    const auto context =
+        render_node::makeContext(base::valueNamed<render_node::Backend>(options.gl).value(), wall, wall.tiles[0]);
     std::cout << "context " << context->name() << "\nrenderer " << context->renderer() << "\n";
 
     const scene::Scene scene = sample::duneScene(options.cells);

@@ -19,8 +19,9 @@ int keepFrames(const std::filesystem::path& folder, const std::string& policy) {
     const auto say = [&](const std::string& line) { log << line << std::endl; };
     const scene::Scene scene = samples::flatScene(40, 30);
     sand::Replica terrain(scene);
-    master::JournalKeeper keeper(folder, {.policy = base::valueNamed<master::JournalPolicy>(policy).value(), .checkpointSeconds = 0}, scene,
-                                 nullptr, "", "test");
+    master::JournalKeeper keeper(
+        folder, {.policy = base::valueNamed<master::JournalPolicy>(policy).value(), .checkpointSeconds = 0}, scene,
+        nullptr, "", "test");
     say("made");
     for (std::uint64_t frame = 1; frame <= 3; ++frame) {
         const sand::Step step{1, frame, false, {}};
