@@ -168,6 +168,7 @@ void parseArgument(std::string_view argument, Command& command) {
 
 std::vector<std::string> verbsOfSession() {
     std::vector<std::string> known;
+    known.reserve(kVerbs.size());
     for (const VerbName& verb : kVerbs) {
         known.push_back(fmt::format("{}{}{}", verb.name, verb.argument.empty() ? "" : " ", verb.argument));
     }
