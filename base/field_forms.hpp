@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,6 +14,21 @@
 /// Forms in which a member of a described type can be written (fields.hpp). Each refers to the member, and lives only
 /// while it is visited.
 namespace base {
+
+namespace detail {
+
+/// Returns a number in the fewest digits that give it again.
+template <class Number>
+[[nodiscard]] std::string digitsOf(Number number) {
+    if constexpr (std::is_floating_point_v<Number>) {
+        std::array<char, 32> text{};
+        return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+    } else {
+        return std::to_string(number);
+    }
+}
+
+}  // namespace detail
 
 /// Integer of 0 or more, with 7 bits in each byte.
 template <class Number>
@@ -41,8 +57,8 @@ struct Limited {
     void get(ByteReader& reader) const requires(!std::is_const_v<Number>) {
         value = reader.get<Number>();
         if (!(value >= least && value <= most)) {  // refuses NaN too
-            throw FormatError("is " + std::to_string(value) + ", not from " + std::to_string(least) + " to " +
-                              std::to_string(most));
+            throw FormatError("is " + detail::digitsOf(value) + ", not from " + detail::digitsOf(least) + " to " +
+                              detail::digitsOf(most));
         }
     }
 };
@@ -71,8 +87,8 @@ struct Constant {
     std::string_view what;
     void put(ByteWriter& writer) const { writer.put(value); }
     void get(ByteReader& reader) const {
-        if (reader.get<Number>() != value) {
-            throw FormatError("is not " + std::string(what));
+        if (const auto read = reader.get<Number>(); read != value) {
+            throw FormatError("is " + std::to_string(read) + ", not " + std::string(what));
         }
     }
 };
@@ -81,29 +97,29 @@ template <class Number>
     return {value, what};
 }
 
-/// Bools in one byte, the first in its lowest bit. The other bits are 0.
-template <class Bool, std::size_t kCount>
+/// Bools in one integer, the first in its lowest bit. The other bits are 0.
+template <class Number, class Bool, std::size_t kCount>
 struct Flags {
     std::array<Bool*, kCount> values;
     void put(ByteWriter& writer) const {
-        unsigned byte = 0;
+        unsigned bits = 0;
         for (std::size_t i = 0; i < kCount; ++i) {
-            byte |= static_cast<unsigned>(*values[i]) << i;
+            bits |= static_cast<unsigned>(*values[i]) << i;
         }
-        writer.put(static_cast<std::uint8_t>(byte));
+        writer.put(static_cast<Number>(bits));
     }
     void get(ByteReader& reader) const requires(!std::is_const_v<Bool>) {
-        const unsigned byte = reader.get<std::uint8_t>();
-        if (byte >> kCount != 0) {
-            throw FormatError("is " + std::to_string(byte) + ", with unknown bits");
+        const auto bits = static_cast<std::make_unsigned_t<Number>>(reader.get<Number>());
+        if (bits >> kCount != 0) {
+            throw FormatError("is " + std::to_string(bits) + ", with unknown bits");
         }
         for (std::size_t i = 0; i < kCount; ++i) {
-            *values[i] = (byte >> i & 1U) != 0;
+            *values[i] = (bits >> i & 1U) != 0;
         }
     }
 };
-template <class Bool, class... More>
-[[nodiscard]] Flags<Bool, 1 + sizeof...(More)> flags(Bool& first, More&... more) {
+template <class Number = std::uint8_t, class Bool, class... More>
+[[nodiscard]] Flags<Number, Bool, 1 + sizeof...(More)> flags(Bool& first, More&... more) {
     static_assert(sizeof...(more) < 8);
     return {{&first, &more...}};
 }
@@ -159,6 +175,49 @@ template <class Count = void, class List>
     return {value, most};
 }
 
+/// Elements up to the end. Each takes a byte or more.
+template <class List>
+struct ToEnd {
+    List& value;
+    void put(ByteWriter& writer) const {
+        for (const auto& element : value) {
+            putMember(writer, element);
+        }
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<List>) {
+        value.clear();
+        while (!reader.atEnd()) {
+            getMember(reader, value.emplace_back());
+        }
+    }
+};
+template <class List>
+[[nodiscard]] ToEnd<List> toEnd(List& value) {
+    return {value};
+}
+
+/// `count` elements without their number, which both sides know.
+template <class List>
+struct Exactly {
+    List& value;
+    std::size_t count;
+    void put(ByteWriter& writer) const {
+        for (std::size_t i = 0; i < count; ++i) {
+            putMember(writer, value[i]);
+        }
+    }
+    void get(ByteReader& reader) const requires(!std::is_const_v<List>) {
+        value.clear();
+        while (value.size() < count) {
+            getMember(reader, value.emplace_back());
+        }
+    }
+};
+template <class List>
+[[nodiscard]] Exactly<List> exactly(List& value, std::size_t count) {
+    return {value, count};
+}
+
 /// Text of at most `most` bytes behind its length of 32 bits.
 template <class Text>
 struct TextUpTo {
@@ -179,20 +238,20 @@ template <class Text>
     return {value, most};
 }
 
-/// Number behind a byte that is 0 or 1. The number's bytes are there in any case.
+/// Member behind a byte that is 0 or 1. The member's bytes are there in any case.
 template <class Optional>
 struct SpacedOptional {
     Optional& value;
-    using Number = typename std::remove_const_t<Optional>::value_type;
+    using Member = typename std::remove_const_t<Optional>::value_type;
     void put(ByteWriter& writer) const {
         writer.put(static_cast<std::uint8_t>(value.has_value()));
-        writer.put(value.value_or(Number{}));
+        putMember(writer, value.value_or(Member{}));
     }
     void get(ByteReader& reader) const requires(!std::is_const_v<Optional>) {
         const bool there = detail::getBool(reader);
-        Number number{};
-        getMember(reader, number);
-        value = there ? Optional(number) : std::nullopt;
+        Member member{};
+        getMember(reader, member);
+        value = there ? Optional(member) : std::nullopt;
     }
 };
 template <class Optional>
@@ -263,6 +322,22 @@ struct Block {
 };
 template <class AnyBytes>
 [[nodiscard]] Block<AnyBytes> block(AnyBytes& value) {
+    return {value};
+}
+
+/// Described value in a block of its own, which is empty for nullopt.
+template <class Optional>
+struct OptionalBlock {
+    Optional& value;
+    using Member = typename std::remove_const_t<Optional>::value_type;
+    void put(ByteWriter& writer) const { writer.putBlock(value ? encoded(*value) : Bytes()); }
+    void get(ByteReader& reader) const requires(!std::is_const_v<Optional>) {
+        const auto block = reader.getBlock();
+        value = block.empty() ? std::nullopt : Optional(decoded<Member>(block));
+    }
+};
+template <class Optional>
+[[nodiscard]] OptionalBlock<Optional> optionalBlock(Optional& value) {
     return {value};
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "base/byte_stream.hpp"
@@ -39,6 +40,7 @@
 /// | bool | one byte, 0 or 1 |
 /// | enum with valuesOf() | one byte, one of these values |
 /// | std::array of bytes, std::array of other members | the bytes; the elements |
+/// | vector of GLM, std::pair | the coordinates; both members |
 /// | std::optional | one byte, 0 or 1, and the value after a 1 |
 /// | described type | its members |
 ///
@@ -99,6 +101,16 @@ concept Array = requires {
 };
 template <class T>
 concept ByteArray = Array<T> && std::same_as<typename T::value_type, std::uint8_t>;
+/// A vector of GLM, whose headers this file does not need.
+template <class T>
+concept Vector = requires(T& vector) {
+    typename std::integral_constant<int, T::length()>;
+    vector[0] = typename T::value_type{};
+};
+template <class T>
+inline constexpr bool kIsPair = false;
+template <class A, class B>
+inline constexpr bool kIsPair<std::pair<A, B>> = true;
 
 /// Reads one byte that must be 0 or 1.
 [[nodiscard]] inline bool getBool(ByteReader& reader) {
@@ -126,6 +138,13 @@ void putMember(ByteWriter& writer, const Member& member) {
         for (const auto& element : member) {
             putMember(writer, element);
         }
+    } else if constexpr (detail::Vector<Member>) {
+        for (int i = 0; i < Member::length(); ++i) {
+            putMember(writer, member[i]);
+        }
+    } else if constexpr (detail::kIsPair<Member>) {
+        putMember(writer, member.first);
+        putMember(writer, member.second);
     } else if constexpr (detail::kIsOptional<Member>) {
         writer.put(static_cast<std::uint8_t>(member.has_value()));
         if (member) {
@@ -167,6 +186,13 @@ void getMember(ByteReader& reader, Member&& member) {
         for (auto& element : member) {
             getMember(reader, element);
         }
+    } else if constexpr (detail::Vector<T>) {
+        for (int i = 0; i < T::length(); ++i) {
+            getMember(reader, member[i]);
+        }
+    } else if constexpr (detail::kIsPair<T>) {
+        getMember(reader, member.first);
+        getMember(reader, member.second);
     } else if constexpr (detail::kIsOptional<T>) {
         member.reset();
         if (detail::getBool(reader)) {

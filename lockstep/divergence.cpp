@@ -14,20 +14,9 @@ Account accountOf(sand::Replica& terrain) {
 }
 
 std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Replica& terrain) {
-    const Account mine = accountOf(terrain);
-    base::ByteWriter writer;
-    writer.put(mine.hash);
-    for (const std::uint64_t tile : mine.tiles) {
-        writer.put(tile);
-    }
     std::vector<Account> accounts;
-    for (const base::Bytes& bytes : barrier.collect(writer.take())) {
-        base::ByteReader reader(bytes);
-        Account& account = accounts.emplace_back();
-        account.hash = reader.get<std::uint64_t>();
-        while (!reader.atEnd()) {
-            account.tiles.push_back(reader.get<std::uint64_t>());
-        }
+    for (const base::Bytes& bytes : barrier.collect(base::encoded(accountOf(terrain)))) {
+        accounts.push_back(base::decoded<Account>(bytes));
     }
     return accounts;
 }
@@ -38,17 +27,9 @@ std::vector<std::int32_t> heightsOf(const sand::Replica& terrain, int tile) {
 
 /// Returns the values in hash tile `tile` of all ranks at the master, in order of rank.
 std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Replica& terrain, int tile) {
-    base::ByteWriter writer;
-    for (const std::int32_t height : heightsOf(terrain, tile)) {
-        writer.put(height);
-    }
     std::vector<std::vector<std::int32_t>> all;
-    for (const base::Bytes& bytes : barrier.collect(writer.take())) {
-        base::ByteReader reader(bytes);
-        std::vector<std::int32_t>& heights = all.emplace_back();
-        while (!reader.atEnd()) {
-            heights.push_back(reader.get<std::int32_t>());
-        }
+    for (const base::Bytes& bytes : barrier.collect(base::encoded(TileValues{heightsOf(terrain, tile)}))) {
+        all.push_back(base::decoded<TileValues>(bytes).values);
     }
     return all;
 }
@@ -112,10 +93,8 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& t
     }
     // Collects the values of the first odd rank's tile from all ranks. One wrong value suggests a bit flip, many
     // suggest a bug.
-    base::ByteWriter writer;
-    writer.put(result.odd.empty() ? -1 : result.odd.front().tile);
-    const base::Bytes told = barrier.tellAll(writer.take());
-    const int tile = base::ByteReader(told).get<int>();
+    const TileRequest request{result.odd.empty() ? -1 : result.odd.front().tile};
+    const int tile = base::decoded<TileRequest>(barrier.tellAll(base::encoded(request))).tile;
     const auto heights = collectHeights(barrier, terrain, tile);
     if (!barrier.cluster().isMaster()) {
         return std::nullopt;

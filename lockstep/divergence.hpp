@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/field_forms.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "sand/replica.hpp"
 
@@ -42,6 +43,29 @@ struct Divergence {
 struct Account {
     std::uint64_t hash = 0;
     std::vector<std::uint64_t> tiles;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("hash", it.hash);
+        visit("tiles", base::toEnd(it.tiles));
+    }
+};
+
+/// Number of the hash tile whose values all ranks send to the master, or -1.
+struct TileRequest {
+    std::int32_t tile = -1;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("tile", it.tile);
+    }
+};
+
+/// Values of one rank in a hash tile, as sand::Replica::valuesOf() gives them.
+struct TileValues {
+    std::vector<std::int32_t> values;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("values", base::toEnd(it.values));
+    }
 };
 
 /// Result of counting how many ranks have each state hash.

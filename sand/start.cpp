@@ -44,7 +44,9 @@ void Start::encodeSand(base::ByteWriter& writer) const {
 
 void Start::decodeSand(base::ByteReader& reader, double cellSize) {
     const bool grid = rules.tin == 0;
-    terrain = HeightField(grid ? rules.columns : 1, grid ? rules.rows : 1, cellSize);
+    const int columns = grid ? rules.columns : 1, rows = grid ? rules.rows : 1;
+    requireCells(reader, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    terrain = HeightField(columns, rows, cellSize);
     decodeCells(reader, terrain.bounds(), kMaxHeight, terrain.cells());
     if (!grid) {
         tin = std::make_shared<const tin::TinStart>(tin::TinStart::decode(reader));

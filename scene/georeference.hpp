@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <string>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace scene {
+
+inline constexpr std::size_t kLongestText = 1 << 16;  // [byte] in an encoded scene; the longest WKT takes a tenth of it
 
 /// Units of the lengths and heights of a raster. Programs hold heights in the unit of lengths, whatever unit the file
 /// has.
@@ -30,10 +33,22 @@ struct Georeference {
     /// Returns the size of a cubic scene unit [m³], or 0 if the length of the units is unknown.
     [[nodiscard]] double cubicMetres() const;
 
-    void encode(base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for invalid numbers, and for a text that is too long to be a
-    /// WKT.
-    static Georeference decode(base::ByteReader& reader);
+    /// The order in an encoded scene.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr double kHighest = std::numeric_limits<double>::max();
+        constexpr double kLeast = std::numeric_limits<double>::denorm_min();  // the least that is more than 0
+        visit("crs", base::text(it.units.crs, kLongestText));
+        visit("height_unit", base::text(it.units.heightName, kLongestText));
+        visit("length_metres", base::limited(it.units.lengthMetres, 0, kHighest));
+        visit("height_metres", base::limited(it.units.heightMetres, 0, kHighest));
+        visit("heights_per_length", base::limited(it.units.heightsPerLength, kLeast, kHighest));
+        visit("length_per_unit", base::limited(it.lengthPerUnit, kLeast, kHighest));
+        visit("height_per_unit", base::limited(it.heightPerUnit, kLeast, kHighest));
+        visit("west", it.west);
+        visit("south", it.south);
+        visit("datum", it.datum);
+    }
 };
 
 }  // namespace scene

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/field_forms.hpp"
+#include "scene/georeference.hpp"
 
 namespace scene {
 
@@ -23,13 +24,12 @@ struct RasterStatement {
     /// The order in an encoded scene.
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        constexpr std::size_t kLongest = 1 << 16;  // [byte] of one text; a path takes less
-        visit("file", base::text(it.file, kLongest));
-        visit("across", base::text(it.across, kLongest));
-        visit("across_from", base::text(it.acrossFrom, kLongest));
-        visit("up", base::text(it.up, kLongest));
-        visit("up_from", base::text(it.upFrom, kLongest));
-        visit("no_data", base::optionalText(it.noData, kLongest));
+        visit("file", base::text(it.file, kLongestText));
+        visit("across", base::text(it.across, kLongestText));
+        visit("across_from", base::text(it.acrossFrom, kLongestText));
+        visit("up", base::text(it.up, kLongestText));
+        visit("up_from", base::text(it.upFrom, kLongestText));
+        visit("no_data", base::optionalText(it.noData, kLongestText));
         visit("no_data_share", base::limited(it.noDataShare, 0, 1));
     }
     friend bool operator==(const RasterStatement&, const RasterStatement&) = default;

@@ -2,126 +2,126 @@
 #include "scene/scene.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace scene {
 namespace {
 
-/// Parts that may follow a scene, each with its length in bytes.
-enum class Part : std::uint8_t { georeference = 1, statements = 2 };
+/// Part that may follow a scene, with its length in bytes.
+struct Part {
+    enum class Kind : std::uint8_t { georeference = 1, statements = 2 };
+    friend constexpr auto valuesOf(Kind) {
+        return std::array{base::Named{Kind::georeference, "georeference"}, base::Named{Kind::statements, "statements"}};
+    }
+    Kind kind{};
+    base::Bytes bytes;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("kind", it.kind);
+        visit("bytes", base::block(it.bytes));
+    }
+};
 
-constexpr std::size_t kMostStatements = 16;  // a terrain has two files at most
-
-void encodePart(Part part, const base::ByteWriter& bytes, base::ByteWriter& writer) {
-    writer.put(static_cast<std::uint8_t>(part));
-    writer.putBlock(bytes.bytes());
-}
-
-void encodeStatements(const std::vector<RasterStatement>& statements, base::ByteWriter& writer) {
-    base::ByteWriter part;
-    base::upTo<std::uint32_t>(statements, kMostStatements).put(part);
-    encodePart(Part::statements, part, writer);
-}
-
-std::vector<RasterStatement> decodeStatements(base::ByteReader& reader) {
+/// Bytes of Part::statements.
+struct Statements {
     std::vector<RasterStatement> statements;
-    base::upTo<std::uint32_t>(statements, kMostStatements).get(reader);
-    return statements;
-}
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::size_t kMost = 16;  // a terrain has two files at most
+        visit("statements", base::upTo<std::uint32_t>(it.statements, kMost));
+    }
+};
 
-void decodePart(base::ByteReader& reader, Scene& scene) {
-    const auto part = static_cast<Part>(reader.get<std::uint8_t>());
-    base::ByteReader bytes(reader.getBlock());
-    switch (part) {
-        case Part::georeference:
-            scene.georeference = Georeference::decode(bytes);
-            break;
-        case Part::statements:
-            scene.statements = decodeStatements(bytes);
-            break;
-        default:
-            throw base::FormatError("a scene with a part that this version does not know");
+/// Form of the parts of a scene. Statements are the last part, so that a scene without them has the same first bytes.
+template <class AnyScene>
+struct Parts {
+    AnyScene& scene;
+    bool withStatements;
+    void put(base::ByteWriter& writer) const {
+        if (scene.georeference != Georeference{}) {
+            base::putMember(writer, Part{Part::Kind::georeference, base::encoded(scene.georeference)});
+        }
+        if (scene.statements && withStatements) {
+            base::putMember(writer, Part{Part::Kind::statements, base::encoded(Statements{*scene.statements})});
+        }
     }
-    if (!bytes.atEnd()) {
-        throw base::FormatError("a scene with a part that is longer than it should be");
+    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
+        while (!reader.atEnd()) {
+            const Part part = base::read<Part>(reader);
+            if (part.kind == Part::Kind::georeference) {
+                scene.georeference = base::decoded<Georeference>(part.bytes);
+            } else {
+                scene.statements = base::decoded<Statements>(part.bytes).statements;
+            }
+        }
     }
-}
+};
+
+/// Form of the sand and the ground of a scene, whose size and kind are in the rules.
+template <class AnyScene>
+struct Sand {
+    AnyScene& scene;
+    double cellSize;  // [scene unit]
+    void put(base::ByteWriter& writer) const { scene.encodeSand(writer); }
+    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
+        scene.decodeSand(reader, cellSize);
+    }
+};
+
+/// The first fields of a scene. The rules give the size of the rest.
+struct Head {
+    std::string name;
+    sand::Rules rules;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("name", base::text(it.name, kLongestText));
+        visit("rules", it.rules);
+    }
+};
+
+/// All fields of a scene.
+template <class AnyScene>
+struct Whole {
+    AnyScene& scene;
+    bool withStatements = true;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        AnyScene& scene = it.scene;
+        Head::fields(scene, visit);
+        sand::ForceConstants::oldestFields(scene.force, visit);
+        Look::colourFields(scene.look, visit);
+        double cellSize = scene.terrain.cellSize();
+        visit("cell_size",
+              base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
+        visit("sand", Sand<AnyScene>{scene, cellSize});
+        Look::shadingFields(scene.look, visit);
+        sand::ForceConstants::otherFields(scene.force, visit);
+        visit("parts", Parts<AnyScene>{scene, it.withStatements});
+    }
+};
 
 }  // namespace
 
-base::ByteWriter Scene::encodeWithoutStatements() const {
-    base::ByteWriter writer;
-    writer.putText(name);
-    base::putMember(writer, rules);
-    for (const double constant : {force.stiffness, force.depthExponent, force.friction}) {
-        writer.put(constant);
-    }
-    for (const auto* triple : {&look.sandColour, &look.backgroundColour, &look.sunDirection}) {
-        for (const double number : *triple) {
-            writer.put(number);
-        }
-    }
-    writer.put(terrain.cellSize());
-    encodeSand(writer);
-    writer.put(static_cast<std::uint8_t>((look.hillShade ? 1 : 0) | (look.flatShading ? 2 : 0)));
-    writer.put(look.detail);
-    force.encodeRest(writer);
-    if (georeference != Georeference{}) {
-        base::ByteWriter part;
-        georeference.encode(part);
-        encodePart(Part::georeference, part, writer);
-    }
-    return writer;
-}
-
-base::Bytes Scene::encode() const {
-    base::ByteWriter writer = encodeWithoutStatements();
-    if (statements) {  // the last part, so that isEncodedAs() can leave it out
-        encodeStatements(*statements, writer);
-    }
-    return writer.take();
-}
+base::Bytes Scene::encode() const { return base::encoded(Whole<const Scene>{*this}); }
 
 bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
-    const base::Bytes own = encodeWithoutStatements().take();
+    const base::Bytes own = base::encoded(Whole<const Scene>{*this, false});
     if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
         return false;
     }
     const auto rest = bytes.subspan(own.size());
-    return rest.empty() || rest.front() == static_cast<std::uint8_t>(Part::statements);
+    return rest.empty() || rest.front() == static_cast<std::uint8_t>(Part::Kind::statements);
 }
 
 sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
-    (void)reader.getText();  // the name
-    return base::read<sand::Rules>(reader);
+    return base::read<Head>(reader).rules;
 }
 
 Scene Scene::decode(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     Scene scene;
-    scene.name = reader.getText();
-    scene.rules = base::read<sand::Rules>(reader);
-    for (double* constant : {&scene.force.stiffness, &scene.force.depthExponent, &scene.force.friction}) {
-        *constant = reader.get<double>();
-    }
-    for (auto* triple : {&scene.look.sandColour, &scene.look.backgroundColour, &scene.look.sunDirection}) {
-        for (double& number : *triple) {
-            number = reader.get<double>();
-        }
-    }
-    const auto cellSize = reader.get<double>();
-    if (!(cellSize > 0)) {
-        throw base::FormatError("a scene without a cell size");
-    }
-    scene.decodeSand(reader, cellSize);
-    const auto flags = reader.get<std::uint8_t>();
-    scene.look.hillShade = (flags & 1U) != 0;
-    scene.look.flatShading = (flags & 2U) != 0;
-    scene.look.detail = reader.get<double>();
-    scene.force.decodeRest(reader);
-    while (!reader.atEnd()) {
-        decodePart(reader, scene);
-    }
+    base::getMember(reader, Whole<Scene>{scene});
     return scene;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "sand/force/force_constants.hpp"
 #include "sand/start.hpp"
 #include "scene/georeference.hpp"
@@ -26,6 +26,21 @@ struct Look {
     bool hillShade = false;  // whether the sand is drawn as a map until an operator changes that
     /// Largest shift of the picture of any sand by a level of detail [pixel]; 0 draws every cell.
     double detail = 0.5;
+    static constexpr double kMostDetail = 64;  // [pixel]
+
+    /// The colours and the sun. An encoded scene has them before the sand.
+    template <class Self, class Visit>
+    static void colourFields(Self& it, Visit& visit) {
+        visit("sand", base::exactly(it.sandColour, 3));
+        visit("background", base::exactly(it.backgroundColour, 3));
+        visit("sun", base::exactly(it.sunDirection, 3));
+    }
+    /// The rest. An encoded scene has it behind the sand.
+    template <class Self, class Visit>
+    static void shadingFields(Self& it, Visit& visit) {
+        visit("shading", base::flags(it.hillShade, it.flatShading));
+        visit("detail", base::limited(it.detail, 0, kMostDetail));
+    }
 };
 
 /// Everything that a session begins with, read from a TOML file: rules, sand, ground, material, force and look.
@@ -53,10 +68,6 @@ struct Scene : sand::Start {
     static Scene decode(std::span<const std::uint8_t> bytes);
     /// Decodes only the rules, which give the size of the rest. Throws base::FormatError.
     static sand::Rules decodeRules(std::span<const std::uint8_t> bytes);
-
-private:
-    /// Writes all but the statements, which are the last part.
-    [[nodiscard]] base::ByteWriter encodeWithoutStatements() const;
 };
 
 }  // namespace scene

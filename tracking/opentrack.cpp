@@ -2,15 +2,31 @@
 #include "tracking/opentrack.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "base/field_forms.hpp"
 
 namespace tracking {
 namespace {
 
-constexpr std::size_t kPacketSize = 6 * sizeof(double);
 constexpr double kMetresPerCentimetre = 0.01;
 constexpr double kLargestAngle = 360;  // [degree]
+
+/// A packet as opentrack sends it. Any number can be NaN.
+struct Packet {
+    double x = 0, y = 0, z = 0;           // [cm]
+    double yaw = 0, pitch = 0, roll = 0;  // [degree]
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("x", base::anyFloat(it.x));
+        visit("y", base::anyFloat(it.y));
+        visit("z", base::anyFloat(it.z));
+        visit("yaw", base::anyFloat(it.yaw));
+        visit("pitch", base::anyFloat(it.pitch));
+        visit("roll", base::anyFloat(it.roll));
+    }
+};
+constexpr std::size_t kPacketSize = 6 * sizeof(double);
 
 }  // namespace
 
@@ -18,30 +34,23 @@ Reading OpentrackReader::read(std::span<const std::uint8_t> packet, bool) {
     if (packet.size() != kPacketSize) {
         return {};
     }
-    base::ByteReader reader(packet);
-    std::array<double, 6> value{};
-    for (double& one : value) {
-        one = reader.get<double>();
-    }
-    for (std::size_t angle = 3; angle < 6; ++angle) {
-        if (!(std::abs(value[angle]) <= kLargestAngle)) {
+    const auto [x, y, z, yaw, pitch, roll] = base::decoded<Packet>(packet);
+    for (const double angle : {yaw, pitch, roll}) {
+        if (!(std::abs(angle) <= kLargestAngle)) {
             return {};
         }
     }
-    const Measured measured{glm::dvec3(-value[0], value[1], value[2]) * kMetresPerCentimetre,
-                            rotationOf(-value[3], value[4], value[5])};
+    const Measured measured{glm::dvec3(-x, y, z) * kMetresPerCentimetre, rotationOf(-yaw, pitch, roll)};
     return plausible(measured) ? Reading{Reading::Kind::pose, measured} : Reading{};
 }
 
 base::Bytes opentrackPacket(const Pose& pose) {
-    base::ByteWriter writer;
-    writer.put(-pose.position.x / kMetresPerCentimetre);
-    writer.put(pose.position.y / kMetresPerCentimetre);
-    writer.put(pose.position.z / kMetresPerCentimetre);
-    writer.put(-glm::degrees(std::atan2(-pose.right.z, pose.right.x)));
-    writer.put(0.0);
-    writer.put(glm::degrees(std::asin(std::clamp(pose.right.y, -1.0, 1.0))));
-    return writer.take();
+    return base::encoded(Packet{.x = -pose.position.x / kMetresPerCentimetre,
+                                .y = pose.position.y / kMetresPerCentimetre,
+                                .z = pose.position.z / kMetresPerCentimetre,
+                                .yaw = -glm::degrees(std::atan2(-pose.right.z, pose.right.x)),
+                                .pitch = 0,
+                                .roll = glm::degrees(std::asin(std::clamp(pose.right.y, -1.0, 1.0)))});
 }
 
 }  // namespace tracking

@@ -10,26 +10,23 @@
 #include "base/input_error.hpp"
 
 namespace walls {
-std::string_view eyeName(Eye eye) {
-    constexpr std::array<std::string_view, 3> kNames{"left", "right", "middle"};
-    return kNames.at(static_cast<std::size_t>(eye));
-}
-
 const std::vector<std::string>& stereoNames() {
-    static const std::vector<std::string> kNames{"mono",         "left",         "right",         "passive",
-                                                 "active",       "side_by_side", "top_bottom",    "row_interlaced",
-                                                 "checkerboard", "anaglyph",     "anaglyph_half", "anaglyph_dubois"};
+    static const std::vector<std::string> kNames = [] {
+        std::vector<std::string> names;
+        for (const auto& mode : valuesOf(Stereo{})) {
+            names.emplace_back(mode.name);
+        }
+        return names;
+    }();
     return kNames;
 }
 
-std::string_view stereoName(Stereo stereo) { return stereoNames().at(static_cast<std::size_t>(stereo)); }
-
 Stereo stereoNamed(const std::string& name) {
-    const auto found = std::find(stereoNames().begin(), stereoNames().end(), name);
-    if (found == stereoNames().end()) {
+    const auto found = base::valueNamed<Stereo>(name);
+    if (!found) {
         throw base::InputError(fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(stereoNames(), ", ")));
     }
-    return static_cast<Stereo>(found - stereoNames().begin());
+    return *found;
 }
 
 std::span<const Eye> eyesOf(Stereo stereo) {

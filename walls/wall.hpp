@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 /// Geometry of the display in the room, and of its viewer. It is the same on every rank.
 ///
@@ -19,11 +21,18 @@
 /// may call them.
 namespace walls {
 
-inline constexpr int kMaxTiles = 1024;      // of one wall
-inline constexpr int kMaxTileSide = 16384;  // [pixel]
+inline constexpr int kMaxTiles = 1024;             // of one wall
+inline constexpr int kMaxTileSide = 16384;         // [pixel]
+inline constexpr std::size_t kLongestWord = 4096;  // [byte] of a text in a wall's bytes; a wall file's are shorter
+inline constexpr std::size_t kMostOutputs = 255;   // of a tile, and eyes of an output, in a wall's bytes
 
 /// Eye for which a picture is drawn. `middle` is the midpoint of both eyes.
 enum class Eye : std::uint8_t { left, right, middle };
+/// The names are those in the file names of pictures.
+constexpr auto valuesOf(Eye) {
+    return std::array{base::Named{Eye::left, "left"}, base::Named{Eye::right, "right"},
+                      base::Named{Eye::middle, "middle"}};
+}
 /// Stereo mode: how a tile's pictures reach the two eyes. All modes except `passive` have one output per tile.
 enum class Stereo : std::uint8_t {
     mono,            // one picture, seen from the midpoint of the eyes
@@ -39,12 +48,26 @@ enum class Stereo : std::uint8_t {
     anaglyphHalf,    // red from the left eye's luminance, green and blue from the right
     anaglyphDubois   // both eyes mixed by Dubois' least-squares matrices (2001) for red-cyan glasses
 };
-inline constexpr Stereo kLastStereo = Stereo::anaglyphDubois;
+/// The names are those in wall files and options.
+constexpr auto valuesOf(Stereo) {
+    using enum Stereo;
+    return std::array{base::Named{mono, "mono"},
+                      base::Named{left, "left"},
+                      base::Named{right, "right"},
+                      base::Named{passive, "passive"},
+                      base::Named{active, "active"},
+                      base::Named{sideBySide, "side_by_side"},
+                      base::Named{topBottom, "top_bottom"},
+                      base::Named{rowInterlaced, "row_interlaced"},
+                      base::Named{checkerboard, "checkerboard"},
+                      base::Named{anaglyphColour, "anaglyph"},
+                      base::Named{anaglyphHalf, "anaglyph_half"},
+                      base::Named{anaglyphDubois, "anaglyph_dubois"}};
+}
+inline constexpr Stereo kLastStereo = valuesOf(Stereo{}).back().value;
 
-/// Returns "left", "right" or "middle", as in the file names of pictures.
-[[nodiscard]] std::string_view eyeName(Eye eye);
-/// Returns the mode's name in wall files and options, such as "side_by_side".
-[[nodiscard]] std::string_view stereoName(Stereo stereo);
+[[nodiscard]] inline std::string_view eyeName(Eye eye) { return base::nameOf(eye); }
+[[nodiscard]] inline std::string_view stereoName(Stereo stereo) { return base::nameOf(stereo); }
 /// Returns the names of all modes, in the order of Stereo.
 [[nodiscard]] const std::vector<std::string>& stereoNames();
 /// Returns the mode with this name. Throws base::InputError, which lists all names, if there is no such mode.
@@ -70,6 +93,13 @@ struct Screen {
     [[nodiscard]] double distanceTo(glm::dvec3 eye) const {
         return glm::dot(eye - lowerLeft, normal());
     }  // [m], < 0 behind
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("lower_left", it.lowerLeft);
+        visit("lower_right", it.lowerRight);
+        visit("upper_left", it.upperLeft);
+    }
     friend bool operator==(const Screen&, const Screen&) = default;
 };
 
@@ -79,6 +109,14 @@ struct Output {
     std::vector<Eye> eyes;             // eyes that it shows
     std::string monitor;               // monitor for a full screen, named as xrandr lists it; empty: a window
     std::optional<glm::ivec2> window;  // [pixel], place of the window's top left corner; nullopt: the system chooses
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("name", base::text(it.name, kLongestWord));
+        visit("eyes", base::upTo<std::uint8_t>(it.eyes, kMostOutputs));
+        visit("monitor", base::text(it.monitor, kLongestWord));
+        visit("window", base::spacedOptional(it.window));
+    }
     friend bool operator==(const Output&, const Output&) = default;
 };
 
@@ -87,6 +125,13 @@ struct Place {
     std::string host;          // name of the machine for mpirun; empty: any machine
     std::string display;       // X display, such as ":0.1"; empty: the rank's DISPLAY
     std::int32_t device = -1;  // number of the EGL device; -1: the driver chooses
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("host", base::text(it.host, kLongestWord));
+        visit("display", base::text(it.display, kLongestWord));
+        visit("device", base::limited(it.device, -1, std::numeric_limits<std::int32_t>::max()));
+    }
     friend bool operator==(const Place&, const Place&) = default;
 };
 
@@ -99,6 +144,20 @@ struct Tile {
     glm::ivec2 pixels{1, 1};  // [pixel], width and height of one eye's picture
     std::vector<Output> outputs;
     Place place;
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("rank", it.rank);
+        visit("row", it.row);
+        visit("column", it.column);
+        visit("name", base::text(it.name, kLongestWord));
+        visit("screen", it.screen);
+        visit("pixels", it.pixels);
+        visit("outputs", base::upTo<std::uint8_t>(it.outputs, kMostOutputs));
+        visit("place", it.place);
+    }
+    /// Returns which of its own numbers no wall file can give, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Tile&, const Tile&) = default;
 };
 
@@ -107,12 +166,29 @@ struct Viewer {
     glm::dvec3 eye{0};             // [m], the midpoint of the eyes
     double eyeSeparation = 0.065;  // [m]
     glm::dvec3 right{1, 0, 0};     // unit vector from the left eye to the right one
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("eye", it.eye);
+        visit("eye_separation", it.eyeSeparation);
+        visit("right", it.right);
+    }
+    /// Returns why the eyes are impossible, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Viewer&, const Viewer&) = default;
 };
 
 /// Clipping planes, parallel to each screen. Only things between them are drawn.
 struct Clip {
     double near = 0.1, far = 100;  // [m], distances from the eye
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("near", it.near);
+        visit("far", it.far);
+    }
+    /// Returns why the planes are impossible, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Clip&, const Clip&) = default;
 };
 
@@ -122,6 +198,16 @@ struct Stage {
     double width = 1;        // [m], length of the field's longer side in the room
     double tiltDegrees = 0;  // about x: the north edge rises, and the surface turns towards the viewer
     double turnDegrees = 0;  // about the vertical after the tilt, counter-clockwise seen from above
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("centre", it.centre);
+        visit("width", it.width);
+        visit("tilt_deg", it.tiltDegrees);
+        visit("turn_deg", it.turnDegrees);
+    }
+    /// Returns that the field has no size, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Stage&, const Stage&) = default;
 };
 
@@ -133,6 +219,20 @@ struct Grid {
     glm::ivec2 tilePixels{1};  // [pixel], of one eye's picture
     glm::dvec3 lowerLeft{0};   // [m], lower left corner of the whole grid
     glm::dvec3 right{1, 0, 0}, up{0, 1, 0};  // perpendicular unit vectors
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("rows", base::limited(it.rows, 1, kMaxTiles));
+        visit("columns", base::limited(it.columns, 1, kMaxTiles));
+        visit("tile_size", it.tileSize);
+        visit("bezel", it.bezel);
+        visit("tile_pixels", it.tilePixels);
+        visit("lower_left", it.lowerLeft);
+        visit("right", it.right);
+        visit("up", it.up);
+    }
+    /// Returns why the tiles have no size, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Grid&, const Grid&) = default;
 };
 
@@ -152,9 +252,24 @@ struct Wall {
     [[nodiscard]] int ranks() const { return static_cast<int>(tiles.size()); }
     /// Returns the wall as bytes. The master broadcasts them, so that no other rank reads a wall file.
     [[nodiscard]] base::Bytes encode() const;
-    /// Returns the wall of encode(). Throws base::FormatError if the bytes are too few or too many, or if a value is
-    /// invalid.
+    /// Returns the wall of encode(). Throws base::FormatError, which names the value that no wall file can give.
     static Wall decode(std::span<const std::uint8_t> bytes);
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("encoding", base::constant(std::uint8_t{2}, "encoding 2, the only one that this program knows"));
+        visit("name", base::text(it.name, kLongestWord));
+        visit("viewer", it.viewer);
+        visit("stereo", it.stereo);
+        visit("refresh_hz", it.refreshHz);
+        visit("tracking", base::text(it.tracking, kLongestWord));
+        visit("clip", it.clip);
+        visit("stage", it.stage);
+        visit("grid", it.grid);
+        visit("tiles", base::upTo<std::uint32_t>(it.tiles, kMaxTiles));
+    }
+    /// Returns which of its parts do not fit together, or an empty text.
+    [[nodiscard]] std::string refusal() const;
     friend bool operator==(const Wall&, const Wall&) = default;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -11,247 +10,104 @@
 namespace walls {
 namespace {
 
-constexpr std::uint8_t kEncoding = 2;
-
-template <glm::length_t N, class Number>
-void put(base::ByteWriter& writer, const glm::vec<N, Number>& vector) {
-    for (glm::length_t i = 0; i < N; ++i) {
-        writer.put(vector[i]);
-    }
+std::string pixelRefusal(glm::ivec2 pixels) {
+    const bool possible = pixels.x >= 1 && pixels.y >= 1 && pixels.x <= kMaxTileSide && pixels.y <= kMaxTileSide;
+    return possible ? "" : fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y);
 }
 
-template <class Vector>
-Vector getVector(base::ByteReader& reader) {
-    Vector vector;
-    for (glm::length_t i = 0; i < Vector::length(); ++i) {
-        vector[i] = reader.get<typename Vector::value_type>();
-        if (!std::isfinite(static_cast<double>(vector[i]))) {
-            throw base::FormatError("a wall with a coordinate that is not finite");
-        }
-    }
-    return vector;
-}
-
-double getLength(base::ByteReader& reader) { return getVector<glm::dvec1>(reader).x; }
-
-template <class Choice>
-Choice getChoice(base::ByteReader& reader, Choice last) {
-    const auto value = reader.get<std::uint8_t>();
-    if (value > static_cast<std::uint8_t>(last)) {
-        throw base::FormatError(fmt::format("a wall with a choice of {}", value));
-    }
-    return static_cast<Choice>(value);
-}
-
-void put(base::ByteWriter& writer, const Grid& grid) {
-    writer.put(grid.rows);
-    writer.put(grid.columns);
-    put(writer, grid.tileSize);
-    put(writer, grid.bezel);
-    put(writer, grid.tilePixels);
-    put(writer, grid.lowerLeft);
-    put(writer, grid.right);
-    put(writer, grid.up);
-}
-
-void checkPixels(glm::ivec2 pixels) {
-    if (pixels.x < 1 || pixels.y < 1 || pixels.x > kMaxTileSide || pixels.y > kMaxTileSide) {
-        throw base::FormatError(fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y));
-    }
-}
-
-Grid getGrid(base::ByteReader& reader) {
-    Grid grid;
-    grid.rows = reader.get<std::int32_t>();
-    grid.columns = reader.get<std::int32_t>();
-    grid.tileSize = getVector<glm::dvec2>(reader);
-    grid.bezel = getVector<glm::dvec2>(reader);
-    grid.tilePixels = getVector<glm::ivec2>(reader);
-    grid.lowerLeft = getVector<glm::dvec3>(reader);
-    grid.right = getVector<glm::dvec3>(reader);
-    grid.up = getVector<glm::dvec3>(reader);
-    checkPixels(grid.tilePixels);
-    const bool sized = grid.tileSize.x > 0 && grid.tileSize.y > 0;
-    if (!sized || glm::any(glm::greaterThan(grid.bezel, grid.tileSize)) ||
-        glm::any(glm::lessThanEqual(grid.tileSize + grid.bezel, glm::dvec2(0))) || grid.rows < 1 || grid.columns < 1 ||
-        grid.rows > kMaxTiles || grid.columns > kMaxTiles) {
-        throw base::FormatError(
-            fmt::format("a grid of {} rows and {} columns without a size", grid.rows, grid.columns));
-    }
-    return grid;
-}
-
-void put(base::ByteWriter& writer, const Tile& tile) {
-    writer.put(tile.rank);
-    writer.put(tile.row);
-    writer.put(tile.column);
-    writer.putText(tile.name);
-    put(writer, tile.screen.lowerLeft);
-    put(writer, tile.screen.lowerRight);
-    put(writer, tile.screen.upperLeft);
-    put(writer, tile.pixels);
-    writer.put(static_cast<std::uint8_t>(tile.outputs.size()));
-    for (const Output& output : tile.outputs) {
-        writer.putText(output.name);
-        writer.put(static_cast<std::uint8_t>(output.eyes.size()));
-        for (const Eye eye : output.eyes) {
-            writer.put(static_cast<std::uint8_t>(eye));
-        }
-        writer.putText(output.monitor);
-        writer.put(static_cast<std::uint8_t>(output.window.has_value()));
-        put(writer, output.window.value_or(glm::ivec2(0)));
-    }
-    writer.putText(tile.place.host);
-    writer.putText(tile.place.display);
-    writer.put(tile.place.device);
-}
-
-Tile getTile(base::ByteReader& reader) {
-    Tile tile;
-    tile.rank = reader.get<std::int32_t>();
-    tile.row = reader.get<std::int32_t>();
-    tile.column = reader.get<std::int32_t>();
-    tile.name = reader.getText();
-    tile.screen.lowerLeft = getVector<glm::dvec3>(reader);
-    tile.screen.lowerRight = getVector<glm::dvec3>(reader);
-    tile.screen.upperLeft = getVector<glm::dvec3>(reader);
-    tile.pixels = getVector<glm::ivec2>(reader);
-    checkPixels(tile.pixels);
-    tile.outputs.resize(reader.get<std::uint8_t>());
-    for (Output& output : tile.outputs) {
-        output.name = reader.getText();
-        output.eyes.resize(reader.get<std::uint8_t>());
-        for (Eye& eye : output.eyes) {
-            eye = getChoice(reader, Eye::middle);
-        }
-        output.monitor = reader.getText();
-        const bool placed = getChoice(reader, std::uint8_t{1}) == 1;
-        const auto window = getVector<glm::ivec2>(reader);
-        output.window = placed ? std::optional(window) : std::nullopt;
-    }
-    tile.place.host = reader.getText();
-    tile.place.display = reader.getText();
-    tile.place.device = reader.get<std::int32_t>();
-    return tile;
-}
-
-void require(bool holds, const Tile& tile, const char* what) {
-    if (!holds) {
-        throw base::FormatError(fmt::format("a wall whose tile of rank {} {}", tile.rank, what));
-    }
-}
-
-/// Checks that the outputs and their eyes are those of the stereo mode, because a rank draws by them.
-void checkOutputs(const Tile& tile, Stereo stereo) {
+/// Returns why the outputs and their eyes are not those of the stereo mode, or an empty text. A rank draws by them.
+std::string outputRefusal(const Tile& tile, Stereo stereo) {
     const std::vector<Output> expected = outputsOf(stereo, tile.name);
-    require(tile.outputs.size() == expected.size(), tile, "has outputs of another stereo");
+    if (tile.outputs.size() != expected.size()) {
+        return "has outputs of another stereo";
+    }
     for (std::size_t i = 0; i < expected.size(); ++i) {
-        const Output& output = tile.outputs[i];
-        require(output.name == expected[i].name && output.eyes == expected[i].eyes, tile,
-                "shows eyes of another stereo");
-        require(output.monitor.empty() || !output.window, tile, "has a monitor and a window at once");
-        require(isOneLine(output.monitor, kMaxTracking), tile, "has a monitor without a name");
+        if (tile.outputs[i].name != expected[i].name || tile.outputs[i].eyes != expected[i].eyes) {
+            return "shows eyes of another stereo";
+        }
     }
+    return "";
 }
 
-void checkTile(const Wall& wall, const Tile& tile) {
-    require(tile.rank == wall.ranks() + 1, tile, "is out of order");
+/// Returns why the tile is at another place of the wall than its rank says, or an empty text.
+std::string placeRefusal(const Wall& wall, const Tile& tile) {
     if (tile.row == 0 && tile.column == 0) {
-        require(isTileName(tile.name), tile, "has no fit name");
-    } else {
-        require(wall.grid && tile.row >= 1 && tile.row <= wall.grid->rows && tile.column >= 1 &&
-                    tile.column <= wall.grid->columns &&
-                    tile.rank == (tile.row - 1) * wall.grid->columns + tile.column &&
-                    tile.name == fmt::format("r{}c{}", tile.row, tile.column),
-                tile, "is out of its grid");
+        return isTileName(tile.name) ? "" : "has no fit name";
     }
-    const double width = tile.screen.width(), height = tile.screen.height();
-    require(width > 0 && height > 0, tile, "has no size");
-    require(std::abs(glm::dot(tile.screen.right(), tile.screen.up())) < 1e-6, tile, "is not a rectangle");
-    require(tile.place.device >= -1, tile, "has no such device");
-    checkOutputs(tile, wall.stereo);
-}
-
-void checkFrame(const Wall& wall) {
-    const Viewer& viewer = wall.viewer;
-    const bool eyes = viewer.eyeSeparation > 0 && viewer.eyeSeparation <= kMaxEyeSeparation &&
-                      std::abs(glm::length(viewer.right) - 1) < 1e-9;
-    const bool rates = wall.refreshHz >= kMinRefresh && wall.refreshHz <= kMaxRefresh;
-    const bool drawn = wall.clip.near > 0 && wall.clip.far > wall.clip.near && wall.stage.width > 0;
-    if (!eyes || !rates || !drawn || !isOneLine(wall.tracking, kMaxTracking)) {
-        throw base::FormatError("a wall with eyes, rates or planes that cannot be");
-    }
+    const bool inGrid = wall.grid && tile.row >= 1 && tile.row <= wall.grid->rows && tile.column >= 1 &&
+                        tile.column <= wall.grid->columns &&
+                        tile.rank == (tile.row - 1) * wall.grid->columns + tile.column &&
+                        tile.name == fmt::format("r{}c{}", tile.row, tile.column);
+    return inGrid ? "" : "is out of its grid";
 }
 
 }  // namespace
 
-base::Bytes Wall::encode() const {
-    base::ByteWriter writer;
-    writer.put(kEncoding);
-    writer.putText(name);
-    put(writer, viewer.eye);
-    writer.put(viewer.eyeSeparation);
-    put(writer, viewer.right);
-    writer.put(static_cast<std::uint8_t>(stereo));
-    writer.put(refreshHz);
-    writer.putText(tracking);
-    writer.put(clip.near);
-    writer.put(clip.far);
-    put(writer, stage.centre);
-    writer.put(stage.width);
-    writer.put(stage.tiltDegrees);
-    writer.put(stage.turnDegrees);
-    writer.put(static_cast<std::uint8_t>(grid.has_value()));
-    if (grid) {
-        put(writer, *grid);
+std::string Viewer::refusal() const {
+    if (!(eyeSeparation > 0 && eyeSeparation <= kMaxEyeSeparation)) {
+        return fmt::format("eyes {} m apart", eyeSeparation);
     }
-    writer.put(static_cast<std::uint32_t>(tiles.size()));
-    for (const Tile& tile : tiles) {
-        put(writer, tile);
-    }
-    return writer.take();
+    return std::abs(glm::length(right) - 1) < 1e-9 ? "" : "right is not a unit vector";
 }
 
-Wall Wall::decode(std::span<const std::uint8_t> bytes) {
-    base::ByteReader reader(bytes);
-    if (const auto encoding = reader.get<std::uint8_t>(); encoding != kEncoding) {
-        throw base::FormatError(fmt::format("a wall in encoding {}, this program knows {}", encoding, kEncoding));
+std::string Clip::refusal() const {
+    return near > 0 && far > near ? "" : fmt::format("planes at {} and {} m", near, far);
+}
+
+std::string Stage::refusal() const { return width > 0 ? "" : fmt::format("a field of {} m", width); }
+
+std::string Grid::refusal() const {
+    const bool sized = tileSize.x > 0 && tileSize.y > 0 && !glm::any(glm::greaterThan(bezel, tileSize)) &&
+                       !glm::any(glm::lessThanEqual(tileSize + bezel, glm::dvec2(0)));
+    return sized ? pixelRefusal(tilePixels)
+                 : fmt::format("tiles of {} x {} m with bezels of {} x {} m", tileSize.x, tileSize.y, bezel.x, bezel.y);
+}
+
+std::string Tile::refusal() const {
+    const auto fault = [this](const char* what) { return fmt::format("the tile of rank {} {}", rank, what); };
+    if (!(screen.width() > 0 && screen.height() > 0)) {
+        return fault("has no size");
     }
-    Wall wall;
-    wall.name = reader.getText();
-    wall.viewer.eye = getVector<glm::dvec3>(reader);
-    wall.viewer.eyeSeparation = getLength(reader);
-    wall.viewer.right = getVector<glm::dvec3>(reader);
-    wall.stereo = getChoice(reader, kLastStereo);
-    wall.refreshHz = getLength(reader);
-    wall.tracking = reader.getText();
-    wall.clip.near = getLength(reader);
-    wall.clip.far = getLength(reader);
-    wall.stage.centre = getVector<glm::dvec3>(reader);
-    wall.stage.width = getLength(reader);
-    wall.stage.tiltDegrees = getLength(reader);
-    wall.stage.turnDegrees = getLength(reader);
-    if (getChoice(reader, std::uint8_t{1}) == 1) {
-        wall.grid = getGrid(reader);
+    if (!(std::abs(glm::dot(screen.right(), screen.up())) < 1e-6)) {
+        return fault("is not a rectangle");
     }
-    checkFrame(wall);
-    const auto count = reader.get<std::uint32_t>();
-    const std::uint32_t gridTiles =
-        wall.grid ? static_cast<std::uint32_t>(wall.grid->rows) * static_cast<std::uint32_t>(wall.grid->columns) : 0;
-    if (count < 1 || count > kMaxTiles || count < gridTiles) {
-        throw base::FormatError(fmt::format("a wall of {} tiles", count));
+    for (const Output& output : outputs) {
+        if (!output.monitor.empty() && output.window) {
+            return fault("has a monitor and a window at once");
+        }
+        if (!isOneLine(output.monitor, kMaxTracking)) {
+            return fault("has a monitor without a name");
+        }
+    }
+    return pixelRefusal(pixels);
+}
+
+std::string Wall::refusal() const {
+    if (!(refreshHz >= kMinRefresh && refreshHz <= kMaxRefresh)) {
+        return fmt::format("{} frames per second", refreshHz);
+    }
+    if (!isOneLine(tracking, kMaxTracking)) {
+        return "tracking is not one line";
+    }
+    const std::int64_t gridTiles = grid ? std::int64_t{grid->rows} * grid->columns : 0;
+    if (tiles.empty() || static_cast<std::int64_t>(tiles.size()) < gridTiles) {
+        return fmt::format("{} tiles", tiles.size());
     }
     std::set<std::string> names;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const Tile tile = getTile(reader);
-        checkTile(wall, tile);
-        require(names.insert(tile.name).second, tile, "has the name of another");
-        wall.tiles.push_back(tile);
+    for (const Tile& tile : tiles) {
+        std::string fault = placeRefusal(*this, tile);
+        fault = fault.empty() ? outputRefusal(tile, stereo) : fault;
+        fault = tile.rank == static_cast<int>(names.size()) + 1 ? fault : "is out of order";
+        fault = names.insert(tile.name).second ? fault : "has the name of another";
+        if (!fault.empty()) {
+            return fmt::format("the tile of rank {} {}", tile.rank, fault);
+        }
     }
-    if (!reader.atEnd()) {
-        throw base::FormatError(fmt::format("{} bytes after the last tile of a wall", reader.rest().size()));
-    }
-    return wall;
+    return "";
 }
+
+base::Bytes Wall::encode() const { return base::encoded(*this); }
+
+Wall Wall::decode(std::span<const std::uint8_t> bytes) { return base::decoded<Wall>(bytes); }
 
 }  // namespace walls

@@ -30,7 +30,7 @@ Stereo readStereo(const TomlTable& file) {
         return Stereo::mono;
     }
     table->only({"mode"});
-    return static_cast<Stereo>(table->choiceOr("mode", {stereoNames().begin(), stereoNames().end()}, 0));
+    return table->valueOr("mode", Stereo::mono);
 }
 
 std::string readTracking(const TomlTable& file) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/names.hpp"
 #include "sand/force/vec3.hpp"
 
 namespace haptic_bridge {
@@ -21,6 +22,9 @@ struct HandSettings {
     enum class Engage { near, always, button };
     /// Height 0 of the hand: the starting surface below the hand, or the mean height of that surface.
     enum class Datum { surface, level };
+    friend constexpr auto valuesOf(Datum) {
+        return std::array{base::Named{Datum::surface, "surface"}, base::Named{Datum::level, "level"}};
+    }
 
     std::array<std::string, 4> columns{"time", "x", "y", "z"};
     double secondsPerTick = 1;                                     // [s], unit of times that are written as numbers

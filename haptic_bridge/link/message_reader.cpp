@@ -10,7 +10,6 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);
 constexpr std::size_t kMaxKept = 1024 * 1024;  // [byte], largest capacity that a buffer keeps after a long message
 
 template <class Kind>
@@ -52,7 +51,7 @@ std::optional<Message> MessageReader::next() {
     if (stream.size() < kLengthBytes) {
         return std::nullopt;
     }
-    const auto length = base::ByteReader(stream).get<std::uint32_t>();
+    const std::uint32_t length = framedLength(stream);
     const bool longMessage = length > most_;
     if (length == 0 || length > kMaxState || (longMessage && !stateExpected_ && !loadsExpected_)) {
         throw base::FormatError(fmt::format("a message of {} bytes; at most {} are allowed", length, most_));

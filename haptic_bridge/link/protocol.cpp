@@ -66,6 +66,10 @@ base::Bytes encode(const Message& message) {
     return framed;
 }
 
+std::uint32_t framedLength(std::span<const std::uint8_t> stream) {
+    return base::ByteReader(stream).get<std::uint32_t>();
+}
+
 Message decode(std::span<const std::uint8_t> typeAndPayload) {
     base::ByteReader reader(typeAndPayload);
     const auto type = reader.get<std::uint8_t>();

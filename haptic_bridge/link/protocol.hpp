@@ -244,6 +244,9 @@ using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, S
 
 /// Returns the bytes of `message` on the wire: length, type, payload.
 [[nodiscard]] base::Bytes encode(const Message& message);
+inline constexpr std::size_t kLengthBytes = sizeof(std::uint32_t);  // before the type
+/// Returns the length of type and payload of the message that begins a stream of kLengthBytes or more.
+[[nodiscard]] std::uint32_t framedLength(std::span<const std::uint8_t> stream);
 
 /// Returns the message that `typeAndPayload` holds. Throws base::FormatError if the type is unknown, if the payload is
 /// too short or too long, or if a value is out of bounds.

@@ -7,8 +7,6 @@
 #include <iterator>
 #include <limits>
 
-#include "haptic_bridge/hand/arm_numbers.hpp"
-
 namespace haptic_bridge {
 namespace {
 
@@ -70,42 +68,6 @@ double getBounded(double most, const char* what, base::ByteReader& reader) {
     return number;
 }
 
-/// Visits all numbers of an arm. Both encoding and decoding use this list.
-template <class Physics, class Visit>
-void eachNumber(Physics& physics, const Visit& visit) {
-    for (auto* number : {&physics.mass, &physics.damping, &physics.friction, &physics.resolution, &physics.maxForce,
-                         &physics.reach, &physics.maxStiffness}) {
-        visit(*number);
-    }
-}
-
-void putHeader(const TrackHeader& header, base::ByteWriter& writer) {
-    writer.put(static_cast<std::uint8_t>(header.body));
-    writer.putText(header.physics.name);
-    eachNumber(header.physics, [&](double number) { writer.put(number); });
-    writer.put(static_cast<std::int32_t>(header.physics.delayTicks));
-    writer.put(header.scale);
-    writer.put(static_cast<std::uint8_t>(header.datum));
-    writer.put(static_cast<std::uint8_t>(header.literal));
-}
-
-TrackHeader getHeader(base::ByteReader& reader) {
-    TrackHeader header;
-    header.body = reader.get<std::uint8_t>() != 0;
-    header.physics.name = reader.getText();
-    eachNumber(header.physics, [&](double& number) { number = reader.get<double>(); });
-    header.physics.delayTicks = reader.get<std::int32_t>();
-    header.scale = reader.get<double>();
-    header.datum = static_cast<HandSettings::Datum>(reader.get<std::uint8_t>() & 1);
-    header.literal = reader.get<std::uint8_t>() != 0;
-    if (header.body) {  // a replay computes the limits of the forces from these numbers
-        if (const auto complaint = complaintAbout(header.physics, "an arm")) {
-            throw base::FormatError("a tick track: " + *complaint);
-        }
-    }
-    return header;
-}
-
 }  // namespace
 
 TrackHeader headerOf(const HapticTick& hand) {
@@ -120,12 +82,16 @@ TrackHeader headerOf(const HapticTick& hand) {
     return header;
 }
 
+std::string TrackHeader::refusal() const {
+    return body ? complaintAbout(physics, "an arm").value_or("") : std::string();
+}
+
 base::Bytes encode(const TrackPiece& piece) {
     base::ByteWriter writer;
     writer.put(piece.sitting);
     writer.put(static_cast<std::uint8_t>(piece.begins));
     if (piece.begins) {
-        putHeader(piece.header, writer);
+        base::putMember(writer, piece.header);
         return writer.take();
     }
     writer.putVarint(piece.ticks.size());
@@ -162,9 +128,9 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
     base::ByteReader reader(bytes);
     TrackPiece piece;
     piece.sitting = reader.get<std::uint32_t>();
-    piece.begins = reader.get<std::uint8_t>() != 0;
+    base::getMember(reader, piece.begins);
     if (piece.begins) {
-        piece.header = getHeader(reader);
+        base::getMember(reader, piece.header);
     } else {
         const std::uint64_t count = reader.getVarint();
         if (count > kMostTicksInPiece) {
@@ -201,9 +167,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.talus = talus;
         }
     }
-    if (!reader.atEnd()) {
-        throw base::FormatError("a piece of a tick track with too many bytes");
-    }
+    base::requireEnd(reader);
     return piece;
 }
 

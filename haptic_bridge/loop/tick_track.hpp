@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
+#include "haptic_bridge/hand/arm_numbers.hpp"
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/hand_settings.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
@@ -21,6 +22,24 @@ struct TrackHeader {
     double scale = 1;  // Device::scale()
     HandSettings::Datum datum = HandSettings::Datum::surface;
     bool literal = false;  // Guards::Mode::literal
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::size_t kLongestName = 4096;  // [byte]
+        visit("body", it.body);
+        visit("name", base::text(it.physics.name, kLongestName));
+        for (const ArmNumber& number : kArmNumbers) {
+            if (number.member != nullptr) {
+                visit(number.name, base::anyFloat(it.physics.*number.member));  // NaN for a device without a body
+            }
+        }
+        visit("delay_ticks", it.physics.delayTicks);
+        visit("scale", it.scale);
+        visit("datum", it.datum);
+        visit("literal", it.literal);
+    }
+    /// Returns which number no arm has, or an empty text. A replay computes the limits of the forces from these
+    /// numbers.
+    [[nodiscard]] std::string refusal() const;
 };
 
 /// Piece of the tick track, as a message carries it and a journal keeps it. It belongs to one sitting, from a link's

@@ -2,11 +2,9 @@
 #include "master/journal/checkpoint.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <functional>
 #include <optional>
 
@@ -24,8 +22,6 @@ constexpr std::uint32_t kCheckpointMagic = 0x50435753;  // "SWCP"
 constexpr FileKind kCheckpointKind{.name = "checkpoint", .magic = kCheckpointMagic, .format = 2, .firstFormat = 2};
 constexpr std::string_view kEnding = ".checkpoint";
 
-std::uint64_t checkpointSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
-
 fs::path folderOf(const fs::path& journal) { return journal.parent_path() / "checkpoints"; }
 
 std::optional<std::uint64_t> stepOf(const std::string& name) {
@@ -38,39 +34,10 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
 
 }  // namespace
 
-base::Bytes Checkpoint::encode() const {
-    base::ByteWriter writer;
-    writeOrigin(kCheckpointKind, writer);
-    writer.put(session);
-    writer.putText(buildId);
-    for (const std::uint64_t number : {sceneDigest, step, frame}) {
-        writer.put(number);
-    }
-    writer.put(epoch);
-    writer.put(stateHash);
-    writer.putBlock(state);
-    writer.put(checkpointSum(writer.bytes()));
-    return writer.take();
-}
+base::Bytes Checkpoint::encode() const { return encodeFile(kCheckpointKind, *this); }
 
 Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
-    base::ByteReader reader(bytes);
-    (void)readOrigin(kCheckpointKind, reader);
-    Checkpoint checkpoint;
-    checkpoint.session = reader.get<std::uint64_t>();
-    checkpoint.buildId = reader.getText();
-    for (std::uint64_t* number : {&checkpoint.sceneDigest, &checkpoint.step, &checkpoint.frame}) {
-        *number = reader.get<std::uint64_t>();
-    }
-    checkpoint.epoch = reader.get<std::uint32_t>();
-    checkpoint.stateHash = reader.get<std::uint64_t>();
-    const auto state = reader.getBlock();
-    const std::size_t checked = bytes.size() - reader.rest().size();
-    if (reader.get<std::uint64_t>() != checkpointSum(bytes.first(checked)) || !reader.atEnd()) {
-        throw base::FormatError("damaged: its checksum is wrong");
-    }
-    checkpoint.state.assign(state.begin(), state.end());
-    return checkpoint;
+    return decodeFile<Checkpoint>(kCheckpointKind, bytes);
 }
 
 fs::path checkpointFile(const fs::path& journal, std::uint64_t step) {

@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace master {
+
+inline constexpr std::size_t kLongestBuild = 256;  // [byte] of a build id
 
 /// The whole sand after a step, in a file beside the journal. With it, a resumed session need not replay the whole
 /// journal.
@@ -21,6 +23,17 @@ struct Checkpoint {
     std::uint64_t stateHash = 0;
     base::Bytes state;  // sand::Replica::encodeState()
 
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("session", it.session);
+        visit("build", base::text(it.buildId, kLongestBuild));
+        visit("scene_digest", it.sceneDigest);
+        visit("step", it.step);
+        visit("frame", it.frame);
+        visit("epoch", it.epoch);
+        visit("state_hash", it.stateHash);
+        visit("state", base::block(it.state));
+    }
     [[nodiscard]] base::Bytes encode() const;
     /// Throws base::FormatError if the bytes are damaged or of another release. The caller puts the file's name before
     /// the text. Does not decode the state.

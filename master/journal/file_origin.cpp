@@ -2,8 +2,10 @@
 #include "master/journal/file_origin.hpp"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "host/version.hpp"
 #include "sand/model/rules.hpp"
@@ -33,31 +35,41 @@ std::string refusalOf(const FileKind& kind, const FileOrigin& origin) {
 
 }  // namespace
 
+std::string FileOrigin::refusal() const { return isReleaseName(release) ? "" : "its origin names no release"; }
+
 void writeOrigin(const FileKind& kind, base::ByteWriter& writer) {
-    for (const std::uint32_t number : {kind.magic, kind.format, sand::kAlgorithmVersion}) {
-        writer.put(number);
-    }
-    writer.putText(host::release());
+    base::putMember(writer, kind.magic);
+    base::putMember(writer, FileOrigin{kind.format, sand::kAlgorithmVersion, std::string(host::release())});
 }
 
 FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader) {
-    if (reader.get<std::uint32_t>() != kind.magic) {
+    if (base::read<std::uint32_t>(reader) != kind.magic) {
         throw ForeignFile(fmt::format("not a Sandwall {} file", kind.name));
     }
-    FileOrigin origin;
-    origin.format = reader.get<std::uint32_t>();
-    if (origin.format < kind.firstFormat) {
+    base::ByteReader ahead = reader;
+    if (base::read<std::uint32_t>(ahead) < kind.firstFormat) {
         throw ForeignFile("written before release 0.2.0; no release reads it; run the session again");
     }
-    origin.algorithm = reader.get<std::uint32_t>();
-    origin.release = reader.getText();
-    if (!isReleaseName(origin.release)) {
-        throw base::FormatError("its origin names no release");
-    }
+    auto origin = base::read<FileOrigin>(reader);
     if (origin.format != kind.format || origin.algorithm != sand::kAlgorithmVersion) {
         throw ForeignFile(refusalOf(kind, origin));
     }
     return origin;
+}
+
+std::uint64_t fileSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
+
+std::span<const std::uint8_t> contentOf(std::span<const std::uint8_t> file, const base::ByteReader& reader) {
+    std::uint64_t sum = 0;
+    const auto rest = reader.rest();
+    if (rest.size() < sizeof sum) {
+        throw base::FormatError("cut short");
+    }
+    std::memcpy(&sum, file.data() + file.size() - sizeof sum, sizeof sum);
+    if (sum != fileSum(file.first(file.size() - sizeof sum))) {
+        throw base::FormatError("damaged: its checksum is wrong");
+    }
+    return rest.first(rest.size() - sizeof sum);
 }
 
 }  // namespace master

@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace master {
 
@@ -16,6 +17,14 @@ struct FileOrigin {
     std::uint32_t format = 0;
     std::uint32_t algorithm = 0;  // sand::kAlgorithmVersion
     std::string release;          // such as "0.2.0"
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("format", it.format);
+        visit("algorithm", it.algorithm);
+        visit("release", base::text(it.release, 1 << 16));
+    }
+    /// Returns that the release has no name that can be printed, or an empty text.
+    [[nodiscard]] std::string refusal() const;
 };
 
 /// A kind of file that begins with its origin.
@@ -37,5 +46,30 @@ void writeOrigin(const FileKind& kind, base::ByteWriter& writer);
 /// Reads the magic number and the origin. Throws ForeignFile if this program cannot read such a file, and another
 /// base::FormatError if the origin is cut short or damaged. The caller puts the file's name before the text.
 [[nodiscard]] FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader);
+
+/// Returns the checksum of the bytes of a checkpoint or of saved sand.
+[[nodiscard]] std::uint64_t fileSum(std::span<const std::uint8_t> bytes);
+/// Returns what is between the origin and the checksum of a `file`. `reader` has read the origin. Throws
+/// base::FormatError if the checksum is wrong.
+[[nodiscard]] std::span<const std::uint8_t> contentOf(std::span<const std::uint8_t> file,
+                                                      const base::ByteReader& reader);
+
+/// Returns a file with its origin, a described value and a checksum of both.
+template <base::Described T>
+[[nodiscard]] base::Bytes encodeFile(const FileKind& kind, const T& value) {
+    base::ByteWriter writer;
+    writeOrigin(kind, writer);
+    base::putMember(writer, value);
+    base::putMember(writer, fileSum(writer.bytes()));
+    return writer.take();
+}
+
+/// Returns the value in a file of encodeFile(). Throws as readOrigin() and contentOf() do, and if the value is invalid.
+template <base::Described T>
+[[nodiscard]] T decodeFile(const FileKind& kind, std::span<const std::uint8_t> file) {
+    base::ByteReader reader(file);
+    (void)readOrigin(kind, reader);
+    return base::decoded<T>(contentOf(file, reader));
+}
 
 }  // namespace master

@@ -29,53 +29,23 @@ constexpr std::array<std::string_view, std::variant_size_v<JournalRecord>> kReco
 base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
     base::ByteWriter writer;
     writeOrigin(kJournalKind, writer);
-    writer.put(header.part);
-    for (const std::uint64_t number : {header.session, header.continues, header.sand.step, header.sand.hash}) {
-        writer.put(number);
-    }
-    writer.putText(header.buildId);
-    writer.putBlock(header.scene);
-    base::ByteWriter material;
-    if (header.material) {
-        base::putMember(material, *header.material);
-    }
-    writer.putBlock(material.bytes());
+    base::putMember(writer, header);
     chain = chainedSum(writer.bytes(), header.continues);
     writer.put(chain);
     return writer.take();
 }
-
-namespace {
-
-/// Decodes what follows the origin.
-void decodeRest(JournalHeader& header, base::ByteReader& reader, std::span<const std::uint8_t> all,
-                std::uint64_t& chain) {
-    header.part = reader.get<std::uint32_t>();
-    header.session = reader.get<std::uint64_t>();
-    header.continues = reader.get<std::uint64_t>();
-    header.sand = base::read<JournalEnd>(reader);
-    header.buildId = reader.getText();
-    const auto scene = reader.getBlock();
-    const auto material = reader.getBlock();
-    const std::size_t checked = all.size() - reader.rest().size();
-    chain = reader.get<std::uint64_t>();
-    if (chain != chainedSum(all.first(checked), header.continues)) {
-        throw base::FormatError("its checksum is wrong");
-    }
-    header.scene.assign(scene.begin(), scene.end());
-    if (!material.empty()) {
-        header.material = base::decoded<scene::Material>(material);
-    }
-}
-
-}  // namespace
 
 JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain) {
     const std::span<const std::uint8_t> all = reader.rest();
     JournalHeader header;
     try {
         header.origin = readOrigin(kJournalKind, reader);
-        decodeRest(header, reader, all, chain);
+        base::getMember(reader, header);
+        const std::size_t checked = all.size() - reader.rest().size();
+        chain = base::read<std::uint64_t>(reader);
+        if (chain != chainedSum(all.first(checked), header.continues)) {
+            throw base::FormatError("its checksum is wrong");
+        }
     } catch (const ForeignFile&) {
         throw;
     } catch (const base::FormatError& error) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "master/journal/checkpoint.hpp"
 #include "master/journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 #include "scene/material.hpp"
@@ -127,6 +128,17 @@ struct JournalHeader {
     std::string buildId;
     base::Bytes scene;                        // scene::Scene::encode(); empty in later parts
     std::optional<scene::Material> material;  // with the operator's numbers; nullopt in later parts
+    /// The fields behind the origin.
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("part", it.part);
+        visit("session", it.session);
+        visit("continues", it.continues);
+        visit("sand", it.sand);
+        visit("build", base::text(it.buildId, kLongestBuild));
+        visit("scene", base::block(it.scene));
+        visit("material", base::optionalBlock(it.material));
+    }
 };
 
 /// Error for a journal whose header is cut off or damaged.

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <atomic>
@@ -25,53 +24,9 @@ namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
 constexpr FileKind kSavedKind{.name = "saved sand", .magic = kSavedMagic, .format = 2, .firstFormat = 2};
-constexpr std::size_t kMostAround = 4096;  // [byte], everything except the sand; the scene's name is the only long text
+constexpr std::size_t kMostAround = 2 * kLongestSceneName;  // [byte], everything except the sand
 
-std::uint64_t savedSum(std::span<const std::uint8_t> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
-
-std::string shortName(const std::string& scene) { return scene.substr(0, kMostAround / 2); }
-
-base::Bytes encode(const SavedSand& saved) {
-    base::ByteWriter writer;
-    writeOrigin(kSavedKind, writer);
-    writer.putText(shortName(saved.place.scene));
-    for (const std::int32_t number : {saved.place.columns, saved.place.rows, saved.place.aspect}) {
-        writer.put(number);
-    }
-    writer.put(saved.place.cellSize);
-    writer.put(saved.place.ground);
-    writer.put(saved.step);
-    writer.put(saved.stateHash);
-    writer.putBlock(saved.sand);
-    writer.put(savedSum(writer.bytes()));
-    return writer.take();
-}
-
-SavedSand decode(std::span<const std::uint8_t> bytes) {
-    base::ByteReader reader(bytes);
-    (void)readOrigin(kSavedKind, reader);
-    std::uint64_t expected = 0;
-    if (bytes.size() < sizeof expected) {
-        throw base::FormatError("cut short");
-    }
-    const auto checked = bytes.first(bytes.size() - sizeof expected);
-    std::memcpy(&expected, bytes.data() + checked.size(), sizeof expected);
-    if (savedSum(checked) != expected) {
-        throw base::FormatError("damaged: its checksum is wrong");
-    }
-    SavedSand saved;
-    saved.place.scene = reader.getText();
-    for (std::int32_t* number : {&saved.place.columns, &saved.place.rows, &saved.place.aspect}) {
-        *number = reader.get<std::int32_t>();
-    }
-    saved.place.cellSize = reader.get<double>();
-    saved.place.ground = reader.get<std::uint64_t>();
-    saved.step = reader.get<std::uint64_t>();
-    saved.stateHash = reader.get<std::uint64_t>();
-    const auto sand = reader.getBlock();
-    saved.sand.assign(sand.begin(), sand.end());
-    return saved;
-}
+std::string shortName(const std::string& scene) { return scene.substr(0, kLongestSceneName); }
 
 void requireSamePlace(const SandPlace& saved, const SandPlace& here) {
     if (saved.scene != shortName(here.scene)) {
@@ -164,7 +119,7 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
                                            error.code().message()));
     }
     Unnamed unnamed(file);
-    unnamed.write(encode(saved));
+    unnamed.write(encodeFile(kSavedKind, saved));
     unnamed.name();
 }
 
@@ -181,7 +136,7 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         if (!bytes || bytes->empty()) {
             throw base::FormatError(bytes ? "is empty" : "cannot be read");
         }
-        SavedSand saved = decode(*bytes);
+        auto saved = decodeFile<SavedSand>(kSavedKind, *bytes);
         requireSamePlace(saved.place, place);
         // Decodes all of the sand before it is sent to the ranks, because a rank that applies a step cannot refuse it.
         (void)read(saved.sand);

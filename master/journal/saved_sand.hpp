@@ -6,11 +6,13 @@
 #include <string>
 #include <string_view>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "sand/model/surface.hpp"
 #include "scene/scene.hpp"
 
 namespace master {
+
+inline constexpr std::size_t kLongestSceneName = 2048;  // [byte] in a file of saved sand, which cuts off the rest
 
 /// The scene that saved sand belongs to. Heights have no meaning in cells of another size or over other rock.
 struct SandPlace {
@@ -20,6 +22,16 @@ struct SandPlace {
     std::uint64_t ground = 0;  // Rules::siteDigest()
 
     static SandPlace of(const scene::Scene& scene);
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("scene", base::text(it.scene, kLongestSceneName));
+        visit("columns", it.columns);
+        visit("rows", it.rows);
+        visit("aspect", it.aspect);
+        visit("cell_size", it.cellSize);
+        visit("ground", it.ground);
+    }
 };
 
 /// Returns whether `name` is a valid name for saved sand: 1 to 64 letters, digits, - and _. Such a name cannot lead out
@@ -32,6 +44,14 @@ struct SavedSand {
     SandPlace place;
     std::uint64_t step = 0, stateHash = 0;  // of the session when the sand was saved
     base::Bytes sand;                       // sand::SurfaceCopy::encode()
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("place", it.place);
+        visit("step", it.step);
+        visit("state_hash", it.stateHash);
+        visit("sand", base::block(it.sand));
+    }
 };
 
 /// Writes saved sand, which is on disk when the function returns (format: docs/operator.md). Makes the folder. If it

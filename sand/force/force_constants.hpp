@@ -1,19 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 
 namespace sand {
 
 /// The law that the hand feels: `repulse` of Dorjgotov et al. 2007, `controlPoints` of Purchart et al. 2012.
 enum class ForceLaw : std::uint8_t { repulse, controlPoints };
+constexpr auto valuesOf(ForceLaw) {
+    return std::array{base::Named{ForceLaw::repulse, "repulse"},
+                      base::Named{ForceLaw::controlPoints, "control_points"}};
+}
 /// Source of the force between two steps of the sand; see sand/force/force_model.hpp.
 enum class Between : std::uint8_t { local, hold, interpolate };
+constexpr auto valuesOf(Between) {
+    return std::array{base::Named{Between::local, "local"}, base::Named{Between::hold, "hold"},
+                      base::Named{Between::interpolate, "interpolate"}};
+}
 /// The part of the velocity that friction acts against. Dorjgotov et al. 2007 calls it vertical and describes a drag.
 enum class FrictionDirection : std::uint8_t { tangential, full, vertical };
+constexpr auto valuesOf(FrictionDirection) {
+    return std::array{base::Named{FrictionDirection::tangential, "tangential"},
+                      base::Named{FrictionDirection::full, "full"},
+                      base::Named{FrictionDirection::vertical, "vertical"}};
+}
 
 /// Constants of both force laws (docs/forces.md). Forces are not part of the sand's state, so that no digest contains
 /// these constants.
@@ -37,10 +51,12 @@ struct ForceConstants {
     double validity = 0.5;       // [tool reach], distance over which the local model is valid
     double recoveryTime = 0.05;  // time constant with which a new local model takes over [s]
 
-    /// Writes all constants except the three oldest, which are elsewhere in the encoding of a scene.
-    void encodeRest(base::ByteWriter& writer) const;
-    /// Reads what encodeRest() wrote. Throws base::FormatError for numbers that no scene file can contain.
-    void decodeRest(base::ByteReader& reader);
+    /// The first three numbers of forceKeys(). An encoded scene has them before the sand.
+    template <class Self, class Visit>
+    static void oldestFields(Self& it, Visit& visit);
+    /// All other constants. An encoded scene has them behind the sand.
+    template <class Self, class Visit>
+    static void otherFields(Self& it, Visit& visit);
     friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
 
@@ -51,5 +67,23 @@ struct ForceKey {
     double lowest, highest;
 };
 [[nodiscard]] std::span<const ForceKey> forceKeys();
+
+template <class Self, class Visit>
+void ForceConstants::oldestFields(Self& it, Visit& visit) {
+    for (const ForceKey& key : forceKeys().first(3)) {
+        visit(key.name, base::limited(it.*key.constant, key.lowest, key.highest));
+    }
+}
+
+template <class Self, class Visit>
+void ForceConstants::otherFields(Self& it, Visit& visit) {
+    for (const ForceKey& key : forceKeys().subspan(3)) {
+        visit(key.name, base::limited(it.*key.constant, key.lowest, key.highest));
+    }
+    visit("law", it.law);
+    visit("between", it.between);
+    visit("friction_direction", it.frictionDirection);
+    visit("literal", it.literal);
+}
 
 }  // namespace sand

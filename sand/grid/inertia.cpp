@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/field_forms.hpp"
 #include "sand/model/grid_codec.hpp"
 #include "sand/model/height_field.hpp"
 
@@ -10,6 +11,17 @@ namespace sand::grid {
 namespace {
 
 constexpr int kPiece = 64;  // [cell], side of a piece after decode()
+
+/// The numbers before the fluxes.
+struct Head {
+    std::int32_t undisturbed = 0;  // [sweep]
+    bool flows = false;            // whether fluxes follow
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("undisturbed", base::limited(it.undisturbed, 0, Inertia::kMostCounted));
+        visit("flows", it.flows);
+    }
+};
 
 /// Returns the field's cells, and the column and row of fluxes over the western and southern rim.
 CellRect withRim(int columns, int rows) { return {-1, -1, columns, rows}; }
@@ -51,8 +63,7 @@ void Inertia::putInto(CellArray& east, CellArray& north) const {
 }
 
 void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
-    writer.put(static_cast<std::int32_t>(undisturbed_));
-    writer.put(static_cast<std::uint8_t>(pieces_.empty() ? 0 : 1));
+    base::putMember(writer, Head{undisturbed_, !pieces_.empty()});
     if (!pieces_.empty()) {
         CellArray east(columns, rows);
         CellArray north(columns, rows);
@@ -63,16 +74,9 @@ void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
 }
 
 Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
-    const auto undisturbed = reader.get<std::int32_t>();
-    if (undisturbed < 0 || undisturbed > kMostCounted) {
-        throw base::FormatError("sand whose inertia has an invalid age");
-    }
-    Inertia inertia(undisturbed);
-    const auto flows = reader.get<std::uint8_t>();
-    if (flows > 1) {
-        throw base::FormatError("sand with an invalid mark of its fluxes");
-    }
-    if (flows == 1) {
+    const auto head = base::read<Head>(reader);
+    Inertia inertia(head.undisturbed);
+    if (head.flows) {
         CellArray east(columns, rows);
         CellArray north(columns, rows);
         const CellRect all = withRim(columns, rows);

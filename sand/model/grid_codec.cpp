@@ -31,7 +31,16 @@ void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter&
     writer.putBlock(packed);
 }
 
+void requireCells(base::ByteReader reader, std::size_t cells) {
+    // A block of zstd holds 128 KiB at most, and takes four bytes or more.
+    constexpr std::size_t kMostPerByte = (std::size_t{1} << 17) / 4;
+    if (cells * sizeof(std::int32_t) > reader.getBlock().size() * kMostPerByte) {
+        throw base::FormatError("cells that do not unpack to the grid's size");
+    }
+}
+
 void decodeCells(base::ByteReader& reader, const CellRect& cells, std::int32_t most, CellArray& grid) {
+    requireCells(reader, countOf(cells));
     const auto packed = reader.getBlock();
     std::vector<std::int32_t> plain(countOf(cells));
     const std::size_t size = plain.size() * sizeof plain[0];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
 
@@ -9,6 +11,10 @@ namespace sand {
 /// Appends the numbers of `cells` to `writer`, compressed without loss. `cells` may include ghost cells. Scenes, states
 /// and the journal use this format.
 void encodeCells(const CellArray& grid, const CellRect& cells, base::ByteWriter& writer);
+
+/// Throws base::FormatError if so few compressed bytes come next that no `cells` cells can be in them. Code that takes
+/// the size of a grid from outside calls it before it makes the grid.
+void requireCells(base::ByteReader reader, std::size_t cells);
 
 /// Reads what encodeCells() wrote for the same `cells` of a grid of the same size. Throws base::FormatError for other
 /// bytes, or if a number is beyond ±`most`.

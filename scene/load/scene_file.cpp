@@ -90,11 +90,10 @@ void readForceKeys(const host::TomlTable& table, sand::ForceConstants& force) {
     for (const sand::ForceKey& key : sand::forceKeys()) {
         force.*key.constant = table.numberOr(key.name, force.*key.constant, {key.lowest, key.highest});
     }
-    force.law = static_cast<sand::ForceLaw>(table.choiceOr("law", {"repulse", "control_points"}, 0));
-    force.between = static_cast<sand::Between>(table.choiceOr("between", {"local", "hold", "interpolate"}, 0));
+    force.law = table.valueOr("law", force.law);
+    force.between = table.valueOr("between", force.between);
     force.literal = table.flagOr("literal", false);
-    force.frictionDirection = static_cast<sand::FrictionDirection>(
-        table.choiceOr("friction_direction", {"tangential", "full", "vertical"}, 0));
+    force.frictionDirection = table.valueOr("friction_direction", force.frictionDirection);
     if (!force.literal && force.frictionDirection != sand::FrictionDirection::tangential) {
         table.fail("friction_direction",
                    "friction_direction other than tangential is for comparison: set literal = true beside it");
@@ -142,7 +141,7 @@ void readLook(const host::TomlTable& file, Scene& scene) {
         if (sun[0] == 0 && sun[1] == 0 && sun[2] == 0) {
             look->fail("sun", "sun must point somewhere, got [0, 0, 0]");
         }
-        const double& detail = scene.look.detail = look->numberOr("detail", scene.look.detail, {0, 64});
+        const double& detail = scene.look.detail = look->numberOr("detail", scene.look.detail, {0, Look::kMostDetail});
         if (detail > 0 && detail < kLeastDetail) {
             look->fail(
                 "detail",

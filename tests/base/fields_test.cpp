@@ -107,6 +107,36 @@ struct Noted {
     static void fields(auto& it, auto& visit) { visit("note", base::optionalText(it.note, 4)); }
 };
 
+/// A vector as those of GLM are.
+struct Direction {
+    using value_type = float;
+    std::array<float, 2> numbers{};
+    static constexpr int length() { return 2; }
+    float& operator[](int i) { return numbers.at(static_cast<std::size_t>(i)); }
+    const float& operator[](int i) const { return numbers.at(static_cast<std::size_t>(i)); }
+    friend bool operator==(const Direction&, const Direction&) = default;
+};
+
+struct Further {
+    bool first = false, second = false;
+    Direction direction;
+    std::optional<Direction> window;
+    std::pair<std::int8_t, std::int16_t> edge;
+    std::vector<std::uint8_t> colour{0, 0};
+    std::optional<Place> material;
+    std::vector<std::int8_t> tiles;
+    static void fields(auto& it, auto& visit) {
+        visit("keeps", base::flags<std::int32_t>(it.first, it.second));
+        visit("direction", it.direction);
+        visit("window", base::spacedOptional(it.window));
+        visit("edge", it.edge);
+        visit("colour", base::exactly(it.colour, 2));
+        visit("material", base::optionalBlock(it.material));
+        visit("tiles", base::toEnd(it.tiles));
+    }
+    friend bool operator==(const Further&, const Further&) = default;
+};
+
 struct Versioned {
     std::uint8_t version = 1, value = 7;
     static void fields(auto& it, auto& visit) {
@@ -181,7 +211,7 @@ std::string refusalWith(std::size_t at, std::uint8_t byte) {
 }
 
 TEST(Fields, NameWhatIsWrong) {
-    EXPECT_EQ(refusalWith(0, 3), "magic: is not the magic number");
+    EXPECT_EQ(refusalWith(0, 3), "magic: is 259, not the magic number");
     EXPECT_EQ(refusalWith(14, 2), "colour: is 2, which is unknown");
     EXPECT_EQ(refusalWith(15, 2), "shown: is 2, neither 0 nor 1");
     EXPECT_EQ(refusalWith(16, 4), "form: is 4, with unknown bits");
@@ -200,7 +230,7 @@ TEST(Fields, RefuseNumbersThatAreNotFiniteOrOutOfRange) {
     all = full();
     for (const double share : {-0.5, 2.0}) {
         all.share = share;
-        EXPECT_EQ(refusalOf(all), fmt::format("share: is {:f}, not from 0.000000 to 1.000000", share));
+        EXPECT_EQ(refusalOf(all), fmt::format("share: is {}, not from 0 to 1", share));
     }
     all.share = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(refusalOf(all), "nothing");
@@ -252,6 +282,50 @@ TEST(Fields, ByNameHaveTheBytesOfTheirArray) {
     const base::Bytes bytes{1, 2, 3, 4};
     EXPECT_EQ(base::encoded(described::Counted{{0x0201, 0x0403}}), bytes);
     EXPECT_EQ(base::decoded<described::Counted>(bytes).counts, (std::array<std::uint16_t, 2>{0x0201, 0x0403}));
+}
+
+TEST(Fields, HaveTheBytesOfTheirFurtherForms) {
+    described::Further further;
+    further.second = true;
+    further.direction.numbers = {1, -2};
+    further.edge = {-1, 258};
+    further.colour = {9, 8};
+    further.material = Place{5, 0};
+    further.tiles = {4, -4};
+    const base::Bytes expected{2, 0, 0, 0, 0,  0, 0x80, 0x3f, 0, 0, 0, 0xc0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff,
+                               2, 1, 9, 8, 12, 0, 0,    0,    5, 0, 0, 0,    0, 0, 0, 0, 0, 0, 0, 0, 4, 0xfc};
+    EXPECT_EQ(base::encoded(further), expected);
+    EXPECT_EQ(base::decoded<described::Further>(expected), further);
+    further.window = described::Direction{{3, 4}};
+    further.material.reset();
+    further.tiles.clear();
+    EXPECT_EQ(base::encoded(further).size(), expected.size() - 12 - 2);
+    EXPECT_EQ(base::decoded<described::Further>(base::encoded(further)), further);
+}
+
+TEST(Fields, NameWhatIsWrongInTheirFurtherForms) {
+    described::Further further;
+    further.material = Place{5, 0};
+    const base::Bytes whole = base::encoded(further);
+    const auto refusalWith = [&](std::size_t at, std::uint8_t byte) {
+        base::Bytes bytes = whole;
+        bytes.at(at) = byte;
+        return test::refusalOf<base::FormatError>([&] { (void)base::decoded<described::Further>(bytes); });
+    };
+    EXPECT_EQ(refusalWith(3, 0x80), "keeps: is 2147483648, with unknown bits");
+    EXPECT_EQ(refusalWith(0, 4), "keeps: is 4, with unknown bits");
+    EXPECT_EQ(refusalWith(26, 13).find("material: cut short"), 0U) << "the block is longer than the rest";
+    EXPECT_EQ(refusalWith(26, 11).find("material: y: cut short"), 0U);
+    base::Bytes longer = whole;
+    longer[26] = 13;
+    longer.push_back(0);
+    EXPECT_EQ(test::refusalOf<base::FormatError>([&] { (void)base::decoded<described::Further>(longer); }),
+              "material: bytes behind its end: 1");
+    base::Bytes infinite = whole;
+    infinite[6] = 0x80;
+    infinite[7] = 0x7f;
+    EXPECT_EQ(test::refusalOf<base::FormatError>([&] { (void)base::decoded<described::Further>(infinite); }),
+              "direction: is not finite");
 }
 
 // A newer version of a message begins as the others do, and may be any bytes after that.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes the corpora of the binary formats, with the encoders of this build: FOLDER/wire, ticks, journal, checkpoint,
-// saved, state, steps, tin, head, raster, png, wall.
+// saved, state, steps, tin, head, raster, png, wall, fields.
 #include <array>
 #include <filesystem>
 #include <iostream>
+#include <random>
 
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/link/protocol.hpp"
@@ -14,6 +15,9 @@
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "scene/scene.hpp"
+#include "tests/described/faults.hpp"
+#include "tests/described/samples.hpp"
+#include "tests/described/types.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/seeds.hpp"
 #include "tests/fuzz/tin_scene.hpp"
@@ -271,6 +275,18 @@ void writeHead(Folder folder) {
     folder.add(Bytes(trace.begin(), trace.end()), {2});
 }
 
+/// Writes samples of every described type, behind its number in described::Types.
+void writeFields(Folder folder) {
+    std::mt19937 random;
+    std::uint8_t number = 0;
+    described::forEachType<described::Types>([&]<class T>() {
+        for (const Bytes& sample : described::samplesOf<T>(random)) {
+            folder.add(sample, {number});
+        }
+        ++number;
+    });
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -290,6 +306,7 @@ int main(int count, char** words) {
     writeHead({folder, "head"});
     fuzz::writeRasters({folder, "raster"});
     fuzz::writePngs({folder, "png"});
+    writeFields({folder, "fields"});
     Folder walls(folder, "wall");
     for (const auto& file : fs::directory_iterator(SANDWALL_SOURCE_DIR "/walls/configs")) {
         if (file.is_regular_file()) {

@@ -7,15 +7,18 @@
 namespace {
 
 thread_local long requests = 0;
+thread_local std::size_t requestedBytes = 0;
 
 }  // namespace
 
 long test::heapRequests() { return requests; }
+std::size_t test::heapBytes() { return requestedBytes; }
 
 // Both forms of new for one object are replaced, because the sanitizers' forms do not call each other, as those of the
 // library do. So memory of new[] is counted only without a sanitizer.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     ++requests;
+    requestedBytes += size;
     return std::malloc(size == 0 ? 1 : size);
 }
 void* operator new(std::size_t size) {

@@ -46,6 +46,12 @@ public:
     /// Cells of one row, from column `first` to before column `end`.
     struct Run {
         std::int32_t row = 0, first = 0, end = 0;
+        template <class Self, class Visit>
+        static void fields(Self& it, Visit& visit) {
+            visit("row", it.row);
+            visit("first", it.first);
+            visit("end", it.end);
+        }
         friend bool operator==(const Run&, const Run&) = default;
     };
     /// Throws std::invalid_argument unless `runs` is a non-empty list in order of row and column. Each run must have a

@@ -5,8 +5,6 @@
 #include <set>
 #include <tuple>
 
-#include "sand/model/height_field.hpp"
-
 namespace sand::tin {
 namespace {
 
@@ -166,34 +164,6 @@ int refineHoles(Mesh& mesh, const DetailRules& rules, const Box& box, const std:
     });
     mesh.insert(places);
     return static_cast<int>(places.size());
-}
-
-void DetailRules::encode(base::ByteWriter& writer) const {
-    writer.put(spacing);
-    writer.put(maxError);
-    writer.put(firstToGo);
-    writer.put(removals);
-    writer.put(maxVertices);
-    writer.put(static_cast<std::uint8_t>((keepsConstraints ? 1 : 0) + (keepsRim ? 2 : 0)));
-}
-
-DetailRules DetailRules::decode(base::ByteReader& reader) {
-    DetailRules rules;
-    rules.spacing = reader.get<std::int32_t>();
-    rules.maxError = reader.get<double>();
-    rules.firstToGo = reader.get<Vertex>();
-    rules.removals = reader.get<std::int32_t>();
-    rules.maxVertices = reader.get<std::int32_t>();
-    const auto keeps = reader.get<std::uint8_t>();
-    rules.keepsConstraints = (keeps & 1) != 0;
-    rules.keepsRim = (keeps & 2) != 0;
-    const bool sound = rules.spacing >= 0 && rules.spacing <= (1 << 22) && rules.maxError >= 0 &&
-                       rules.maxError <= kMaxHeight && rules.firstToGo >= 0 && rules.removals >= 0 &&
-                       rules.removals <= 65536 && rules.maxVertices >= 4 && keeps <= 3;
-    if (!sound) {
-        throw base::FormatError("detail rules of a TIN out of range");
-    }
-    return rules;
 }
 
 }  // namespace sand::tin

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/byte_stream.hpp"
 #include "sand/tin/mesh/neighbourhood.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
@@ -23,11 +22,6 @@ struct DetailRules {
     std::int32_t maxVertices = 1 << 22;  // limit for refinement and outlines
     bool keepsConstraints = false;       // whether the constraints of a tool stay after it has left
     bool keepsRim = true;                // whether vertices on the rim stay, as those of an open rim do
-
-    void encode(base::ByteWriter& writer) const;
-    /// Throws base::FormatError if a rule is out of range.
-    static DetailRules decode(base::ByteReader& reader);
-    friend bool operator==(const DetailRules&, const DetailRules&) = default;
 };
 
 /// Edges near which new vertices would make slivers.

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "base/fields.hpp"
+
 namespace sand::tin {
 namespace {
 
@@ -34,15 +36,14 @@ Imprint::Stand decodeStand(base::ByteReader& reader) {
     stand.at.x = reader.get<std::int32_t>();
     stand.at.y = reader.get<std::int32_t>();
     stand.at.z = reader.get<std::int32_t>();
-    const auto kind = reader.get<std::uint8_t>();
-    stand.tool.kind = static_cast<ToolKind>(kind);
+    base::getMember(reader, stand.tool.kind);
     stand.tool.radius = reader.get<std::int32_t>();
     stand.tool.halfWidth = reader.get<std::int32_t>();
-    stand.tool.heading = Heading::decode(reader, reader.get<std::uint8_t>() != 0);
+    stand.tool.heading = Heading::decode(reader, base::read<bool>(reader));
     const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
                       std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
-    if (kind >= kToolKinds || !near || stand.tool.radius < 0 || stand.tool.radius > kLargestToolRadius ||
-        stand.tool.halfWidth < 0 || stand.tool.halfWidth > stand.tool.radius) {
+    if (!near || stand.tool.radius < 0 || stand.tool.radius > kLargestToolRadius || stand.tool.halfWidth < 0 ||
+        stand.tool.halfWidth > stand.tool.radius) {
         throw base::FormatError("an imprint with a tool out of range");
     }
     return stand;
@@ -154,7 +155,7 @@ void Imprint::encode(base::ByteWriter& writer) const {
 
 Imprint Imprint::decode(base::ByteReader& reader, std::size_t most) {
     Imprint imprint;
-    if (reader.get<std::uint8_t>() == 0) {
+    if (!base::read<bool>(reader)) {
         return imprint;
     }
     imprint.stand = decodeStand(reader);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -12,6 +13,7 @@
 
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/scene_fixture.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace {
 
@@ -144,13 +146,26 @@ TEST_F(ForceTable, ReadsALawFromAJournalWithoutRefusingIt) {
 }
 
 TEST_F(ForceTable, RefusesBytesThatNoSceneFileGives) {
-    const scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
-    base::Bytes bytes = scene.encode();
-    bytes[bytes.size() - 4] = 9;  // the law
-    EXPECT_THROW((void)scene::Scene::decode(bytes), base::FormatError);
-    scene::Scene negative = scene;
-    negative.force.maxForce = -1;
-    EXPECT_THROW((void)scene::Scene::decode(negative.encode()), base::FormatError);
+    scene::Scene scene = scene::loadScene(write("s.toml", kFlat));
+    scene.statements.reset();  // they would follow the constants
+    const auto refusal = [](const base::Bytes& bytes) {
+        return test::refusalOf<base::FormatError>([&] { (void)scene::Scene::decode(bytes); });
+    };
+    const base::Bytes whole = scene.encode();
+    EXPECT_EQ(refusal(whole), "nothing");
+    const std::array<std::string, 4> last{"law: is 9, which is unknown", "between: is 9, which is unknown",
+                                          "friction_direction: is 9, which is unknown",
+                                          "literal: is 9, neither 0 nor 1"};
+    for (std::size_t i = 0; i < last.size(); ++i) {
+        base::Bytes bytes = whole;
+        bytes[bytes.size() - last.size() + i] = 9;
+        EXPECT_EQ(refusal(bytes), last.at(i));
+    }
+    for (const sand::ForceKey& key : sand::forceKeys()) {
+        scene::Scene wrong = scene;
+        wrong.force.*key.constant = key.lowest - 1;
+        EXPECT_TRUE(refusal(wrong.encode()).starts_with(std::string(key.name) + ": is ")) << refusal(wrong.encode());
+    }
 }
 
 }  // namespace

@@ -207,20 +207,5 @@ TEST(TinDetail, WithoutAnErrorNothingGoes) {
     EXPECT_EQ(bytesOf(layer), before);
 }
 
-TEST(TinDetail, RulesTravelAndDamagedOnesAreRefused) {
-    DetailRules rules = rulesOf(128, 3.5, 16);
-    rules.maxVertices = 1000;
-    rules.keepsConstraints = true;
-    base::ByteWriter writer;
-    rules.encode(writer);
-    base::ByteReader reader(writer.bytes());
-    EXPECT_EQ(DetailRules::decode(reader), rules);
-    rules.maxError = std::nan("");
-    base::ByteWriter damaged;
-    rules.encode(damaged);
-    base::ByteReader again(damaged.bytes());
-    EXPECT_THROW(DetailRules::decode(again), base::FormatError);
-}
-
 }  // namespace
 }  // namespace details
