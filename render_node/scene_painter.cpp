@@ -3,8 +3,11 @@
 
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "render_node/surface_factory.hpp"
+#include "render_node/tool/light.hpp"
+#include "render_node/tool/reach.hpp"
 
 namespace render_node {
 namespace {
@@ -26,15 +29,13 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToR
     : ScenePainter(scene, scene.data(), sceneToRoom) {}
 
 ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom)
-    : sceneToRoom_(sceneToRoom),
-      look_(scene.look),
+    : look_(scene.look),
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
       cellSize_(scene.terrain.cellSize()),
       tool_(scene.rules.tuning.tool),
+      shown_{.sceneToRoom = sceneToRoom, .toolRadius = toolRadius(), .tool = {}, .force = {}, .layers = {}},
       surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
-      sunlit_(shaders(), "sunlit.glsl", "ball.glsl"),
-      woodProgram_("solid.vert.glsl", "wood.frag.glsl"),
-      toolProgram_("solid.vert.glsl", "tool.frag.glsl"),
+      programs_(look_.flatShading),
       grain_(glm::vec2(sun_)),
       box_(surface_->rim(), surface_->heightsEver().lowest, double{static_cast<float>(cellSize_)}, scene.rules.rim) {
     startCounting();
@@ -49,59 +50,57 @@ void ScenePainter::update(const sand::SurfaceData& data, const sand::SurfaceChan
                           std::span<const Camera> cameras) {
     std::vector<glm::dmat4> sceneToClips;
     for (const Camera& camera : cameras) {
-        sceneToClips.push_back(camera.roomToClip * sceneToRoom_);
+        sceneToClips.push_back(camera.roomToClip * shown_.sceneToRoom);
     }
     if (surface_->update(data, change, sceneToClips)) {
         box_.update(surface_->rim());
     }
 }
 
-SurfaceShaders ScenePainter::shaders() const {
-    return look_.flatShading ? SurfaceShaders{"facet.vert.glsl", "facet.geom.glsl"} : SurfaceShaders{"sand.vert.glsl"};
+void ScenePainter::setTool(sand::ProbePoint probe, bool engaged) {
+    const glm::dvec3 place = glm::dvec3(probe.x, probe.y, probe.z) * sand::probeUnit(static_cast<float>(cellSize_));
+    shown_.toolRadius = toolRadius();
+    shown_.tool = DrawnTool{tool_, glm::vec3(place), shown_.toolRadius, engaged};
 }
 
-void ScenePainter::setTool(sand::ProbePoint centre, bool engaged) {
-    const glm::dvec3 cells = glm::dvec3(centre.x, centre.y, centre.z) / double{sand::kProbePerCell};
-    drawnTool_ = DrawnTool{tool_, glm::vec3(cells * double{static_cast<float>(cellSize_)}), toolRadius(), engaged};
-}
-
-void ScenePainter::setTool(sand::ProbePoint centre, bool engaged, const sand::Tool& tool) {
+void ScenePainter::setTool(sand::ProbePoint probe, bool engaged, const sand::Tool& tool) {
     tool_ = tool;
-    setTool(centre, engaged);
+    setTool(probe, engaged);
 }
 
-float ScenePainter::toolRadius() const { return static_cast<float>(tool_.radius * cellSize_ / sand::kProbePerCell); }
+float ScenePainter::toolRadius() const { return static_cast<float>(tool_.radius * sand::probeUnit(cellSize_)); }
 
 void ScenePainter::setLayers(lockstep::Overlays layers) {
-    overlays_ = {};
+    shown_.layers = {};
     for (const lockstep::Overlay layer : {lockstep::Overlay::wireframe, lockstep::Overlay::hillShade}) {
-        overlays_.set(layer, layers.shows(layer));
+        shown_.layers.set(layer, layers.shows(layer));
     }
 }
 
-void ScenePainter::prepare(const GlProgram& program, const Camera& camera) const {
+void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
+    const glm::dmat4& sceneToRoom = shown_.sceneToRoom;
     program.use();
-    program.set("uSceneToRoom", glm::mat4(sceneToRoom_));
-    program.set("uRoomToClip", glm::mat4(camera.roomToClip));
-    program.set("uEye", glm::vec3(glm::inverse(sceneToRoom_) * glm::dvec4(camera.eye, 1)));
-    program.set("uSceneToClip", glm::mat4(camera.roomToClip * sceneToRoom_));
-    program.set("uHalfPicture", halfPicture_);
+    program.set("uSceneToRoom", glm::mat4(sceneToRoom));
+    program.set("uRoomToClip", glm::mat4(pass.camera.roomToClip));
+    program.set("uEye", glm::vec3(glm::inverse(sceneToRoom) * glm::dvec4(pass.camera.eye, 1)));
+    program.set("uSceneToClip", glm::mat4(pass.camera.roomToClip * sceneToRoom));
+    program.set("uHalfPicture", glm::vec2(pass.size) / 2.0F);
     program.set("uSun", sun_);
     program.set("uSand", toVector(look_.sandColour));
     prepareTool(program);
     program.set("uGrain", 0);
-    const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom_[0]));
+    const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom[0]));
     program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
     program.set("uModel", glm::vec4(0, 0, 0, 1));
 }
 
 void ScenePainter::prepareTool(const GlProgram& program) const {
-    if (!drawnTool_ || !(drawnTool_->radius > 0)) {
+    if (!showsTool()) {
         program.set("uTool", kNoTool);
-    } else if (drawnTool_->isBall()) {
-        program.set("uTool", glm::vec4(drawnTool_->centre, 1 / drawnTool_->radius));
+    } else if (hasBall()) {
+        program.set("uTool", glm::vec4(shown_.tool->place, 1 / shown_.tool->radius));
     } else {
-        const ToolLight light(*drawnTool_);
+        const ToolLight light(*shown_.tool);
         const glm::dvec3 sun = light.toBall * glm::dvec3(sun_);
         program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
         program.set("uToolSpace", glm::mat3(light.toBall));
@@ -110,15 +109,9 @@ void ScenePainter::prepareTool(const GlProgram& program) const {
     }
 }
 
-void ScenePainter::prepareSurface(const GlProgram& program, const Camera& camera) const {
-    prepare(program, camera);
+void ScenePainter::prepareSurface(const GlProgram& program, const Pass& pass) const {
+    prepare(program, pass);
     surface_->prepare(program);
-}
-
-Box ScenePainter::bodyOf(const DrawnTool& tool) {
-    const Box box = boxOfTool(tool.tool);
-    return {glm::dvec3(tool.centre) + double{tool.radius} * box.low,
-            glm::dvec3(tool.centre) + double{tool.radius} * box.high};
 }
 
 void ScenePainter::draw(const Camera& camera, const EyeTarget& target) {
@@ -128,9 +121,8 @@ void ScenePainter::draw(const Camera& camera, const EyeTarget& target) {
 
 void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target) {
     const glm::ivec2 size(target.width(), target.height());
-    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
-    const glm::dmat4 sceneToPart = clipOf(pixels, size) * sceneToClip;
-    halfPicture_ = glm::vec2(size) / 2.0F;
+    const glm::dmat4 sceneToClip = camera.roomToClip * shown_.sceneToRoom;
+    const Pass pass{camera, size, clipOf(pixels, size) * sceneToClip, ruleFor(camera, size)};
     counts_.pixels += pixels.area();
     target.bind();
     // The viewport stays that of the whole picture. With another viewport, edges would fall on other pixels.
@@ -146,111 +138,103 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
     grain_.bind(0);
 
     // Draws roughly from front to back, because hidden pixels are not shaded.
-    drawTool(camera, sceneToPart);
-    if (force_) {
-        drawForce(camera);
+    drawTool(pass);
+    if (shown_.force) {
+        drawForce(pass);
     }
-    const LevelRule rule = ruleFor(camera, size);
-    drawSand(camera, sceneToPart, rule);
-    if (overlays_.shows(lockstep::Overlay::wireframe)) {
-        drawWires(camera, sceneToPart, rule);
+    drawSand(pass);
+    if (shown_.layers.shows(lockstep::Overlay::wireframe)) {
+        drawWires(pass);
     }
-    const GlProgram& wood = woodProgram();
-    prepare(wood, camera);
+    const GlProgram& wood = programs_.wood(hasBall());
+    prepare(wood, pass);
     box_.drawBoards();
     wood.drawn();
     glDisable(GL_SCISSOR_TEST);
 }
 
-void ScenePainter::drawTool(const Camera& camera, const glm::dmat4& sceneToPart) {
-    if (drawnTool_ && drawnTool_->radius > 0 && (!culling_ || inFrustum(bodyOf(*drawnTool_), sceneToPart))) {
-        prepare(toolProgram_, camera);
-        toolProgram_.set("uModel", glm::vec4(drawnTool_->centre, drawnTool_->radius));
-        toolProgram_.set("uEngaged", drawnTool_->engaged ? 1.0F : 0.0F);
-        toolMesh_.show(drawnTool_->tool);
+void ScenePainter::drawTool(const Pass& pass) {
+    if (showsTool() && (!culling_ || inFrustum(bodyOf(*shown_.tool), pass.sceneToPart))) {
+        const GlProgram& program = programs_.tool();
+        prepare(program, pass);
+        program.set("uModel", glm::vec4(shown_.tool->place, shown_.tool->radius));
+        program.set("uEngaged", shown_.tool->engaged ? 1.0F : 0.0F);
+        toolMesh_.show(shown_.tool->tool);
         toolMesh_.draw();
-        toolProgram_.drawn();
+        program.drawn();
     }
 }
 
-void ScenePainter::drawForce(const Camera& camera) {
+void ScenePainter::drawForce(const Pass& pass) {
     if (!forceView_) {
         forceView_.emplace();
     }
-    prepare(forceView_->program(), camera);
-    forceView_->draw(*force_, toolRadius());
+    prepare(forceView_->program(), pass);
+    forceView_->draw(*shown_.force, shown_.toolRadius);
 }
 
-const SandPrograms& ScenePainter::sandPrograms() {
-    const bool hillShade = overlays_.shows(lockstep::Overlay::hillShade);
-    const bool ball = !drawnTool_ || drawnTool_->isBall();
-    if (ball && !hillShade) {
-        return sunlit_;
-    }
-    std::optional<SandPrograms>& programs = ball ? hillShaded_ : hillShade ? stampHillShaded_ : stampSunlit_;
-    if (!programs) {
-        programs.emplace(shaders(), hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
-    }
-    return *programs;
-}
-
-const GlProgram& ScenePainter::woodProgram() {
-    if (!drawnTool_ || drawnTool_->isBall()) {
-        return woodProgram_;
-    }
-    if (!stampWood_) {
-        stampWood_.emplace(ProgramFiles{"solid.vert.glsl", "wood.frag.glsl", {}, {}, "stamp.glsl"});
-    }
-    return *stampWood_;
-}
-
-void ScenePainter::drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
-    const SandPrograms& programs = sandPrograms();
-    prepareSurface(programs.near, camera);
-    prepareSurface(programs.far, camera);
+void ScenePainter::drawSand(const Pass& pass) {
+    const SandPrograms& programs = programs_.sand(hasBall(), shown_.layers.shows(lockstep::Overlay::hillShade));
+    prepareSurface(programs.near, pass);
+    prepareSurface(programs.far, pass);
     // The program `near` draws a shadow that is finer than the mesh. It costs a software renderer time at every pixel,
     // so that it is used only within the tool's reach.
     std::function<void(const Box&)> choose;
     bool near = false;
-    if (drawnTool_ && drawnTool_->radius > 0) {
-        choose = [&programs, &near, reach = reachOf(*drawnTool_)](const Box& chunk) {
+    if (showsTool()) {
+        choose = [&programs, &near, reach = ToolReach(*shown_.tool, sun_)](const Box& chunk) {
             const bool within = reach.meets(chunk);
             (within ? programs.near : programs.far).use();
             near = near || within;
         };
     }
-    const DrawnSurface::Drawn drawn = surface_->draw(sceneToPart, culling_, rule, choose);
+    const DrawnSurface::Drawn drawn = surface_->draw(pass.sceneToPart, culling_, pass.rule, choose);
     (near ? programs.near : programs.far).drawn();
     counts_.chunks += drawn.chunks;
     counts_.coarseChunks += drawn.coarseChunks;
     counts_.triangles += drawn.triangles;
 
-    prepare(programs.sides, camera);
-    box_.drawSides(sceneToPart, culling_);
+    prepare(programs.sides, pass);
+    box_.drawSides(pass.sceneToPart, culling_);
     programs.sides.drawn();
 }
 
-void ScenePainter::drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule) {
-    if (!wireProgram_) {
-        wireProgram_.emplace(ProgramFiles{"sand.vert.glsl", "wire.frag.glsl", "sunlit.glsl", "wire.geom.glsl"});
-    }
-    prepareSurface(*wireProgram_, camera);
+void ScenePainter::drawWires(const Pass& pass) {
+    prepareSurface(programs_.wires(), pass);
     glDepthFunc(GL_LEQUAL);
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(-1, -1);  // with a geometry shader, a driver may compute slightly different depths
     glEnable(GL_BLEND);
     // Keeps alpha, because the window system may use the window's alpha.
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
-    surface_->draw(sceneToPart, culling_, rule, {});
-    surface_->drawMarks(sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, camera); });
+    surface_->draw(pass.sceneToPart, culling_, pass.rule, {});
+    surface_->drawMarks(pass.sceneToPart, culling_, [&](const GlProgram& program) { prepareSurface(program, pass); });
     glDisable(GL_BLEND);
     glDisable(GL_POLYGON_OFFSET_FILL);
     glDepthFunc(GL_LESS);
 }
 
+PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
+    startCounting();
+    const glm::ivec2 size(target.width(), target.height());
+    PixelRect changed;
+    Redraw redraw(*surface_, box_, sun_);
+    for (const PixelRect& rect : redraw.pixels(camera, shown_, size, ruleFor(camera, size), memory)) {
+        drawWithin(rect, camera, target);
+        changed = around(changed, rect);
+    }
+    memory = {.drawn = true,
+              .camera = camera,
+              .scene = shown_,
+              .sand = surface_->revision(),
+              .levels = std::move(memory.levels),
+              .covered = {}};
+    return changed;
+}
+
 LevelRule ScenePainter::ruleFor(const Camera& camera, glm::ivec2 size) const {
     // With flat shading the size of the triangles is visible, so that all chunks have level 0.
-    return {camera.roomToClip * sceneToRoom_, size, look_.flatShading ? 0 : look_.detail};
+    return {camera.roomToClip * shown_.sceneToRoom, size, look_.flatShading ? 0 : look_.detail};
 }
 
 }  // namespace render_node

@@ -6,32 +6,21 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string_view>
 #include <vector>
 
-#include "lockstep/overlays.hpp"
 #include "render_node/gl/eye_target.hpp"
-#include "render_node/gl/gl_program.hpp"
 #include "render_node/gl/grain_texture.hpp"
-#include "render_node/gl/pixel_rect.hpp"
+#include "render_node/redraw.hpp"
 #include "render_node/sand_box.hpp"
+#include "render_node/scene_programs.hpp"
 #include "render_node/surface/drawn_surface.hpp"
-#include "render_node/tool/drawn_tool.hpp"
 #include "render_node/tool/force_arrow.hpp"
-#include "render_node/tool/light.hpp"
 #include "render_node/tool/mesh.hpp"
-#include "render_node/tool/reach.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
 #include "scene/scene.hpp"
 
 namespace render_node {
-
-/// Camera of one eye of one tile.
-struct Camera {
-    glm::dmat4 roomToClip;  // matrix from metres in the room to OpenGL clip coordinates
-    glm::dvec3 eye;         // [m], room
-};
 
 /// Counts of the last draw() or drawIfChanged(). A chunk in two rectangles counts twice.
 struct DrawCounts {
@@ -40,36 +29,6 @@ struct DrawCounts {
     int chunksOfField = 0;    // all chunks of the field
     int triangles = 0;        // drawn triangles of sand
     std::int64_t pixels = 0;  // in the drawn rectangles
-};
-
-/// Record of the picture that one view has last drawn into one target. The caller keeps one for each eye.
-struct EyeMemory {
-    bool drawn = false;  // false: the next drawIfChanged() draws the whole picture
-    glm::dmat4 roomToClip{1}, sceneToRoom{1};
-    glm::dvec3 eye{0};
-    std::uint64_t sand = 0;  // revision
-    DrawnLevels levels;
-    std::optional<DrawnTool> tool;
-    std::optional<ForceArrow> force;
-    lockstep::Overlays layers;  // only the layers that change every pixel of the sand
-    PixelRect covered{};        // pixels that something else was drawn over, and that must be drawn again
-};
-
-/// Shader files that place the surface's vertices, or that light whole triangles.
-struct SurfaceShaders {
-    std::string_view vertex;
-    std::string_view geometry{};
-};
-
-/// Programs that draw the sand in one light.
-struct SandPrograms {
-    /// `light` and `tool` are names of files in shaders/.
-    SandPrograms(const SurfaceShaders& surface, std::string_view light, std::string_view tool)
-        : far({surface.vertex, "sand.frag.glsl", light, surface.geometry}),
-          near({surface.vertex, "near.frag.glsl", light, surface.geometry, tool}),
-          sides({"side.vert.glsl", "near.frag.glsl", light, {}, tool}) {}
-    GlProgram far, near;  // the surface, outside and inside the tool's reach
-    GlProgram sides;
 };
 
 /// Painter of a scene: sand, the box around it, and the tool.
@@ -87,7 +46,7 @@ public:
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
 
     /// Sets the transformation from the scene to the room for all further drawing.
-    void setSceneToRoom(const glm::dmat4& sceneToRoom) { sceneToRoom_ = sceneToRoom; }
+    void setSceneToRoom(const glm::dmat4& sceneToRoom) { shown_.sceneToRoom = sceneToRoom; }
     /// Copies the changes of the sand. The sand must have the kind and size of `start`.
     ///
     /// @param cameras  The only cameras that draw before the next update. Changes that no camera sees may be postponed
@@ -95,17 +54,17 @@ public:
     void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
     /// Returns the lowest and the highest height that any sand has ever had.
     [[nodiscard]] HeightRange heightsEver() const { return surface_->heightsEver(); }
-    /// Sets the tool's centre. No tool is drawn before the first call.
-    void setTool(sand::ProbePoint centre, bool engaged);
-    /// Sets the tool and its centre. Use it if the tool differs from the last one or was turned.
-    void setTool(sand::ProbePoint centre, bool engaged, const sand::Tool& tool);
+    /// Moves the tool's centre to `probe`. No tool is drawn before the first call.
+    void setTool(sand::ProbePoint probe, bool engaged);
+    /// Moves the tool and sets it. Use it if the tool differs from the last one or was turned.
+    void setTool(sand::ProbePoint probe, bool engaged, const sand::Tool& tool);
 
     /// Shows or hides hill-shade and wireframe; ignores all other layers. The next draw() makes the programs of a layer
     /// that is shown for the first time. It then throws std::runtime_error if a shader does not compile.
     void setLayers(lockstep::Overlays layers);
     /// Shows this arrow from now on, or no arrow, as at first. The first draw() with an arrow throws std::runtime_error
     /// if a shader does not compile.
-    void setForce(const std::optional<ForceArrow>& force) { force_ = force; }
+    void setForce(const std::optional<ForceArrow>& force) { shown_.force = force; }
 
     /// Clears the target and draws everything into it. Does not wait for GL; EyeTarget::finish() waits.
     void draw(const Camera& camera, const EyeTarget& target);
@@ -129,45 +88,39 @@ public:
     void setDetail(double bound) { look_.detail = bound; }
 
 private:
-    [[nodiscard]] SurfaceShaders shaders() const;
-    void prepare(const GlProgram& program, const Camera& camera) const;
-    void prepareTool(const GlProgram& program) const;
-    void prepareSurface(const GlProgram& program, const Camera& camera) const;
-    void drawTool(const Camera& camera, const glm::dmat4& sceneToPart);
-    void drawForce(const Camera& camera);
-    void drawSand(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
-    void drawWires(const Camera& camera, const glm::dmat4& sceneToPart, const LevelRule& rule);
-    void startCounting();
+    /// Drawing of one rectangle of a picture.
+    struct Pass {
+        const Camera& camera;
+        glm::ivec2 size;         // [pixel], of the whole picture
+        glm::dmat4 sceneToPart;  // matrix from the scene to clip coordinates of the rectangle
+        LevelRule rule;
+    };
     void drawWithin(const PixelRect& pixels, const Camera& camera, const EyeTarget& target);
+    void prepare(const GlProgram& program, const Pass& pass) const;
+    void prepareTool(const GlProgram& program) const;
+    void prepareSurface(const GlProgram& program, const Pass& pass) const;
+    void drawTool(const Pass& pass);
+    void drawForce(const Pass& pass);
+    void drawSand(const Pass& pass);
+    void drawWires(const Pass& pass);
+    void startCounting();
+    /// Returns whether no tool takes light away, or one with the shape of a ball.
+    [[nodiscard]] bool hasBall() const { return !shown_.tool || shown_.tool->isBall(); }
+    /// Returns whether the tool is drawn.
+    [[nodiscard]] bool showsTool() const { return shown_.tool && shown_.tool->radius > 0; }
     [[nodiscard]] LevelRule ruleFor(const Camera& camera, glm::ivec2 size) const;
-    [[nodiscard]] std::vector<PixelRect> changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory);
-    [[nodiscard]] const SandPrograms& sandPrograms();
-    [[nodiscard]] const GlProgram& woodProgram();
-    [[nodiscard]] static Box bodyOf(const DrawnTool& tool);
-    [[nodiscard]] ToolReach reachOf(const DrawnTool& tool) const;
-    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const DrawnTool& tool) const;
     [[nodiscard]] float toolRadius() const;  // [scene unit], of the current tool
 
-    glm::dmat4 sceneToRoom_;
     scene::Look look_;
-    glm::vec2 halfPicture_{};  // [pixel], half of the size of the current picture
-    glm::vec3 sun_;            // towards the sun, of length 1
-    double cellSize_;          // [scene unit]; places are computed from its float, as in the shaders
+    glm::vec3 sun_;    // towards the sun, of length 1
+    double cellSize_;  // [scene unit]; places are computed from its float, as in the shaders
     sand::Tool tool_;
-    std::optional<DrawnTool> drawnTool_;  // nullopt before the first setTool()
-    std::optional<ForceArrow> force_;
-    lockstep::Overlays overlays_;
+    ShownScene shown_;
     bool culling_ = true;
     DrawCounts counts_;
-
     std::unique_ptr<DrawnSurface> surface_;
-    SandPrograms sunlit_;
-    std::optional<SandPrograms> hillShaded_;  // made when the layer is first drawn, like the members below
-    std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // made for the first tool that is not a ball
-    std::optional<GlProgram> stampWood_;
-    std::optional<GlProgram> wireProgram_;
-    std::optional<ForceArrowView> forceView_;
-    GlProgram woodProgram_, toolProgram_;
+    ScenePrograms programs_;
+    std::optional<ForceArrowView> forceView_;  // made for the first arrow
     GrainTexture grain_;
     SandBox box_;
     ToolMesh toolMesh_;

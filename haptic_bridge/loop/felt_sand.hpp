@@ -7,11 +7,11 @@
 
 namespace haptic_bridge {
 
-/// Fills `surface` with the sand that a hand at `around` feels after the last step of `terrain`. Sets neither its times
+/// Fills `surface` with the sand that a hand at `probe` feels after the last step of `terrain`. Sets neither its times
 /// nor its number of edits. Both the thread that makes steps and a replay call this function.
-inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& around, FeltSand& surface) {
-    surface.patch.take(terrain, around);
-    surface.around = {around.x, around.y, 0};
+inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& probe, FeltSand& surface) {
+    surface.patch.take(terrain, probe);
+    surface.probe = {probe.x, probe.y, 0};
     surface.tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     surface.talus = static_cast<double>(terrain.rules().tuning.threshold) / sand::kUnitsPerCell;
     surface.step = terrain.stepNumber();

@@ -122,7 +122,7 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
               .surfaceAgeNs = nowNs - surface.timeNs,
               .stepAgeNs = nowNs - surface.stepNs,
               .surfaceStep = surface.step,
-              .around = surface.around,
+              .surfaceProbe = surface.probe,
               .talus = surface.talus,
               .share = share_.load(std::memory_order_relaxed),
               .edited = feelsEdit(surface)};

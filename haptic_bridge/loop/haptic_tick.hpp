@@ -24,7 +24,7 @@ namespace haptic_bridge {
 /// Sand around the hand after one step. The forces are computed from it.
 struct FeltSand {
     sand::force::SurfacePatch patch;
-    sand::ProbePoint around;    // [probe unit], the hand's place when the patch was taken; z is 0
+    sand::ProbePoint probe;     // of the hand when the patch was taken; z is 0
     sand::force::Contour tool;  // outline of the tool, which an operator may change
     double talus = 0;           // tangent of the sand's talus, which an operator may change
     std::uint64_t step = 0;     // number of the step after which the patch was taken

@@ -18,7 +18,7 @@ struct TickInput {
     std::int64_t surfaceAgeNs = 0;  // [ns], since the sand was copied
     std::int64_t stepAgeNs = 0;     // [ns], since the newest step was made
     std::uint64_t surfaceStep = 0;  // FeltSand::step
-    sand::ProbePoint around;        // FeltSand::around
+    sand::ProbePoint surfaceProbe;  // FeltSand::probe
     double talus = 0;               // FeltSand::talus
     double share = 1;     // of each force that the hand may feel, as operators and the server's options have it
     bool edited = false;  // whether this is the first tick that feels a step with an edit

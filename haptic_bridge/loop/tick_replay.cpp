@@ -45,8 +45,8 @@ void TickReplay::begin(const TrackPiece& piece) {
 }
 
 void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std::string& rows) {
-    if (surface_.patch.empty() || surface_.step != terrain.stepNumber() || surface_.around != input.around) {
-        takeSurface(terrain, input.around, surface_);
+    if (surface_.patch.empty() || surface_.step != terrain.stepNumber() || surface_.probe != input.surfaceProbe) {
+        takeSurface(terrain, input.surfaceProbe, surface_);
     }
     surface_.timeNs = input.nowNs - input.surfaceAgeNs;
     surface_.stepNs = input.nowNs - input.stepAgeNs;

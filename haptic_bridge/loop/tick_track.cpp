@@ -96,10 +96,10 @@ base::Bytes encode(const TrackPiece& piece) {
     }
     writer.putVarint(piece.ticks.size());
     std::int64_t beforeNs = 0;
-    sand::ProbePoint around;      // of the previous tick
-    double share = 0, talus = 0;  // of the previous tick
+    sand::ProbePoint surfaceProbe;  // of the previous tick
+    double share = 0, talus = 0;    // of the previous tick
     for (const TickInput& tick : piece.ticks) {
-        const bool elsewhere = tick.around != around, tuned = tick.share != share || tick.talus != talus;
+        const bool elsewhere = tick.surfaceProbe != surfaceProbe, tuned = tick.share != share || tick.talus != talus;
         writer.put(tick.time);
         putVec({tick.pose.x, tick.pose.y, tick.pose.z}, writer);
         putVec(tick.reading.place, writer);
@@ -109,15 +109,15 @@ base::Bytes encode(const TrackPiece& piece) {
         writer.putSigned(tick.stepAgeNs);
         writer.putVarint(tick.surfaceStep);
         if (elsewhere) {
-            writer.putSigned(tick.around.x);
-            writer.putSigned(tick.around.y);
+            writer.putSigned(tick.surfaceProbe.x);
+            writer.putSigned(tick.surfaceProbe.y);
         }
         if (tuned) {
             writer.put(tick.share);
             writer.put(tick.talus);
         }
         beforeNs = tick.nowNs;
-        around = tick.around;
+        surfaceProbe = tick.surfaceProbe;
         share = tick.share;
         talus = tick.talus;
     }
@@ -137,7 +137,7 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             throw base::FormatError(fmt::format("{} ticks in a piece", count));
         }
         std::int64_t beforeNs = 0;
-        sand::ProbePoint around;
+        sand::ProbePoint surfaceProbe;
         double share = 0, talus = 0;
         for (std::uint64_t i = 0; i < count; ++i) {
             TickInput& tick = piece.ticks.emplace_back();
@@ -155,10 +155,10 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.stepAgeNs = getNs(0, reader);
             tick.surfaceStep = reader.getVarint();
             if ((flags & kElsewhere) != 0) {
-                around.x = getProbe(reader);
-                around.y = getProbe(reader);
+                surfaceProbe.x = getProbe(reader);
+                surfaceProbe.y = getProbe(reader);
             }
-            tick.around = around;
+            tick.surfaceProbe = surfaceProbe;
             if ((flags & kTuned) != 0) {
                 share = getBounded(1, "a share of the force", reader);
                 talus = getBounded(std::numeric_limits<double>::max(), "a talus", reader);

@@ -10,7 +10,7 @@ namespace render_node {
 /// A tool at its place, as it is drawn.
 struct DrawnTool {
     sand::Tool tool;
-    glm::vec3 centre;  // [scene unit]
+    glm::vec3 place;   // [scene unit], of the centre
     float radius = 0;  // [scene unit]; a tool of radius 0 is not drawn
     bool engaged = false;
 

@@ -5,7 +5,7 @@
 
 namespace render_node {
 
-ToolLight::ToolLight(const DrawnTool& drawn) : centre(drawn.centre), radius(drawn.radius) {
+ToolLight::ToolLight(const DrawnTool& drawn) : centre(drawn.place), radius(drawn.radius) {
     using enum sand::ToolKind;
     const sand::Tool& tool = drawn.tool;
     const double toolRadius = radius;

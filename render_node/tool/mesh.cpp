@@ -166,6 +166,12 @@ Box boxOfTool(const sand::Tool& tool) {
     return {{-wide, -wide, -1.01}, {wide, wide, 1.01 * double{kKnob}}};
 }
 
+Box bodyOf(const DrawnTool& drawn) {
+    const Box box = boxOfTool(drawn.tool);
+    const glm::dvec3 place(drawn.place);
+    return {place + double{drawn.radius} * box.low, place + double{drawn.radius} * box.high};
+}
+
 void ToolMesh::show(const sand::Tool& tool) {
     const Shown now{tool.kind, double{widthOf(tool)}, sand::isRound(tool.kind) ? sand::Heading{} : tool.heading};
     if (shown_ != now) {

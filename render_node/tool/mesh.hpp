@@ -5,7 +5,7 @@
 
 #include "render_node/gl/solid_mesh.hpp"
 #include "render_node/surface/frustum.hpp"
-#include "sand/model/tool.hpp"
+#include "render_node/tool/drawn_tool.hpp"
 
 namespace render_node {
 
@@ -17,6 +17,8 @@ namespace render_node {
 [[nodiscard]] std::vector<SolidVertex> makeTool(const sand::Tool& tool);
 /// Returns a box around makeTool() for any heading.
 [[nodiscard]] Box boxOfTool(const sand::Tool& tool);
+/// Returns a box around a tool at its place [scene unit].
+[[nodiscard]] Box bodyOf(const DrawnTool& drawn);
 
 /// Tool of radius 1 in GL. The shader moves and scales it.
 class ToolMesh {

@@ -5,6 +5,8 @@
 #include <glm/glm.hpp>
 
 #include "render_node/surface/frustum.hpp"
+#include "render_node/tool/drawn_tool.hpp"
+#include "render_node/tool/light.hpp"
 
 namespace render_node {
 
@@ -17,6 +19,7 @@ public:
     /// All lengths are in scene units. `sun` points towards the sun and has length 1. The radius is positive.
     ToolReach(const glm::dvec3& centre, double radius, const glm::dvec3& sun)
         : centre_(centre), radius_(radius), sun_(sun) {}
+    ToolReach(const DrawnTool& tool, const glm::dvec3& sun) : ToolReach(ToolLight(tool), sun) {}
 
     /// Returns whether the tool may change the look of anything within a box.
     [[nodiscard]] bool meets(const Box& box) const;
@@ -27,6 +30,7 @@ public:
     [[nodiscard]] std::array<Box, 2> shadowBetween(double lowest, double highest) const;
 
 private:
+    ToolReach(const ToolLight& light, const glm::dvec3& sun) : ToolReach(light.centre, light.radius, sun) {}
     // Returns half of the shadow's width at the distance `along` behind the tool [scene unit].
     [[nodiscard]] double halfWidth(double along) const;
     [[nodiscard]] Box shadowAt(double along) const;

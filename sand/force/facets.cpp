@@ -91,9 +91,9 @@ std::int32_t Facets::Index::put(std::int32_t slot, std::int32_t number) {
 
 std::int32_t Facets::Index::find(std::int32_t slot) const { return places_[placeOf(slot)].second; }
 
-bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& centre, std::int32_t reach, double unit) {
+bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& probe, std::int32_t reach, double unit) {
     const tin::Triangles& mesh = tin.triangles;
-    const tin::Place middle{std::clamp(centre.x, 0, mesh.width), std::clamp(centre.y, 0, mesh.depth)};
+    const tin::Place middle{std::clamp(probe.x, 0, mesh.width), std::clamp(probe.y, 0, mesh.depth)};
     square_ = {std::max(middle.x - reach, 0), std::max(middle.y - reach, 0), std::min(middle.x + reach, mesh.width),
                std::min(middle.y + reach, mesh.depth)};
     clear();

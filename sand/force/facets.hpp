@@ -26,11 +26,11 @@ public:
     static constexpr std::size_t kMost = 4096;  // most triangles; with more, a query and a copy would take too long
     static_assert(kMost < 32768);               // a facet's number has 16 bits
 
-    /// Copies all triangles that reach into the square that extends `reach` > 0 to each side of `centre` [probe unit].
+    /// Copies all triangles that reach into the square that extends `reach` > 0 to each side of `probe`.
     /// `unit` is the size of a probe unit [scene unit]. A hole becomes flat, as wall cells of a grid do. Its height is
     /// that of the lowest corner, among these triangles, that is on ground. Returns false, and holds no triangle, if
     /// there are more than kMost.
-    bool take(const tin::SurfaceView& tin, const ProbePoint& centre, std::int32_t reach, double unit);
+    bool take(const tin::SurfaceView& tin, const ProbePoint& probe, std::int32_t reach, double unit);
     void clear() {
         facets_.clear();
         planes_.clear();

@@ -22,14 +22,14 @@ double halfCut(const tin::SurfaceView& tin, double cell) { return 0.5 * tin.spac
 }  // namespace
 
 template <class HeightOf>
-void SurfacePatch::sample(const Cells& cells, ProbePoint centre, double toolRadius, HeightOf heightOf) {
+void SurfacePatch::sample(const Cells& cells, ProbePoint probe, double toolRadius, HeightOf heightOf) {
     const int reach = reachOf(toolRadius, cells.size);
     const auto within = [reach](std::int32_t coordinate, int count) {
         const int middle = std::clamp(static_cast<int>(coordinate >> kProbeBits), 0, count - 1);
         return std::pair{std::max(middle - reach, 0), std::min(middle + reach, count - 1)};
     };
-    auto [west, east] = within(centre.x, cells.columns);
-    auto [south, north] = within(centre.y, cells.rows);
+    auto [west, east] = within(probe.x, cells.columns);
+    auto [south, north] = within(probe.y, cells.rows);
     const int stride = std::max(east - west, north - south) / cells.most + 1;
     west -= west % stride;
     south -= south % stride;
@@ -53,22 +53,22 @@ void SurfacePatch::sample(const Cells& cells, ProbePoint centre, double toolRadi
     }
 }
 
-SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius) {
-    takeCells(field, centre, toolRadius);
+SurfacePatch::SurfacePatch(const HeightField& field, ProbePoint probe, double toolRadius) {
+    takeCells(field, probe, toolRadius);
 }
 
-void SurfacePatch::takeCells(const HeightField& field, ProbePoint centre, double toolRadius) {
-    sample({field.columns(), field.rows(), field.cellSize(), kMostCells}, centre, toolRadius,
+void SurfacePatch::takeCells(const HeightField& field, ProbePoint probe, double toolRadius) {
+    sample({field.columns(), field.rows(), field.cellSize(), kMostCells}, probe, toolRadius,
            [&](int column, int row) { return field.height(column, row); });
 }
 
-SurfacePatch::SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius) {
-    takeFacets(tin, cellSize, centre, toolRadius);
+SurfacePatch::SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius) {
+    takeFacets(tin, cellSize, probe, toolRadius);
 }
 
-bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius) {
+bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius) {
     const double unit = probeUnit(cellSize);  // [scene unit]
-    if (!facets_.take(tin, centre, reachOf(toolRadius, cellSize) * kProbePerCell, unit)) {
+    if (!facets_.take(tin, probe, reachOf(toolRadius, cellSize) * kProbePerCell, unit)) {
         return false;
     }
     columns_ = rows_ = 0;
@@ -78,14 +78,14 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
     return true;
 }
 
-void SurfacePatch::take(const Replica& terrain, const ProbePoint& centre) {
+void SurfacePatch::take(const Replica& terrain, const ProbePoint& probe) {
     const double cell = terrain.cellSize(), radius = terrain.toolRadius();
     const SurfaceData data = terrain.surface().data();
     if (const auto* grid = std::get_if<GridData>(&data)) {
-        takeCells(grid->field, centre, radius);
-    } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cell, centre, radius)) {
+        takeCells(grid->field, probe, radius);
+    } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cell, probe, radius)) {
         const Rules& rules = terrain.rules();
-        sample({rules.columns, rules.rows, cell, kMostHeights}, centre, radius, [&](int column, int row) {
+        sample({rules.columns, rules.rows, cell, kMostHeights}, probe, radius, [&](int column, int row) {
             return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
         });
         cutBeyond_ = halfCut(tin, cell);

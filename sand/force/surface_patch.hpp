@@ -29,13 +29,13 @@ public:
         96;  // most on a side for a TIN, where a height costs a walk through its triangles
 
     SurfacePatch() = default;
-    SurfacePatch(const HeightField& field, ProbePoint centre, double toolRadius /* [scene unit] */);
+    SurfacePatch(const HeightField& field, ProbePoint probe, double toolRadius /* [scene unit] */);
     /// Takes the triangles of a TIN with nominal cells of `cellSize`. The patch is empty if there are too many.
-    SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
+    SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius);
     /// Takes the sand around the replica's tool.
     explicit SurfacePatch(const Replica& terrain) { take(terrain, terrain.probe()); }
-    /// Takes the sand around `centre` that the replica's tool can reach. Reuses the memory of the patch.
-    void take(const Replica& terrain, const ProbePoint& centre);
+    /// Takes the sand around `probe` that the replica's tool can reach. Reuses the memory of the patch.
+    void take(const Replica& terrain, const ProbePoint& probe);
 
     /// Returns whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {
@@ -65,10 +65,10 @@ private:
     };
     /// Samples the heights that `heightOf(column, row)` returns [unit].
     template <class HeightOf>
-    void sample(const Cells& cells, ProbePoint centre, double toolRadius, HeightOf heightOf);
+    void sample(const Cells& cells, ProbePoint probe, double toolRadius, HeightOf heightOf);
 
-    void takeCells(const HeightField& field, ProbePoint centre, double toolRadius);
-    bool takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint centre, double toolRadius);
+    void takeCells(const HeightField& field, ProbePoint probe, double toolRadius);
+    bool takeFacets(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius);
     [[nodiscard]] Dual sampledTangent(double x, double y) const;
 
     Facets facets_;

@@ -91,7 +91,7 @@ void writeTicks(Folder folder) {
         tick.nowNs = 1'000'003 * static_cast<std::int64_t>(i);
         tick.surfaceAgeNs = 5'000'000;
         tick.surfaceStep = static_cast<std::uint64_t>(i) / 6;
-        tick.around = {2000 + 300 * (i / 10), 2000, 0};
+        tick.surfaceProbe = {2000 + 300 * (i / 10), 2000, 0};
     }
     haptic_bridge::TrackPiece recorded{.sitting = 2, .begins = true, .header = {}, .ticks = {}};
     haptic_bridge::TrackPiece last = felt;

@@ -236,7 +236,7 @@ TEST_F(Recorded, AFileThatCannotBeMadeIsNamed) { EXPECT_THROW(open("/nowhere/tic
 TEST(TickTrack, RefusesBytesThatAreNone) {
     TrackPiece piece;
     piece.ticks.resize(3);
-    piece.ticks[1].around = {7, 8, 0};
+    piece.ticks[1].surfaceProbe = {7, 8, 0};
     const base::Bytes whole = encode(piece);
     EXPECT_EQ(decodeTrackPiece(whole).ticks.size(), 3U);
     for (std::size_t length = 0; length < whole.size(); ++length) {
@@ -245,9 +245,9 @@ TEST(TickTrack, RefusesBytesThatAreNone) {
     base::Bytes longer = whole;
     longer.push_back(0);
     EXPECT_THROW((void)decodeTrackPiece(longer), base::FormatError);
-    piece.ticks[1].around = {0, sand::kMaxProbe, 0};
+    piece.ticks[1].surfaceProbe = {0, sand::kMaxProbe, 0};
     EXPECT_NO_THROW((void)decodeTrackPiece(encode(piece)));
-    piece.ticks[1].around = {0, sand::kMaxProbe + 1, 0};
+    piece.ticks[1].surfaceProbe = {0, sand::kMaxProbe + 1, 0};
     EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError) << "beyond any field";
 }
 
@@ -270,12 +270,12 @@ TEST(TickTrack, KeepsTheMiddleOfTheSurfaceOfEachTick) {
     TrackPiece piece;
     piece.ticks.resize(middles.size());
     for (std::size_t i = 0; i < middles.size(); ++i) {
-        piece.ticks[i].around = middles[i];
+        piece.ticks[i].surfaceProbe = middles[i];
     }
     const TrackPiece read = decodeTrackPiece(encode(piece));
     ASSERT_EQ(read.ticks.size(), middles.size());
     for (std::size_t i = 0; i < middles.size(); ++i) {
-        EXPECT_EQ(read.ticks[i].around, middles[i]) << "tick " << i;
+        EXPECT_EQ(read.ticks[i].surfaceProbe, middles[i]) << "tick " << i;
     }
 }
 

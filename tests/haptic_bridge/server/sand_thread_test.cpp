@@ -128,7 +128,7 @@ TEST(SandThread, InRealTimeTheFirstSurfaceIsTheSandWhereTheHandRests) {
     const FeltSand& surface = server.channel().surface.latest();
     EXPECT_NEAR(surface.patch.height(1 + kWest, 1), 0.02, 1e-6);
     // 11 cells on each side of the hand and no more, because the whole field would also contain the other place.
-    EXPECT_EQ(surface.around, (sand::ProbePoint{100 * sand::kProbePerCell, 250 * sand::kProbePerCell, 0}));
+    EXPECT_EQ(surface.probe, (sand::ProbePoint{100 * sand::kProbePerCell, 250 * sand::kProbePerCell, 0}));
 }
 
 // The window is 8 steps (docs/protocol.md).

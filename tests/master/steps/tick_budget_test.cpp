@@ -16,7 +16,7 @@ haptic_bridge::TickInput tickAt(std::int64_t ns) {
     tick.nowNs = ns;
     tick.surfaceAgeNs = 16 * kMillisecondOfTicks;
     tick.surfaceStep = 1'000'000;
-    tick.around = {static_cast<std::int32_t>(ns % sand::kMaxProbe), -sand::kMaxProbe, 0};
+    tick.surfaceProbe = {static_cast<std::int32_t>(ns % sand::kMaxProbe), -sand::kMaxProbe, 0};
     return tick;
 }
 

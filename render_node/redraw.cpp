@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the parts of an eye's picture that must be drawn again.
-#include <algorithm>
+#include "render_node/redraw.hpp"
 
-#include "render_node/scene_painter.hpp"
+#include <algorithm>
+#include <array>
+#include <span>
+#include <utility>
+
+#include "render_node/tool/mesh.hpp"
+#include "render_node/tool/reach.hpp"
 
 namespace render_node {
 namespace {
@@ -14,15 +19,10 @@ constexpr std::size_t kMostPasses = 4;  // each pass tests every chunk
 
 }  // namespace
 
-ToolReach ScenePainter::reachOf(const DrawnTool& tool) const {
-    const ToolLight light(tool);
-    return {light.centre, light.radius, sun_};
-}
-
 /// Returns convex hulls around everything that a tool changes: the sand that it dims, its shadow, and the tool.
-std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const DrawnTool& tool) const {
-    const ToolReach reach = reachOf(tool);
-    const HeightRange sand = surface_->heightsEver();
+std::vector<std::vector<glm::dvec3>> Redraw::hullsOf(const DrawnTool& tool) const {
+    const ToolReach reach(tool, sun_);
+    const HeightRange sand = surface_.heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
     // A shadow inside the rim ends at the lowest sand that there has been. A shadow that leaves the rim ends at the
     // lowest point of the box, because nothing in the shaders stops it.
@@ -43,34 +43,34 @@ std::vector<std::vector<glm::dvec3>> ScenePainter::hullsOf(const DrawnTool& tool
     return hulls;
 }
 
-std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::ivec2 size, EyeMemory& memory) {
+std::vector<PixelRect> Redraw::pixels(const Camera& camera, const ShownScene& scene, glm::ivec2 size,
+                                      const LevelRule& rule, EyeMemory& memory) {
     const PixelRect whole = allPixels(size);
-    const glm::dmat4 sceneToClip = camera.roomToClip * sceneToRoom_;
-    const LevelRule rule = ruleFor(camera, size);
-    const bool toolMoved = memory.tool != drawnTool_;
-    if (!memory.drawn || memory.roomToClip != camera.roomToClip || memory.eye != camera.eye ||
-        memory.sceneToRoom != sceneToRoom_ || memory.layers != overlays_) {
-        memory.levels = surface_->levelsWithin(sceneToClip, rule);
+    const glm::dmat4 sceneToClip = camera.roomToClip * scene.sceneToRoom;
+    const ShownScene& before = memory.scene;
+    if (!memory.drawn || memory.camera != camera || before.sceneToRoom != scene.sceneToRoom ||
+        before.layers != scene.layers) {
+        memory.levels = surface_.levelsWithin(sceneToClip, rule);
         return {whole};
     }
     std::vector<PixelRect> changed{memory.covered};
     const auto add = [&](std::span<const glm::dvec3> hull) { changed.push_back(pixelsOf(hull, sceneToClip, size)); };
-    if (toolMoved && toolRadius() > 0) {
-        for (const std::optional<DrawnTool>& tool : {memory.tool, drawnTool_}) {
+    if (before.tool != scene.tool && scene.toolRadius > 0) {
+        for (const std::optional<DrawnTool>& tool : {before.tool, scene.tool}) {
             if (tool) {
                 std::ranges::for_each(hullsOf(*tool), add);
             }
         }
     }
-    if (memory.force != force_) {
-        if (memory.force && memory.tool) {
-            add(cornersOf(boxOf(*memory.force, memory.tool->radius)));
+    if (before.force != scene.force) {
+        if (before.force && before.tool) {
+            add(cornersOf(boxOf(*before.force, before.tool->radius)));
         }
-        if (force_) {
-            add(cornersOf(boxOf(*force_, toolRadius())));
+        if (scene.force) {
+            add(cornersOf(boxOf(*scene.force, scene.toolRadius)));
         }
     }
-    for (const Box& box : surface_->changesSince(memory.sand, memory.levels, rule)) {
+    for (const Box& box : surface_.changesSince(memory.sand, memory.levels, rule)) {
         add(cornersOf(box_.withSides(box)));
     }
     changed = fewCovering(std::move(changed), kMostPasses, kPass);
@@ -79,26 +79,6 @@ std::vector<PixelRect> ScenePainter::changedPixels(const Camera& camera, glm::iv
         area += rect.area();
     }
     return static_cast<double>(area) > kMostOfAll * static_cast<double>(whole.area()) ? std::vector{whole} : changed;
-}
-
-PixelRect ScenePainter::drawIfChanged(const Camera& camera, const EyeTarget& target, EyeMemory& memory) {
-    startCounting();
-    PixelRect changed;
-    for (const PixelRect& rect : changedPixels(camera, {target.width(), target.height()}, memory)) {
-        drawWithin(rect, camera, target);
-        changed = around(changed, rect);
-    }
-    memory = {true,
-              camera.roomToClip,
-              sceneToRoom_,
-              camera.eye,
-              surface_->revision(),
-              std::move(memory.levels),
-              drawnTool_,
-              force_,
-              overlays_,
-              {}};
-    return changed;
 }
 
 }  // namespace render_node
