@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/replica.hpp"
 
+#include <xxhash.h>
+
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
@@ -37,19 +38,25 @@ std::int64_t workOf(const Tool& tool, const std::vector<ProbePoint>& path, const
     return cells * substeps;
 }
 
-constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
-
 std::unique_ptr<Surface> cloneOf(const Surface& surface) {
     (void)base::needDefaultFloats();  // a clone of a TIN divides volumes by areas again
     return surface.clone();
 }
 
-/// Finaliser of MurmurHash3. Every bit of the input affects every bit of the result.
-std::uint64_t mix(std::uint64_t value) {
-    value = (value ^ (value >> 33)) * 0xff51afd7ed558ccdULL;
-    value = (value ^ (value >> 33)) * 0xc4ceb9fe1a85ec53ULL;
-    return value ^ (value >> 33);
-}
+/// All that the state hash covers.
+struct Hashed {
+    StateHead head;
+    std::uint64_t sand;
+    std::int64_t outflow;  // in the unit of Surface::outflow()
+    std::int32_t age;      // [sweep]
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("head", it.head);
+        visit("sand", it.sand);
+        visit("outflow", it.outflow);
+        visit("age", it.age);
+    }
+};
 
 }  // namespace
 
@@ -57,7 +64,6 @@ Replica::Replica(const Start& start, const base::Executor* executor) : Replica(s
 
 Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
     : rules_(start.rules),
-      startRules_(start.rules),
       cellSize_(start.terrain.cellSize()),
       surface_(std::move(surface)),
       heading_(start.rules.tuning.tool.heading) {
@@ -66,7 +72,6 @@ Replica::Replica(const Start& start, std::unique_ptr<Surface> surface)
 
 Replica::Replica(const Replica& other)
     : rules_(other.rules_),
-      startRules_(other.startRules_),
       cellSize_(other.cellSize_),
       surface_(cloneOf(*other.surface_)),
       stepNumber_(other.stepNumber_),
@@ -234,45 +239,14 @@ bool Replica::putBack(const Edit& edit) {
 }
 
 std::uint64_t Replica::stateHash() {
-    std::uint64_t hash = surface_->hash();
-    const auto fold = [&hash](std::uint64_t value) { hash = mix(hash ^ value) + std::rotl(value, 17); };
-    fold(stepNumber_);
-    fold(static_cast<std::uint64_t>(surface_->outflow()));
-    fold((engaged_ ? 1 : 0) + (settling_ ? 2 : 0));
-    fold(static_cast<std::uint64_t>(surface_->age()));
-    for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
-        fold(static_cast<std::uint32_t>(coordinate));
-    }
-    if (rules_ != startRules_) {  // only then, so that sessions without tuning keep the hashes of earlier versions
-        const Tuning& now = rules_.tuning;
-        for (const std::int32_t number : {now.threshold, now.startThreshold, now.sweepsPerStep, now.tool.radius}) {
-            fold(static_cast<std::uint32_t>(number));
-        }
-        if (!now.tool.plain()) {
-            fold(static_cast<std::uint64_t>(now.tool.kind));
-            fold(static_cast<std::uint32_t>(now.tool.halfWidth));
-            fold(now.tool.heading.bits());
-        }
-    }
-    // Only then, so that sessions without turns keep the hashes of earlier versions.
-    if (heading_ != startRules_.tuning.tool.heading) {
-        fold(heading_.bits());
-    }
-    return hash;
+    const Hashed hashed{head(), surface_->hash(), surface_->outflow(), surface_->age()};
+    const base::Bytes bytes = base::encoded(hashed);
+    return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-StateCopy Replica::copyState() const {
-    base::ByteWriter writer;
-    writer.put(kStateVersion);
-    writer.put(stepNumber_);
-    for (const std::int32_t coordinate : {probe_.x, probe_.y, probe_.z}) {
-        writer.put(coordinate);
-    }
-    writer.put(std::int32_t{(engaged_ ? 1 : 0) + (heading_.mirrored ? 2 : 0) + (settling_ ? 4 : 0)});
-    heading_.encode(writer);
-    base::putMember(writer, rules_.tuning);
-    return {writer.take(), surface_->kept(), copySand()};
-}
+StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, settling_, rules_.tuning}; }
+
+StateCopy Replica::copyState() const { return {base::encoded(head()), surface_->kept(), copySand()}; }
 
 base::Bytes StateCopy::encode() const {
     base::ByteWriter writer;
@@ -285,24 +259,7 @@ base::Bytes StateCopy::encode() const {
 void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     (void)base::needDefaultFloats();
     base::ByteReader reader(bytes);
-    if (const auto version = reader.get<std::uint32_t>(); version != kStateVersion) {
-        throw base::FormatError("a state of version " + std::to_string(version));
-    }
-    const auto number = reader.get<std::uint64_t>();
-    if (number > kMostSteps) {
-        throw base::FormatError("a state after " + std::to_string(number) + " steps");
-    }
-    ProbePoint probe;
-    for (std::int32_t* coordinate : {&probe.x, &probe.y, &probe.z}) {
-        *coordinate = reader.get<std::int32_t>();
-        if (*coordinate > kMaxProbe || *coordinate < -kMaxProbe) {
-            throw base::FormatError("a state with its tool out of reach");
-        }
-    }
-    const auto flags = reader.get<std::int32_t>();
-    const bool engaged = (flags & 1) != 0, settling = (flags & 4) != 0;
-    const Heading heading = Heading::decode(reader, (flags & 2) != 0);
-    const Tuning tuning = base::read<Tuning>(reader);
+    const auto head = base::read<StateHead>(reader);
     const auto beforeStroke = reader.getBlock();
     const SurfaceReader read = surface_->reader();
     // Decode the kept sand now, because at the undo it would be too late to refuse it.
@@ -314,14 +271,14 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     } else {
         surface_->forget();
     }
-    rules_.tuning = tuning;
+    rules_.tuning = head.tuning;
     surface_->changeRules(rules_);
     surface_->replace(*sand);
-    stepNumber_ = number;
-    engaged_ = engaged;
-    settling_ = settling;
-    probe_ = probe;
-    heading_ = heading;
+    stepNumber_ = head.number;
+    engaged_ = head.engaged;
+    settling_ = head.settling;
+    probe_ = head.probe;
+    heading_ = head.heading;
     leftOut_.clear();
 }
 

@@ -15,11 +15,34 @@
 namespace sand {
 
 /// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
-inline constexpr std::uint32_t kStateVersion = 7;
+inline constexpr std::uint32_t kStateVersion = 8;
+
+/// Part of a replica's state besides the sand.
+struct StateHead {
+    std::uint64_t number = 0;  // of the last step
+    ProbePoint probe;
+    Heading heading;
+    bool engaged = false, settling = false;
+    Tuning tuning;
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::uint64_t kMostSteps = std::uint64_t{1} << 62;  // so that the number of a step never overflows
+        visit("state version", base::constant(kStateVersion, "that of this release"));
+        visit("step", base::limited(it.number, 0, kMostSteps));
+        for (auto* coordinate : {&it.probe.x, &it.probe.y, &it.probe.z}) {
+            visit("probe", base::limited(*coordinate, -kMaxProbe, kMaxProbe));
+        }
+        visit("heading", it.heading);
+        visit("engaged", it.engaged);
+        visit("settling", it.settling);
+        visit("tuning", it.tuning);
+    }
+};
 
 /// Copy of a replica's whole state. Another thread can compress it while the replica applies further steps.
 struct StateCopy {
-    base::Bytes head;                                 // step number, probe, heading, settle, tuned rules, encoded
+    base::Bytes head;                                 // of StateHead
     std::shared_ptr<const SurfaceCopy> beforeStroke;  // sand that an undo restores; null if there is none
     std::shared_ptr<const SurfaceCopy> sand;
 
@@ -140,6 +163,7 @@ private:
         ProbePoint probe;
         Heading heading;
     };
+    [[nodiscard]] StateHead head() const;
     void tune(const Tuning& tuning);
     void settle();
     /// Displaces the sand below the tool at its current position.
@@ -152,7 +176,7 @@ private:
     /// Does a reset, an undo or a load. Returns false if the edit restores no sand.
     bool putBack(const Edit& edit);
 
-    Rules rules_, startRules_;
+    Rules rules_;
     double cellSize_;
     std::unique_ptr<Surface> surface_;
     std::uint64_t stepNumber_ = 0;

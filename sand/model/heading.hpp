@@ -3,8 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
-#include "base/byte_stream.hpp"
+#include "base/fields.hpp"
 
 namespace sand {
 
@@ -22,11 +23,13 @@ struct Heading {
         return square >= std::int64_t{kLength - 1} * (kLength - 1) &&
                square <= std::int64_t{kLength + 1} * (kLength + 1);
     }
-    /// Returns the heading as one whole number, for hashes.
-    [[nodiscard]] std::uint64_t bits() const {
-        return std::uint64_t{static_cast<std::uint16_t>(x)} | std::uint64_t{static_cast<std::uint16_t>(y)} << 16 |
-               std::uint64_t{mirrored ? 1U : 0U} << 32;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("x", it.x);
+        visit("y", it.y);
+        visit("mirrored", it.mirrored);
     }
+    [[nodiscard]] std::string refusal() const { return valid() ? "" : "has the wrong length"; }
     void encode(base::ByteWriter& writer) const {
         writer.put(x);
         writer.put(y);

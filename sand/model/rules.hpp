@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <limits>
-#include <string>
-#include <type_traits>
 
 #include "base/field_forms.hpp"
 #include "base/names.hpp"
@@ -16,7 +14,7 @@ namespace sand {
 
 /// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
 /// versions refuse to run together.
-inline constexpr std::uint32_t kAlgorithmVersion = 9;
+inline constexpr std::uint32_t kAlgorithmVersion = 10;
 
 /// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
 /// docs/sand.md states both laws.
@@ -36,25 +34,6 @@ enum class Rim : std::uint8_t {
     open     // lets sand fall over it, as outflow
 };
 constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
-
-/// Form of a scheme in one byte. Its highest bit is set in the rules of a TIN, whose digest then follows.
-template <class AnyRules>
-struct SchemeOfKind {
-    static constexpr unsigned kTin = 0x80;
-    AnyRules& rules;
-    void put(base::ByteWriter& writer) const {
-        writer.put(static_cast<std::uint8_t>(static_cast<unsigned>(rules.scheme) | (rules.tin != 0 ? kTin : 0U)));
-    }
-    /// Sets `tin` to 1 if its digest follows, and to 0 otherwise.
-    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyRules>) {
-        const unsigned byte = reader.get<std::uint8_t>(), scheme = byte & ~kTin;
-        rules.scheme = static_cast<Scheme>(scheme);
-        if (base::nameOf(rules.scheme).empty()) {
-            throw base::FormatError("is " + std::to_string(scheme) + ", which is unknown");
-        }
-        rules.tin = (byte & kTin) != 0 ? 1 : 0;
-    }
-};
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
 /// and sends them to all other processes. These never derive them again, because the last digit of libm's results
@@ -76,15 +55,12 @@ struct Rules {
         visit("columns", base::limited(it.columns, 1, kMaxSide));
         visit("rows", base::limited(it.rows, 1, kMaxSide));
         visit("aspect", base::limited(it.aspect, 1, kAny));
-        Tuning::materialFields(it.tuning, visit);
+        visit("tuning", it.tuning);
         visit("steps_per_second", base::limited(it.stepsPerSecond, 1, kAny));
-        visit("tool", it.tuning.tool);
-        visit("scheme", SchemeOfKind<Self>{it});
+        visit("scheme", it.scheme);
         visit("rim", it.rim);
         visit("ground", it.ground);
-        if (it.tin != 0) {
-            visit("tin", base::limited(it.tin, 1, std::numeric_limits<std::uint64_t>::max()));
-        }
+        visit("tin", it.tin);
     }
 
     /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a

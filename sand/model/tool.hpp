@@ -3,8 +3,9 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
-#include "base/byte_stream.hpp"
+#include "base/field_forms.hpp"
 #include "base/names.hpp"
 #include "sand/model/heading.hpp"
 
@@ -49,12 +50,16 @@ struct Tool {
 
     /// Returns the tool with another heading.
     [[nodiscard]] Tool turnedTo(const Heading& to) const { return {kind, radius, halfWidth, to}; }
-    /// Returns whether the tool is a sphere that points east. Its encoding is its radius alone. The encoding of any
-    /// other tool is −1 − radius, kind, half width and heading.
-    [[nodiscard]] bool plain() const { return kind == ToolKind::sphere && heading == Heading{}; }
-    void put(base::ByteWriter& writer) const;
-    /// Reads what put() wrote. Throws base::FormatError for a tool that no scene file can contain.
-    void get(base::ByteReader& reader);
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("kind", it.kind);
+        visit("radius", base::limited(it.radius, 0, kLargestToolRadius));
+        visit("half_width", base::limited(it.halfWidth, 0, it.radius));
+        visit("heading", it.heading);
+    }
+    [[nodiscard]] std::string refusal() const {
+        return isRound(kind) && halfWidth != 0 ? "is round, but has a width of its own" : "";
+    }
     friend bool operator==(const Tool&, const Tool&) = default;
 };
 

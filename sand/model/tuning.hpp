@@ -23,16 +23,11 @@ struct Tuning {
     std::int32_t sweepsPerStep = 0;
     Tool tool{};
 
-    /// Visits all members except the tool.
     template <class Self, class Visit>
-    static void materialFields(Self& it, Visit& visit) {
+    static void fields(Self& it, Visit& visit) {
         visit("threshold", base::limited(it.threshold, 0, kLargestThreshold));
         visit("start_threshold", base::limited(it.startThreshold, it.threshold, kLargestThreshold));
         visit("sweeps_per_step", base::limited(it.sweepsPerStep, 0, kMostSweeps));
-    }
-    template <class Self, class Visit>
-    static void fields(Self& it, Visit& visit) {
-        materialFields(it, visit);
         visit("tool", it.tool);
     }
     friend bool operator==(const Tuning&, const Tuning&) = default;

@@ -36,14 +36,10 @@ Imprint::Stand decodeStand(base::ByteReader& reader) {
     stand.at.x = reader.get<std::int32_t>();
     stand.at.y = reader.get<std::int32_t>();
     stand.at.z = reader.get<std::int32_t>();
-    base::getMember(reader, stand.tool.kind);
-    stand.tool.radius = reader.get<std::int32_t>();
-    stand.tool.halfWidth = reader.get<std::int32_t>();
-    stand.tool.heading = Heading::decode(reader, base::read<bool>(reader));
+    stand.tool = base::read<Tool>(reader);
     const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
                       std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
-    if (!near || stand.tool.radius < 0 || stand.tool.radius > kLargestToolRadius || stand.tool.halfWidth < 0 ||
-        stand.tool.halfWidth > stand.tool.radius) {
+    if (!near) {
         throw base::FormatError("an imprint with a tool out of range");
     }
     return stand;
@@ -135,11 +131,7 @@ void Imprint::encode(base::ByteWriter& writer) const {
         return;
     }
     encodePoint(stand->at, writer);
-    writer.put(static_cast<std::uint8_t>(stand->tool.kind));
-    writer.put(stand->tool.radius);
-    writer.put(stand->tool.halfWidth);
-    writer.put(static_cast<std::uint8_t>(stand->tool.heading.mirrored ? 1 : 0));
-    stand->tool.heading.encode(writer);
+    base::putMember(writer, stand->tool);
     writer.putVarint(points.size());
     for (const Point& point : points) {
         writer.put(point.vertex);

@@ -24,12 +24,9 @@ std::string refusalOf(const Bytes& bytes) {
     return {};
 }
 
-// As docs/protocol.md describes a tuning: three numbers, and the tool. 2000 is 0x7d0, and -2001 is 0xfffff82f.
+// As docs/protocol.md describes a tuning: three numbers, and the tool. 2000 is 0x7d0, and 700 is 0x2bc.
 TEST(Rules, ATuningHasTheBytesOfTheProtocol) {
-    const Bytes ball{7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 0xd0, 7, 0, 0};
-    EXPECT_EQ(base::encoded(sand::Tuning{7, 11, 13, {.radius = 2000}}), ball);
-    const Bytes foot{7,    0,    0,    0,    11,   0,    0, 0, 13, 0, 0, 0,   0x2f,
-                     0xf8, 0xff, 0xff, 0x85, 0xbc, 0x02, 0, 0, 0,  0, 0, 0x40};
+    const Bytes foot{7, 0, 0, 0, 11, 0, 0, 0, 13, 0, 0, 0, 5, 0xd0, 7, 0, 0, 0xbc, 2, 0, 0, 0, 0, 0, 0x40, 1};
     EXPECT_EQ(base::encoded(sand::Tuning{7, 11, 13, kLeftFoot}), foot);
     EXPECT_EQ(base::decoded<sand::Tuning>(foot).tool, kLeftFoot);
 }
@@ -45,27 +42,13 @@ Rules someRules() {
             .ground = 9};
 }
 
-constexpr std::size_t kSchemeAt = 8 * 4;  // behind seven numbers and the radius of the tool
-
-TEST(Rules, OnlyThoseOfATinEndWithItsDigest) {
-    Rules rules = someRules();
-    const Bytes grid = base::encoded(rules);
-    EXPECT_EQ(grid, (Bytes{3, 0, 0, 0,  4, 0, 0, 0,    5, 0, 0, 0, 7, 0, 0, 0, 11, 0, 0, 0, 13,
-                           0, 0, 0, 60, 0, 0, 0, 0xd0, 7, 0, 0, 2, 1, 9, 0, 0, 0,  0, 0, 0, 0}));
-    EXPECT_EQ(base::decoded<Rules>(grid), rules);
-    rules.tin = 0x1234;
-    Bytes tin = base::encoded(rules);
-    ASSERT_EQ(tin.size(), grid.size() + 8);
-    EXPECT_EQ(tin[kSchemeAt], 0x82);
-    EXPECT_EQ(base::decoded<Rules>(tin), rules);
-    tin[grid.size()] = tin[grid.size() + 1] = 0;
-    EXPECT_EQ(refusalOf(tin), "tin: is 0, not from 1 to 18446744073709551615");
-}
+constexpr std::size_t kSchemeAt = 7 * 4 + 14;  // behind seven numbers and the tool
 
 TEST(Rules, ARefusalNamesTheNumber) {
     Rules steep = someRules();
+    EXPECT_EQ(base::decoded<Rules>(base::encoded(steep)), steep);
     steep.tuning.startThreshold = 6;
-    EXPECT_EQ(refusalOf(base::encoded(steep)), "start_threshold: is 6, not from 7 to 1073741824");
+    EXPECT_EQ(refusalOf(base::encoded(steep)), "tuning: start_threshold: is 6, not from 7 to 1073741824");
     Bytes unknown = base::encoded(someRules());
     unknown[kSchemeAt] = 1;
     EXPECT_EQ(refusalOf(unknown), "scheme: is 1, which is unknown");
@@ -74,7 +57,9 @@ TEST(Rules, ARefusalNamesTheNumber) {
     EXPECT_EQ(refusalOf(unknown), "rim: is 2, which is unknown");
     Rules wide = someRules();
     wide.tuning.tool = {ToolKind::ellipse, 17, 18};
-    EXPECT_EQ(refusalOf(base::encoded(wide)), "tool: is larger or wider than a tool can be");
+    EXPECT_EQ(refusalOf(base::encoded(wide)), "tuning: tool: half_width: is 18, not from 0 to 17");
+    wide.tuning.tool = {ToolKind::circle, 17, 1};
+    EXPECT_EQ(refusalOf(base::encoded(wide)), "tuning: tool: is round, but has a width of its own");
 }
 
 TEST(Rules, ATunedToolKeepsTheHeadingOfTheHandUnlessTheOperatorTurnsIt) {
