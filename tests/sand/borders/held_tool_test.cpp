@@ -39,4 +39,35 @@ TEST(HeldTool, OfATinKeepsAllSandOutWhileItSettles) {
     }
 }
 
+// A tool is dragged through tall sand into a corner of the field or of a pocket. Ahead of it there is ever less ground,
+// so that the sand would rise there above the greatest height that sand may have. It must then go around the tool, and
+// not stay above it.
+TEST(HeldTool, OfATinPushesTheSandAroundThatTheCornerAheadCannotHold) {
+    struct Trial {
+        sand::ToolKind kind;
+        bool pocket;
+        double height;  // of the sand [cell]
+    };
+    for (const Trial& trial : {Trial{ellipsoid, false, 130},
+                               {ellipsoid, true, 130},
+                               {sphere, true, 700},
+                               {circle, true, 700},
+                               {rectangle, true, 400}}) {
+        borders::Case given = trial.pocket ? borders::walled(kTin, kSide, trial.kind) : borders::caseOf(kTin, kSide);
+        given.tool = trial.kind;
+        given.radius = 6;
+        given.sweeps = 4;
+        given.height = [&](double x, double y) { return trial.height + 4 * std::sin(x / 5) * std::cos(y / 6); };
+        sand::Replica sand(borders::sceneOf(given));
+        const sand::Replica before = sand;
+        const double x = trial.pocket ? 48.3 : 2.3, y = trial.pocket ? 47.6 : 1.8;
+        borders::Hand(sand).drag(x + 4, y + 7, x, y, 20);
+        const bool bowl = trial.kind == sphere || trial.kind == ellipsoid;
+        const std::string name = std::string(base::nameOf(trial.kind)) + (trial.pocket ? ", pocket" : ", corner");
+        EXPECT_LE(borders::overUnderside(sand, sand.probe()), bowl ? 0.4 : 1e-3) << name;
+        EXPECT_EQ(sand.volume(), before.volume()) << name;
+        EXPECT_EQ(borders::exchanged(before, sand), 0) << name;
+    }
+}
+
 }  // namespace
