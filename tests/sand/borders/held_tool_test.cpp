@@ -12,8 +12,8 @@ using borders::kSide;
 using borders::kTin;
 using enum sand::ToolKind;
 
-void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt place, double most) {
-    const borders::HeldSettle held = borders::settleAround(ground, kSide, kind, place);
+void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt place, double most, int side = kSide) {
+    const borders::HeldSettle held = borders::settleAround(ground, side, kind, place);
     const std::string name = std::string(base::nameOf(kind)) + ", " + borders::nameOf(place);
     EXPECT_LE(held.largest, most) << name;
     EXPECT_EQ(held.changed, 0) << name;
@@ -37,6 +37,13 @@ TEST(HeldTool, OfATinKeepsAllSandOutWhileItSettles) {
         expectNoSandIn(kTin, rectangle, place, 1e-3);
         expectNoSandIn(kTin, footprint, place, 0.4);
     }
+}
+
+// On a finer mesh, more vertices are between a tool and the sand beside it. The outline of a sphere and its rings make
+// slivers, along which sand must not flow without end. A toe must have enough points to keep the sand beside it out.
+TEST(HeldTool, OfAFinerTinKeepsAllSandOutAndLetsItRest) {
+    expectNoSandIn(kTin, sphere, HeldAt::overWall, 0.4, 2 * kSide);
+    expectNoSandIn(kTin, footprint, HeldAt::overPocket, 0.4, 2 * kSide);
 }
 
 // A tool is dragged through tall sand into a corner of the field or of a pocket. Ahead of it there is ever less ground,
