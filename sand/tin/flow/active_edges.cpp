@@ -156,19 +156,21 @@ void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weig
 // A triangle at which no sand has flowed starts to slide at a slope that is never below the talus without slack.
 bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
+    const std::array<Vertex, 3> corners = smallestFirst(mesh.triangles[index(slot)].corner);  // as in facetOf()
     std::array<Place, 3> at;
-    std::array<double, 3> was{}, under{};
+    std::array<double, 3> heights{}, under{};
     for (std::size_t k = 0; k < 3; ++k) {
-        const Vertex corner = mesh.triangles[index(slot)].corner[k];
-        at[k] = mesh.places[index(corner)];
-        was[k] = layer.heights()[index(corner)];
+        at[k] = mesh.places[index(corners[k])];
+        heights[k] = layer.heights()[index(corners[k])];
         // This records the underside although the triangle may be at rest: it may slide without the obstacle.
-        under[k] = undersideAt(corner, at[k]);
+        under[k] = undersideAt(corners[k], at[k]);
     }
-    const double a = leaning(was[0], under[0], was[1], was[2]), b = leaning(was[1], under[1], was[2], was[0]);
-    const double c = leaning(was[2], under[2], was[0], was[1]);
     const double x1 = at[1].x - at[0].x, y1 = at[1].y - at[0].y, x2 = at[2].x - at[0].x, y2 = at[2].y - at[0].y;
-    const double gx = (b - a) * y2 - (c - a) * y1, gy = (c - a) * x1 - (b - a) * x2;
+    if (held_ != nullptr) {
+        lean(heights, under, x2 * x2 + y2 * y2, -2 * (x1 * x2 + y1 * y2), x1 * x1 + y1 * y1);
+    }
+    const double d1 = heights[1] - heights[0], d2 = heights[2] - heights[0];
+    const double gx = d1 * y2 - d2 * y1, gy = d2 * x1 - d1 * x2;
     const double steepest = (x1 * y2 - x2 * y1) * slopes.slide;
     return !(gx * gx + gy * gy < kSurelyRests * steepest * steepest);
 }

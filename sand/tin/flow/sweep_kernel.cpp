@@ -51,12 +51,11 @@ Number valuesFrom(const double* values) {
     return result;
 }
 
-/// Does the same as leaning(), also for vectors. The two share no code: if both compilations had a common function, a
-/// linker would keep one of them for both.
+/// Returns the height of a corner that counts, as lean() raises it. The two share no code: if both compilations had a
+/// common function, a linker would keep one of them for both.
 template <class Number>
-Number leaningOn(Number height, Number underside, Number one, Number other) {
-    const Number beside = one < other ? one : other;
-    const Number leans = beside > height ? beside : height;
+Number raised(Number height, Number underside, Number flattest) {
+    const Number leans = flattest > height ? flattest : height;
     return height > underside - 1 ? leans : height;
 }
 
@@ -75,15 +74,18 @@ template <bool kHeld, bool kBand, class Number, class Mask>
     const auto [a, aFlow] = cornerOf<Number>(s.levels, s.first + i);
     const auto [b, bFlow] = cornerOf<Number>(s.levels, s.second + i);
     const auto [c, cFlow] = cornerOf<Number>(s.levels, s.third + i);
+    const Number squared = valuesFrom<Number>(s.squared + i), mixed = valuesFrom<Number>(s.mixed + i);
+    const Number across = valuesFrom<Number>(s.squaredAcross + i);
     Number atA = a, atB = b, atC = c;
     if constexpr (kHeld) {
-        atA = leaningOn(a, valuesAt<Number>(s.undersides, s.first + i), b, c);
-        atB = leaningOn(b, valuesAt<Number>(s.undersides, s.second + i), c, a);
-        atC = leaningOn(c, valuesAt<Number>(s.undersides, s.third + i), a, b);
+        const Number flattest =
+            ((2 * squared + mixed) * b + (2 * across + mixed) * c) / (2 * (squared + mixed + across));
+        atA = raised(a, valuesAt<Number>(s.undersides, s.first + i), flattest);
+        atB = raised(b, valuesAt<Number>(s.undersides, s.second + i), atA - mixed * (c - atA) / (2 * squared));
+        atC = raised(c, valuesAt<Number>(s.undersides, s.third + i), atA - mixed * (atB - atA) / (2 * across));
     }
     const Number d1 = atB - atA, d2 = atC - atA;
-    const Number squared = valuesFrom<Number>(s.squared + i), mixed = valuesFrom<Number>(s.mixed + i);
-    const Number steepness = squared * d1 * d1 + (mixed * d1 + valuesFrom<Number>(s.squaredAcross + i) * d2) * d2;
+    const Number steepness = squared * d1 * d1 + (mixed * d1 + across * d2) * d2;
     const Number push = kPush - 2 * kPush / (steepness + 1);
     const Number none{};
     Number rest = none + kRest;

@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -72,12 +73,22 @@ struct SweepSand {
     Level* levels;            // by vertex
 };
 
-/// Returns the height of a corner that counts for its triangle's slope. Sand that fills the room below an obstacle
-/// leans on it. If both other corners are higher, such a corner counts as high as the lower of them. Otherwise the
-/// sand beside the obstacle would flow along it without end.
-inline double leaning(double height, double underside, double one, double other) {
-    const double beside = one < other ? one : other;
-    return height > underside - 1 && beside > height ? beside : height;
+/// Raises the corners of a facet that lean on an obstacle. Sand that fills the room below the obstacle leans on it, so
+/// that no sand flows there. Such a corner counts as high as makes the facet flattest, but never below its own height.
+/// Otherwise the sand beside the obstacle would flow along it without end. `squared`, `mixed` and `squaredAcross` are
+/// first, mixed and second of the corners' Facet, times any common factor.
+///
+/// Goes from corner to corner, so that the facet becomes flatter with each.
+inline void lean(std::array<double, 3>& heights, const std::array<double, 3>& undersides, double squared, double mixed,
+                 double squaredAcross) {
+    const auto raise = [&](std::size_t corner, double flattest) {
+        double& height = heights[corner];
+        height = height > undersides[corner] - 1 && flattest > height ? flattest : height;
+    };
+    raise(0, ((2 * squared + mixed) * heights[1] + (2 * squaredAcross + mixed) * heights[2]) /
+                 (2 * (squared + mixed + squaredAcross)));
+    raise(1, heights[0] - mixed * (heights[2] - heights[0]) / (2 * squared));
+    raise(2, heights[0] - mixed * (heights[1] - heights[0]) / (2 * squaredAcross));
 }
 
 /// Result of moveSand().

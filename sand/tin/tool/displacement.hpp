@@ -44,9 +44,10 @@ public:
     /// the path.
     ///
     /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
-    /// ahead. If no vertex is ahead, the sand goes to all vertices around. If the mesh is too coarse for that, it goes
-    /// to the neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open
-    /// rim, the ground beyond takes its share, which flows out.
+    /// ahead. If no vertex is ahead, or if one of them would rise above kMaxHeight, the sand goes to all vertices
+    /// around, except those that would rise above kMaxHeight. If the mesh is too coarse for that, it goes to the
+    /// neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open rim, the
+    /// ground beyond takes its share, which flows out.
     ///
     /// Holes divide the vertices below the tool and beside it into parts. Two vertices are joined by an edge of a
     /// triangle on ground. Each part shares out its own sand.
@@ -99,14 +100,15 @@ private:
     void pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& work);
     [[nodiscard]] bool isNearHole(const VertexSand& layer, const Box& box) const;
     [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& at);
-    void findReceivers(const VertexSand& layer, Rim rim, const Press& press);
     void addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere);
     void addBeyond(const VertexSand& layer, const Press& press, bool everywhere);
     void addNeighbours(const VertexSand& layer, const ProbePoint& at, const std::function<bool(Vertex)>& isOurs);
-    /// Shares the sand of `cut_` out among `receivers_`, unless there are none or the sand has no room.
-    void deal(VertexSand& layer, Work& work);
+    /// Shares the sand of `cut_` out among `receivers_`. With `toSome`, those that would rise above a limit get none.
+    /// Returns false, and leaves the sand as it is, if no receiver is left or if one of them would rise above a limit.
+    bool deal(VertexSand& layer, bool toSome, Work& work);
     void shareOut();
-    [[nodiscard]] bool hasRoom(const VertexSand& layer) const;
+    [[nodiscard]] bool hasRoom(const VertexSand& layer, const Receiver& receiver) const;
+    [[nodiscard]] bool isWithinAllSand(const VertexSand& layer) const;
     void findParts(const VertexSand& layer, const ProbePoint& at);
     void forgetParts();
     /// Returns the first vertex of a vertex's part, or kNobody if it is in no part.

@@ -154,11 +154,13 @@ private:
 };
 
 void drawSole(Drawing& drawing, std::span<const SolePiece> sole, double length, double width) {
-    constexpr double kSmall = 0.2;  // [half length of the tool]; toes: 8 points do as well as 16 for a heel
+    // A polygon of 16 points contains 0.98 of an ellipse, and one of 32 points 0.995. With fewer points, sand beside a
+    // toe would reach into it.
+    constexpr double kSmall = 0.2;  // [half length of the tool]
     std::vector<Polygon> pieces;
     for (const SolePiece& piece : sole) {
         pieces.push_back(ellipse({piece.along * length, piece.across * width}, piece.halfLength * length - kMargin,
-                                 piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 8 : 16));
+                                 piece.halfWidth * width - kMargin, piece.halfLength < kSmall ? 16 : 32));
     }
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         drawing.ring(pieces, i);
@@ -171,17 +173,30 @@ void drawSole(Drawing& drawing, std::span<const SolePiece> sole, double length, 
 }
 
 /// Adds rings of points at such shares of the radius that the surface between them is close to a bowl. It is above the
-/// bowl by less than a fifteenth of the radius, for an ellipsoid a fourteenth. This holds within 0.98 of the outline,
-/// if points of the mesh are a sixth of the radius apart. A bowl is steepest at its outline, so that edges must join
-/// the points of the outer rings. Otherwise triangles would reach from the outline over a ring. The narrow bowl of an
-/// ellipsoid needs more points inside.
+/// bowl by less than a fifteenth of the radius. This holds within 0.98 of the outline, if points of the mesh are a
+/// sixth of the radius apart. A bowl is steepest at its outline, so that edges must join the points of the outer rings.
+/// Otherwise triangles would reach from the outline over a ring. The narrow bowl of an ellipsoid needs more points
+/// inside.
 void drawBowl(Drawing& drawing, double length, double width) {
-    for (const double share : {0.96, 0.99}) {
-        const Polygon ring = ellipse({0, 0}, share * length, share * width, 32);
-        // A ring so close to the outline that its triangles would be slivers is left out.
-        for (std::size_t i = 0; i < ring.size() && (1 - share) * std::min(length, width) >= kShortest; ++i) {
-            drawing.edge(ring[i], ring[(i + 1) % ring.size()]);
+    const double narrowest = std::min(length, width);
+    const auto ring = [&](double share) {
+        const Polygon points = ellipse({0, 0}, share * length, share * width, 32);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            drawing.edge(points[i], points[(i + 1) % points.size()]);
         }
+    };
+    // A ring so close to its neighbour that its triangles would be slivers is left out.
+    constexpr double kFirst = 0.96;
+    if ((1 - kFirst) * narrowest >= kShortest) {
+        ring(kFirst);
+    }
+    // Between the first ring and the outline, triangles are the higher above a bowl the longer it is, because the
+    // outline is only kMargin within the tool. From this length on they need a second ring. Where a bowl is too narrow
+    // for a ring at 0.99, the ring is farther inside.
+    constexpr double kLong = 1800;  // [probe unit]: 7 cells
+    const double second = std::min(0.99, 1 - kShortest / narrowest);
+    if (length >= kLong && (second - kFirst) * narrowest >= kShortest) {
+        ring(second);
     }
     const bool narrow = width < length;
     const auto inner = [&](double share, int count) {

@@ -75,7 +75,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         return std::exchange(receivers_, {});
     };
     const std::vector<Receiver> ahead = receiversOf(press.ahead.x == 0 && press.ahead.y == 0);
-    std::optional<std::vector<Receiver>> around;  // found when a part first has no receiver ahead
+    std::optional<std::vector<Receiver>> around;  // found when the receivers ahead of a part first cannot take its sand
     std::vector<Vertex> parts;
     std::transform(cuts.begin(), cuts.end(), std::back_inserter(parts),
                    [&](const Cut& cut) { return partOf(cut.vertex); });
@@ -95,16 +95,18 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
                          [&](const Receiver& receiver) { return partOf(layer, receiver) == part; });
         };
         takeOurs(ahead);
-        if (receivers_.empty()) {
-            if (!around) {
-                around = receiversOf(true);
-            }
-            takeOurs(*around);
+        if (deal(layer, false, done)) {
+            continue;
         }
+        receivers_.clear();
+        if (!around) {
+            around = receiversOf(true);
+        }
+        takeOurs(*around);
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
             addNeighbours(layer, press.at, [&](Vertex vertex) { return partOf(vertex) == part; });
         }
-        deal(layer, done);
+        deal(layer, true, done);
     }
     forgetParts();
 }

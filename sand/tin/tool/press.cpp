@@ -70,17 +70,6 @@ void Displacement::addReceivers(const VertexSand& layer, Rim rim, const Press& p
     }
 }
 
-void Displacement::findReceivers(const VertexSand& layer, Rim rim, const Press& press) {
-    receivers_.clear();
-    addReceivers(layer, rim, press, press.ahead.x == 0 && press.ahead.y == 0);
-    if (receivers_.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
-        addReceivers(layer, rim, press, true);
-    }
-    if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
-        addNeighbours(layer, press.at, [](Vertex) { return true; });
-    }
-}
-
 /// Adds the ground beyond the rim as receivers, as if the field continued there with vertices on a lattice.
 void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool everywhere) {
     const Box box = reach(press.at);
@@ -153,10 +142,20 @@ void Displacement::shareOut() {
     }
 }
 
-/// Returns whether every receiver can take its share, and the magnitude of all sand stays within kMostSand.
-bool Displacement::hasRoom(const VertexSand& layer) const {
+/// Returns whether the sand of a receiver stays within its limits when it gets its share.
+bool Displacement::hasRoom(const VertexSand& layer, const Receiver& receiver) const {
+    if (receiver.vertex == kNobody) {
+        return true;
+    }
+    const Volume raised = layer.volumes()[index(receiver.vertex)] + receiver.share;
+    return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index(receiver.vertex)]) &&
+           raised >= -kMostOfVertex;
+}
+
+/// Returns whether the magnitude of all sand stays within kMostSand when the receivers get their shares.
+bool Displacement::isWithinAllSand(const VertexSand& layer) const {
     const auto grown = [&layer](Vertex vertex, Volume by) {
-        const Volume before = layer.volumes()[static_cast<std::size_t>(vertex)], after = before + by;
+        const Volume before = layer.volumes()[index(vertex)], after = before + by;
         return std::max(after, -after) - std::max(before, -before);
     };
     Volume magnitude = layer.magnitude();
@@ -166,24 +165,24 @@ bool Displacement::hasRoom(const VertexSand& layer) const {
     for (const Receiver& receiver : receivers_) {
         magnitude += receiver.vertex == kNobody ? 0 : grown(receiver.vertex, receiver.share);
     }
-    return magnitude <= kMostSand && std::all_of(receivers_.begin(), receivers_.end(), [&](const Receiver& receiver) {
-               if (receiver.vertex == kNobody) {
-                   return true;
-               }
-               const auto index = static_cast<std::size_t>(receiver.vertex);
-               const Volume raised = layer.volumes()[index] + receiver.share;
-               return raised <= std::min(kMostOfVertex, Volume{kMaxHeight} * layer.stars()[index]) &&
-                      raised >= -kMostOfVertex;
-           });
+    return magnitude <= kMostSand;
 }
 
-void Displacement::deal(VertexSand& layer, Work& done) {
-    if (receivers_.empty()) {  // the tool is larger than the field, so that there is no place for the sand
-        return;
+bool Displacement::deal(VertexSand& layer, bool toSome, Work& done) {
+    const auto isFull = [&](const Receiver& receiver) { return !hasRoom(layer, receiver); };
+    while (!receivers_.empty()) {
+        shareOut();
+        const auto full = std::remove_if(receivers_.begin(), receivers_.end(), isFull);
+        if (full == receivers_.end()) {
+            break;
+        }
+        if (!toSome) {
+            return false;
+        }
+        receivers_.erase(full, receivers_.end());
     }
-    shareOut();
-    if (!hasRoom(layer)) {
-        return;  // the sand stays, and the tool passes through it
+    if (receivers_.empty() || !isWithinAllSand(layer)) {
+        return false;
     }
     for (const Cut& cut : cut_) {
         layer.add(cut.vertex, -cut.taken);
@@ -197,6 +196,7 @@ void Displacement::deal(VertexSand& layer, Work& done) {
             done.touched.push_back(receiver.vertex);
         }
     }
+    return true;
 }
 
 bool Displacement::isNearHole(const VertexSand& layer, const Box& box) const {
@@ -212,8 +212,18 @@ void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& d
         pressInParts(layer, rim, press, done);
         return;
     }
-    findReceivers(layer, rim, press);
-    deal(layer, done);
+    receivers_.clear();
+    addReceivers(layer, rim, press, press.ahead.x == 0 && press.ahead.y == 0);
+    if (deal(layer, false, done)) {
+        return;
+    }
+    // Dragged against a closed rim, or into a corner that cannot hold the sand: it escapes to the sides and behind.
+    receivers_.clear();
+    addReceivers(layer, rim, press, true);
+    if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
+        addNeighbours(layer, press.at, [](Vertex) { return true; });
+    }
+    deal(layer, true, done);  // if no vertex can take the sand, it stays, and the tool passes through it
 }
 
 }  // namespace sand::tin

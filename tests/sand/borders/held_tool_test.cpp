@@ -12,8 +12,8 @@ using borders::kSide;
 using borders::kTin;
 using enum sand::ToolKind;
 
-void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt place, double most) {
-    const borders::HeldSettle held = borders::settleAround(ground, kSide, kind, place);
+void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt place, double most, int side = kSide) {
+    const borders::HeldSettle held = borders::settleAround(ground, side, kind, place);
     const std::string name = std::string(base::nameOf(kind)) + ", " + borders::nameOf(place);
     EXPECT_LE(held.largest, most) << name;
     EXPECT_EQ(held.changed, 0) << name;
@@ -36,6 +36,44 @@ TEST(HeldTool, OfATinKeepsAllSandOutWhileItSettles) {
         expectNoSandIn(kTin, sphere, place, 0.4);
         expectNoSandIn(kTin, rectangle, place, 1e-3);
         expectNoSandIn(kTin, footprint, place, 0.4);
+    }
+}
+
+// On a finer mesh, more vertices are between a tool and the sand beside it. The outline of a sphere and its rings make
+// slivers, along which sand must not flow without end. A toe must have enough points to keep the sand beside it out.
+TEST(HeldTool, OfAFinerTinKeepsAllSandOutAndLetsItRest) {
+    expectNoSandIn(kTin, sphere, HeldAt::overWall, 0.4, 2 * kSide);
+    expectNoSandIn(kTin, footprint, HeldAt::overPocket, 0.4, 2 * kSide);
+}
+
+// A tool is dragged through tall sand into a corner of the field or of a pocket. Ahead of it there is ever less ground,
+// so that the sand would rise there above the greatest height that sand may have. It must then go around the tool, and
+// not stay above it.
+TEST(HeldTool, OfATinPushesTheSandAroundThatTheCornerAheadCannotHold) {
+    struct Trial {
+        sand::ToolKind kind;
+        bool pocket;
+        double height;  // of the sand [cell]
+    };
+    for (const Trial& trial : {Trial{ellipsoid, false, 130},
+                               {ellipsoid, true, 130},
+                               {sphere, true, 700},
+                               {circle, true, 700},
+                               {rectangle, true, 400}}) {
+        borders::Case given = trial.pocket ? borders::walled(kTin, kSide, trial.kind) : borders::caseOf(kTin, kSide);
+        given.tool = trial.kind;
+        given.radius = 6;
+        given.sweeps = 4;
+        given.height = [&](double x, double y) { return trial.height + 4 * std::sin(x / 5) * std::cos(y / 6); };
+        sand::Replica sand(borders::sceneOf(given));
+        const sand::Replica before = sand;
+        const double x = trial.pocket ? 48.3 : 2.3, y = trial.pocket ? 47.6 : 1.8;
+        borders::Hand(sand).drag(x + 4, y + 7, x, y, 20);
+        const bool bowl = trial.kind == sphere || trial.kind == ellipsoid;
+        const std::string name = std::string(base::nameOf(trial.kind)) + (trial.pocket ? ", pocket" : ", corner");
+        EXPECT_LE(borders::overUnderside(sand, sand.probe()), bowl ? 0.4 : 1e-3) << name;
+        EXPECT_EQ(sand.volume(), before.volume()) << name;
+        EXPECT_EQ(borders::exchanged(before, sand), 0) << name;
     }
 }
 

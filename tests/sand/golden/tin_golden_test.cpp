@@ -95,10 +95,10 @@ TEST(TinGolden, SessionHashesAreTheSameEverywhere) {
         const auto session = [anew](std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim) {
             return fmt::format("{:016x}", hashOfSession(threshold, startThreshold, rim, anew));
         };
-        EXPECT_EQ(session(65536, 65536, sand::Rim::closed), "eb50e99ceaed5b2e") << anew;
-        EXPECT_EQ(session(40000, 50000, sand::Rim::closed), "9eb2307bbfa6a269") << anew;
-        EXPECT_EQ(session(65536, 65536, sand::Rim::open), "8a7ebd2e94d4b8ea") << anew;
-        EXPECT_EQ(session(40000, 50000, sand::Rim::open), "6b68ac2b9da08c5b") << anew;
+        EXPECT_EQ(session(65536, 65536, sand::Rim::closed), "d96d76062416087b") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::closed), "638316477918cc92") << anew;
+        EXPECT_EQ(session(65536, 65536, sand::Rim::open), "760dac508e7be524") << anew;
+        EXPECT_EQ(session(40000, 50000, sand::Rim::open), "aed0bf66c866fe7b") << anew;
     }
 }
 
