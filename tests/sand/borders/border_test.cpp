@@ -165,9 +165,13 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_EQ(other.stateHash(), sand.stateHash()) << "a replica that loads the state must continue alike";
     sand::Replica plain = sand;
     plain.decodeState([&] {  // the same state, but without the settle
-        base::Bytes state = sand.encodeState();
-        state[4 + 8 + 12] = static_cast<std::uint8_t>(state[4 + 8 + 12] & ~4U);
-        return state;
+        const base::Bytes state = sand.encodeState();
+        base::ByteReader reader(state);
+        auto head = base::read<sand::StateHead>(reader);
+        head.settling = false;
+        base::Bytes changed = base::encoded(head);
+        changed.insert(changed.end(), reader.rest().begin(), reader.rest().end());
+        return changed;
     }());
     EXPECT_FALSE(plain.settling());
     EXPECT_NE(plain.stateHash(), sand.stateHash()) << "the hash must show that a settle continues";
