@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A copy of the sources with a build of its own, in which one bug at a time is planted."""
 
+import contextlib
 import os
 import pathlib
 import re
@@ -31,18 +32,35 @@ class Workspace:
         self.seconds = {}  # of each test without a bug
 
     def prepare(self):
-        """Copies the tracked sources and configures the build. A file that a run before has left changed is restored."""
-        names = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True).stdout.split("\0")
-        for name in filter(None, names):
-            source, copy = ROOT / name, self.folder / name
-            if not copy.is_file() or copy.read_bytes() != source.read_bytes():
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                copy.write_bytes(source.read_bytes())  # newer than its object file, which is therefore built again
-                shutil.copymode(source, copy)
+        """Copies the sources and configures the build."""
+        self.copy_sources()
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "--preset", "release", "-S", self.folder, "-B", self.build_folder, "-DSANDWALL_MUTANTS=ON",
                         *launcher],
                        cwd=self.folder, check=True, stdout=subprocess.DEVNULL, env=self.environment())
+
+    def copy_sources(self, root=ROOT):
+        """Copies the tracked files of `root`. Restores a file that a run before has left changed. Deletes every file outside the
+        build that is not tracked any more, such as a renamed document, because tests read all files of a folder."""
+        listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True).stdout.split("\0")
+        names = set(filter(None, listed))
+        for path in self.files_outside_the_build():
+            if path.relative_to(self.folder).as_posix() not in names:
+                path.unlink()
+                with contextlib.suppress(OSError):  # of a folder that still holds files
+                    os.removedirs(path.parent)
+        for name in names:
+            source, copy = root / name, self.folder / name
+            if not copy.is_file() or copy.read_bytes() != source.read_bytes():
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_bytes(source.read_bytes())  # newer than its object file, which is therefore built again
+                shutil.copymode(source, copy)
+
+    def files_outside_the_build(self):
+        build = str(self.folder / "build")
+        for folder, folders, files in os.walk(self.folder):
+            folders[:] = [name for name in folders if os.path.join(folder, name) != build]
+            yield from (pathlib.Path(folder, name) for name in files)
 
     def environment(self):
         """Returns the environment of builds and tests. With it, one workspace uses what another one has compiled."""

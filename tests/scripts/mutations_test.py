@@ -91,6 +91,50 @@ class Mutations(unittest.TestCase):
         self.assertEqual(len(list(faults("a", python.replace("do_not", "do"), set(), lambda _: True))), 1)
 
 
+class Copy(unittest.TestCase):
+    """The copy of the sources in which bugs are planted."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-mutations-")))
+        self.sources, self.space = self.folder / "sources", workspace.Workspace(self.folder / "copy", 1)
+        self.sources.mkdir()
+        self.git("init", "--quiet")
+        self.write("docs/old.md", "the same page")
+        self.write("main.cpp", "int main() {}")
+        self.space.copy_sources(self.sources)
+
+    def git(self, *words):
+        subprocess.run(["git", *words], cwd=self.sources, check=True)
+
+    def write(self, name, text):
+        (self.sources / name).parent.mkdir(exist_ok=True)
+        (self.sources / name).write_text(text)
+        self.git("add", name)
+
+    def copied(self):
+        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in self.space.folder.rglob("*") if path.is_file()}
+
+    def test_a_kept_copy_holds_the_tracked_files_and_its_build_alone(self):
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}"})
+        self.space.bin.mkdir(parents=True)
+        self.space.write("build/release/bin/tests", "built")
+        self.space.write("main.cpp", "int main() { return 1; }  // a bug that an interrupted run has left")
+        self.space.write("main.cpp.rej", "left by a patch")
+        (self.sources / "pages").mkdir()
+        self.git("mv", "docs/old.md", "pages/new.md")
+        self.space.copy_sources(self.sources)
+        self.assertEqual(self.copied(), {"pages/new.md": "the same page", "main.cpp": "int main() {}", "build/release/bin/tests": "built"})
+        self.assertFalse((self.space.folder / "docs").exists())
+
+    def test_a_folder_may_replace_a_file_of_a_kept_copy(self):
+        self.git("mv", "main.cpp", "main")
+        self.space.copy_sources(self.sources)
+        self.git("mv", "main", "main.cpp")
+        self.write("main/new.cpp", "int f();")
+        self.space.copy_sources(self.sources)
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}", "main/new.cpp": "int f();"})
+
+
 class Drawn(unittest.TestCase):
     CODE = """#if 1 + 1
 // if (a) 1
