@@ -21,6 +21,19 @@ class DoesNotCompile(Exception):
     pass
 
 
+def copy_of(source, copy):
+    """Copies a file, or a link as a link, if the copy differs. A copied source is newer than its object file, which is
+    therefore built again."""
+    if source.is_symlink() or copy.is_symlink():
+        if source.is_symlink() and copy.is_symlink() and source.readlink() == copy.readlink():
+            return
+        copy.unlink(missing_ok=True)
+    elif copy.is_file() and copy.read_bytes() == source.read_bytes():
+        return
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source, copy, follow_symlinks=False)
+
+
 class Workspace:
     """Not for several threads at once: each thread has a workspace of its own."""
 
@@ -50,11 +63,7 @@ class Workspace:
                 with contextlib.suppress(OSError):  # of a folder that still holds files
                     os.removedirs(path.parent)
         for name in names:
-            source, copy = root / name, self.folder / name
-            if not copy.is_file() or copy.read_bytes() != source.read_bytes():
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                copy.write_bytes(source.read_bytes())  # newer than its object file, which is therefore built again
-                shutil.copymode(source, copy)
+            copy_of(root / name, self.folder / name)
 
     def files_outside_the_build(self):
         build = str(self.folder / "build")

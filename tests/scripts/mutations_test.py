@@ -134,6 +134,22 @@ class Copy(unittest.TestCase):
         self.space.copy_sources(self.sources)
         self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}", "main/new.cpp": "int f();"})
 
+    def test_a_link_is_copied_as_a_link_in_both_directions(self):
+        (self.sources / "link").symlink_to("main.cpp")
+        self.git("add", "link")
+        for _ in range(2):
+            self.space.copy_sources(self.sources)
+            self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("main.cpp"))
+        self.git("rm", "--quiet", "--force", "link")
+        self.write("link", "a file now")
+        self.space.copy_sources(self.sources)
+        self.assertFalse((self.space.folder / "link").is_symlink())
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}", "link": "a file now"})
+        (self.sources / "link").unlink()
+        (self.sources / "link").symlink_to("docs/old.md")
+        self.space.copy_sources(self.sources)
+        self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("docs/old.md"))
+
 
 class Drawn(unittest.TestCase):
     CODE = """#if 1 + 1
