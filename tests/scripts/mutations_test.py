@@ -20,7 +20,7 @@ import unittest
 
 from docs_test import PROJECT, ROOT, tracked
 
-sys.path.insert(0, str(ROOT / "scripts" / "mutation"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks" / "mutation"))
 import draw  # noqa: E402
 import run  # noqa: E402
 import sites  # noqa: E402
@@ -264,7 +264,7 @@ class Report(unittest.TestCase):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
         self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests"])
         self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
-        self.assertEqual(run.tests_for("scripts/programs.py", programs)[0], "programs_test.py")
+        self.assertEqual(run.tests_for("scripts/launcher/programs.py", programs)[0], "programs_test.py")
         self.assertLessEqual(run.SLOW, set(PROGRAMS))
         for pattern in run.SESSIONS.split()[1].split(":"):
             self.assertTrue(fnmatch.filter(PROJECT.all_tests(), pattern), pattern)
