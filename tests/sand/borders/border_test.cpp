@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand at rims, walls, rock faces and holes, and under tools that are held there. Each result is compared with a closed
-// form or with the mirrored experiment. scripts/borders.sh measures the same on larger fields.
+// form or with the mirrored experiment. scripts/checks/borders.sh measures the same on larger fields.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the sand at borders, and searches for sand that passes a wall. scripts/borders.sh builds and runs it.
+// Measures the sand at borders, and searches for sand that passes a wall. scripts/checks/borders.sh builds and runs it.
 #include <fmt/format.h>
 
 #include <algorithm>
