@@ -6,6 +6,7 @@
 
 #include "sand/tin/flow/settle.hpp"
 #include "tests/support/border_experiments.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace {
 
@@ -18,7 +19,7 @@ using borders::kSide;
 using borders::kTin;
 using enum sand::ToolKind;
 
-constexpr std::array kTools{sphere, circle, rectangle, ellipse, ellipsoid, footprint};
+constexpr auto kTools = support::everyTool();
 
 std::string nameOf(const borders::Ground& ground) { return ground.tin ? "TIN" : "grid"; }
 
