@@ -6,7 +6,6 @@ It has properties of a real recording that a script device lacks: smooth acceler
 of 0.1 mm, and late ticks. The mean period is 1.017 ms, the 99th percentile 2.3 ms; rare gaps last up to 20 ms.
 """
 import math
-import os
 import pathlib
 import random
 import sys
@@ -14,6 +13,8 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 from command_line import Parser, above
+
+STROKES = pathlib.Path(__file__).resolve().parents[2] / "haptic_bridge" / "devices" / "gis.strokes"
 
 MM_PER_HALF_SIDE = 100.0  # the written word is about 180 mm wide
 MM_PER_RADIUS = 4.0       # 0.04 half sides, as in scenes/writing.toml
@@ -104,10 +105,9 @@ def period(luck):
 
 
 def main():
-    here = os.path.dirname(os.path.abspath(__file__))
     parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("output", help="CSV to write: time,x,y,z in seconds and millimetres")
-    parser.add_argument("--strokes", default=os.path.join(here, "..", "haptic_bridge", "devices", "gis.strokes"))
+    parser.add_argument("--strokes", default=STROKES)
     parser.add_argument("--seconds", type=above(float, 0), default=12.0, help="duration of the recording [s] (default: 12)")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
