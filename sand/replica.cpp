@@ -183,7 +183,7 @@ void Replica::applyToSand(const Step& step) {
 
 int Replica::settlingSweeps() const {
     // A step takes seconds at most, also with all processes of a wall on one host.
-    constexpr std::int64_t kMostCells = std::int64_t{1} << 28;  // over which the sweeps of one step go
+    constexpr std::int64_t kMostCells = std::int64_t{1} << 27;  // over which the sweeps of one step go
     constexpr std::int64_t kLeast = 16;
     const std::int64_t sweeps = std::max(kMostCells / std::max<std::int64_t>(surface_->sweepCost(), 1), kLeast);
     return static_cast<int>(std::min<std::int64_t>(sweeps, kMostSweeps));

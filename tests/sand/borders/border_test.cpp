@@ -190,7 +190,7 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_TRUE(again.settled());
 }
 
-// 2^28 cells in a step, at least 16 and at most 4096 sweeps. A vertex of a TIN takes as long as 16 cells.
+// 2^27 cells in a step, at least 16 and at most 4096 sweeps. A vertex of a TIN takes as long as 16 cells.
 TEST(Settle, RunsAtMostAsManySweepsInAStepAsTheFieldAllows) {
     const auto sweepsOf = [](int side, bool tin) {
         Case given;
@@ -199,9 +199,9 @@ TEST(Settle, RunsAtMostAsManySweepsInAStepAsTheFieldAllows) {
         return sand::Replica(borders::sceneOf(given)).settlingSweeps();
     };
     EXPECT_EQ(sweepsOf(64, false), 4096);
-    EXPECT_EQ(sweepsOf(512, false), 1024);
-    EXPECT_EQ(sweepsOf(2048, false), 64);
-    EXPECT_EQ(sweepsOf(128, true), (1 << 28) / (16 * (128 * 128 + 4 * 127 + 4)));
+    EXPECT_EQ(sweepsOf(512, false), 512);
+    EXPECT_EQ(sweepsOf(2048, false), 32);
+    EXPECT_EQ(sweepsOf(128, true), (1 << 27) / (16 * (128 * 128 + 4 * 127 + 4)));
 }
 
 /// Returns a damp bank that slides from a slope of 1.62 and stops at the talus of 0.81.
