@@ -12,7 +12,7 @@ namespace lockstep {
 
 bool PointerReport::touches() const {
     return pressed != 0 ||
-           std::ranges::any_of(places(), [](const PointerSample& sample) { return sample.pressed != 0; });
+           std::ranges::any_of(taken(), [](const PointerSample& sample) { return sample.pressed != 0; });
 }
 
 void requireValid(const PointerReport& report) {
@@ -25,7 +25,7 @@ void requireValid(const PointerReport& report) {
         }
     }
     constexpr std::int64_t kLatest = std::int64_t{1} << 62;  // [ns], so that sums and differences never overflow
-    for (const PointerSample& sample : report.places()) {
+    for (const PointerSample& sample : report.taken()) {
         if (sample.readNs < 0 || sample.readNs >= kLatest) {
             throw base::FormatError(fmt::format("a pointer at the time {} ns", sample.readNs));
         }

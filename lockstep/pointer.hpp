@@ -11,7 +11,7 @@
 
 namespace lockstep {
 
-/// One place of the pointer: where its ray meets the sand.
+/// One reading of the pointer: where its ray meets the sand.
 struct PointerSample {
     std::int64_t readNs = 0;             // [ns], when the rank read it, on the master's clock
     sand::ProbePoint probe;              // place on the sand's surface; meaningless unless `meets`
@@ -34,7 +34,8 @@ struct PointerReport {
     std::array<std::uint8_t, 6> zero{};  // fills the gap
     std::array<PointerSample, kMostSamples> samples{};
 
-    [[nodiscard]] std::span<const PointerSample> places() const { return {samples.data(), count}; }
+    /// Returns the samples that the report has: the first `count`.
+    [[nodiscard]] std::span<const PointerSample> taken() const { return {samples.data(), count}; }
     /// Returns whether a touch lasts, or began and ended since the arrival before.
     [[nodiscard]] bool touches() const;
     friend bool operator==(const PointerReport&, const PointerReport&) = default;

@@ -50,14 +50,14 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     if (!hand) {
         return;
     }
-    const auto places = reports[*hand].places();
+    const auto samples = reports[*hand].taken();
     const std::optional<std::size_t> former = std::exchange(hand_, hand);
     if (former != hand && last().engaged) {
         // Avoids a furrow from the former hand's place to that of the new one, which may rest for a while.
-        const auto ended = reports[*former].places();
-        lift(!places.empty() ? places.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
+        const auto ended = reports[*former].taken();
+        lift(!samples.empty() ? samples.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
     }
-    for (const lockstep::PointerSample& sample : places) {
+    for (const lockstep::PointerSample& sample : samples) {
         point(sample, sand);
     }
     if (surface_ && !last().engaged && sand.tool().radius != radius_) {

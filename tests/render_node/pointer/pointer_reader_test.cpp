@@ -125,10 +125,10 @@ TEST_F(Reader, OfManyMotionsItKeepsThePressTheReleaseAndTheLast) {
     }
     const PointerReport report = read(events);
     ASSERT_EQ(report.count, PointerReport::kMostSamples);
-    const auto places = report.places();
-    EXPECT_EQ(std::ranges::count_if(places, [](const PointerSample& sample) { return sample.pressed != 0; }), 1);
+    const auto samples = report.taken();
+    EXPECT_EQ(std::ranges::count_if(samples, [](const PointerSample& sample) { return sample.pressed != 0; }), 1);
     expectAt(report.samples.back(), 19.9, 16);
-    EXPECT_TRUE(std::ranges::is_sorted(places, {}, &PointerSample::readNs));
+    EXPECT_TRUE(std::ranges::is_sorted(samples, {}, &PointerSample::readNs));
 }
 
 TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
@@ -137,7 +137,7 @@ TEST_F(Reader, FillsALongMotionOfAStrokeWithPlacesBetween) {
     const PointerReport report = read({{Kind::move, 0, {180, 480}, 5 * kSecond, 0}});
     ASSERT_EQ(report.count, PointerReport::kMostSamples);
     EXPECT_LT(report.samples.back().readNs - report.samples[0].readNs, kSecond / 100) << "it has rested before";
-    EXPECT_TRUE(std::ranges::is_sorted(report.places(), {}, &PointerSample::readNs));
+    EXPECT_TRUE(std::ranges::is_sorted(report.taken(), {}, &PointerSample::readNs));
     for (std::size_t i = 0; i < report.count; ++i) {
         EXPECT_EQ(report.samples[i].pressed, 1);
         if (i > 0) {
