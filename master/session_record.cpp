@@ -143,7 +143,7 @@ std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sa
     }
     try {
         return std::make_unique<sand::Replica>(
-            restoreSand(file, sand.replica().stepNumber(), {.executor = executor}).terrain);
+            restoreSand(file, sand.replica().stepNumber(), {.executor = executor}).replica);
     } catch (const std::exception& error) {  // caught, because the ranks wait for an answer
         host::printLine("{}", error.what());
         return nullptr;

@@ -112,7 +112,7 @@ void dig(benchmark::State& state) {
     // The default of a scene file.
     const double radius = 0.01 / scene.terrain.cellSize();
     scene.rules.tuning.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     render_node::ScenePainter view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);
     const sample::Window window{0.25, 0.25, 0.75, 0.75};
@@ -122,13 +122,13 @@ void dig(benchmark::State& state) {
     double pixels = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        const double at = static_cast<double>(terrain.stepNumber() % 200) / 200;
+        const double at = static_cast<double>(replica.stepNumber() % 200) / 200;
         const double place = 0.7 + 0.6 * at;
-        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
+        replica.apply({0, replica.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
         state.ResumeTiming();
         memory.drawn = state.range(0) != 0;
-        view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged());
+        view.update(replica.surface().data(), replica.takeChange());
+        view.setTool(replica.probe(), replica.engaged());
         pixels += static_cast<double>(view.drawIfChanged(camera, target, memory).area()) / (1024 * 768);
         target.finish();
     }

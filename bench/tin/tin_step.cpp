@@ -87,16 +87,16 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
 
 /// Measures whole steps as on a rank: the step, its hash, and the list of changes for drawing.
 void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
-    sand::Replica terrain(scene);
-    terrain.apply({1, 1, false, {}});  // all sand moves in the first step
-    static_cast<void>(terrain.stateHash());
-    static_cast<void>(terrain.takeChange());
+    sand::Replica replica(scene);
+    replica.apply({1, 1, false, {}});  // all sand moves in the first step
+    static_cast<void>(replica.stateHash());
+    static_cast<void>(replica.takeChange());
     for (Action action : actions) {
         ++action.step.number;
         times[{action.kind, "step"}].push_back(secondsOf([&] {
-            terrain.apply(action.step);
-            static_cast<void>(terrain.stateHash());
-            static_cast<void>(terrain.takeChange());
+            replica.apply(action.step);
+            static_cast<void>(replica.stateHash());
+            static_cast<void>(replica.takeChange());
         }));
     }
 }

@@ -239,15 +239,15 @@ void JournalKeeper::endCheckpoint(bool wait) {
     complaint_ = complaint;
 }
 
-void JournalKeeper::shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
+void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
     endCheckpoint(false);
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
-    if (!writer_ || !due || doubted_ || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {
+    if (!writer_ || !due || doubted_ || checkpoint_.valid() || replica.stepNumber() == checkpointStep_) {
         return;
     }
     lastCheckpoint_ = now();
-    checkpointStep_ = terrain.stepNumber();
-    auto copy = std::make_shared<const sand::StateCopy>(terrain.copyState());
+    checkpointStep_ = replica.stepNumber();
+    auto copy = std::make_shared<const sand::StateCopy>(replica.copyState());
     copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
     Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
     checkpoint_ = std::async(std::launch::async, [copy = std::move(copy), checkpoint, journal = journal_]() mutable {

@@ -77,8 +77,8 @@ public:
     /// Writes the share of the force that an operator has set. It is on disk when the function returns, or with later
     /// steps if the disk is full.
     void force(const JournalForce& force);
-    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `terrain` are in the journal.
-    void shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
+    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
+    void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     /// Writes the end of the session. Between doubt() and checked() the journal gets no end.
     void finish(const JournalEnd& end);
 

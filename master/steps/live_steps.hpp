@@ -38,7 +38,7 @@ public:
     LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& replica, std::uint64_t stateHash,
                                                              std::size_t most) override;
     [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == Pace::fast ? 4 : 8; }
     /// Returns how long a frame waits for a step [s]. Only a fast session waits.
@@ -77,13 +77,13 @@ public:
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& replica, std::uint64_t stateHash,
                                                                  std::size_t most);
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& terrain, std::size_t most);
-    void followLink(const sand::Replica& terrain, std::uint64_t stateHash);
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& replica, std::size_t most);
+    void followLink(const sand::Replica& replica, std::uint64_t stateHash);
     /// Follows a link that is neither linked, streaming nor offered.
     void waitForLink(haptic_bridge::Link link);
-    void grant(const sand::Replica& terrain, std::uint64_t stateHash);
+    void grant(const sand::Replica& replica, std::uint64_t stateHash);
     /// Lets the master number the steps in a new epoch. `reason` is a name for programs, `why` a text for the user;
     /// both are empty if no link was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");

@@ -7,15 +7,15 @@
 
 namespace scene {
 
-sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes) {
-    sand::HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
+sand::HeightField sampled(const sand::Replica& replica, const sand::tin::Holes* holes) {
+    sand::HeightField field(replica.rules().columns, replica.rules().rows, replica.cellSize());
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
             if (holes != nullptr && holes->isHole(column, row)) {
                 continue;
             }
             const double height =
-                terrain.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
+                replica.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
             field.setHeight(column, row, static_cast<std::int32_t>(std::floor(height + 0.5)));
         }
     }

@@ -116,8 +116,8 @@ TEST(ExportOfATin, IsSampledInTheMiddlesOfTheCells) {
 
 TEST(ExportOfATin, AMeshHasItsVerticesWhereTheTinHasThem) {
     const scene::Scene scene = inclinedTin();
-    const sand::Replica terrain(scene);
-    const scene::Mesh mesh = scene::meshOf(samples::tinOf(terrain), scene);
+    const sand::Replica replica(scene);
+    const scene::Mesh mesh = scene::meshOf(samples::tinOf(replica), scene);
     const double probe = 6.0 / sand::kProbePerCell;  // [unit of the source]
     ASSERT_EQ(mesh.vertices.size(), scene.tin->places.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {

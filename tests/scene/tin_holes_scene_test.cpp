@@ -84,12 +84,12 @@ TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelle
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     const scene::Scene start = scene("[tin]\nmax_error = 0.05\n");
-    Replica terrain(start);
+    Replica replica(start);
     for (const Step& step : strokes(9, 40)) {
-        terrain.apply(step);
+        replica.apply(step);
     }
     const scene::Scene before = scene::sampledScene(start);
-    const sand::HeightField after = scene::sampled(terrain, start.tin->holes.get());
+    const sand::HeightField after = scene::sampled(replica, start.tin->holes.get());
     const scene::EsriGrid heights = scene::heightsOf(after, before), change = scene::differenceOf(after, before);
     for (int row = 0; row < kRasterSide; ++row) {
         for (int column = 0; column < kRasterSide; ++column) {
@@ -97,7 +97,7 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
             EXPECT_EQ(change.isNoData(column, row), isGap(column, row)) << column << ", " << row;
         }
     }
-    const scene::Mesh mesh = scene::meshOf(terrain, start);
+    const scene::Mesh mesh = scene::meshOf(replica, start);
     EXPECT_GT(mesh.triangles.size(), 10U);
     for (const auto& triangle : mesh.triangles) {
         const auto& a = mesh.vertices[triangle[0]];

@@ -232,8 +232,8 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     };
     const std::size_t before = taken();
     const scene::Scene received = scene::Scene::decode(bytes);
-    sand::Replica terrain(received);
-    (void)terrain.stateHash();
+    sand::Replica replica(received);
+    (void)replica.stateHash();
     const std::size_t after = taken();
     ASSERT_GT(after, 0U);
     EXPECT_GE(after - before, static_cast<std::size_t>(received.leastBytes()));

@@ -143,16 +143,16 @@ struct Way {
 
 /// Returns a scene's sand after a press, a drag and a turn of its tool, put onto the grid by `way`.
 sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     for (std::uint64_t i = 1; i <= 12; ++i) {
         sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
         step.heading = way.of(heading(degrees + (i > 6 ? 20 : 0)));
         if (i <= path.size()) {
             step.path = {way.of(path[i - 1])};
         }
-        terrain.apply(step);
+        replica.apply(step);
     }
-    return samples::fieldOf(terrain);
+    return samples::fieldOf(replica);
 }
 
 // A quarter turn consists of an exchange and a mirroring. Round tools are left out, because they give their last units
@@ -251,7 +251,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                 const scene::Scene scene = sceneWith(kind, radius, rim);
                 const std::int64_t before = scene.terrain.volume();
                 std::mt19937 random(67);
-                sand::Replica terrain(scene);
+                sand::Replica replica(scene);
                 std::uint64_t number = 0;
                 for (const auto& [x, y] : {std::pair{0, 0}, {45, 33}, {22, 0}, {20, 16}}) {
                     sand::Step step = samples::randomStep(++number, scene.rules, random);
@@ -259,8 +259,8 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                     step.heading = heading(31.0 * static_cast<double>(number));
                     step.path = {{probes(x), probes(y), probes(radius)},
                                  {probes(x + 5), probes(y - 3), probes(radius)}};
-                    terrain.apply(step);
-                    ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before)
+                    replica.apply(step);
+                    ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), before)
                         << base::nameOf(kind) << " of " << radius << " at " << x << ", " << y;
                 }
             }
@@ -272,9 +272,9 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
     for (const ToolKind kind : kEvery) {
         scene::Scene scene = samples::flatScene(45, 33, 0);
         scene.rules.tuning.tool.kind = kind;
-        sand::Replica terrain(scene);
-        terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
-        EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << base::nameOf(kind);
+        sand::Replica replica(scene);
+        replica.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
+        EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain)) << base::nameOf(kind);
     }
 }
 
@@ -282,20 +282,20 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
     for (const Rim rim : {Rim::closed, Rim::open}) {
         const scene::Scene scene = sceneWith(footprint, 7, rim);
         const std::int64_t before = scene.terrain.volume();
-        sand::Replica terrain(scene), copy(scene);
+        sand::Replica replica(scene), copy(scene);
         std::mt19937 random(71);
         for (std::uint64_t i = 1; i <= 600; ++i) {
             const sand::Step step = samples::wildStep(i, scene.rules, random);
-            terrain.apply(step);
-            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before) << "step " << i;
+            replica.apply(step);
+            ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), before) << "step " << i;
             if (i == 300) {
-                copy.decodeState(terrain.encodeState());
+                copy.decodeState(replica.encodeState());
             } else if (i > 300) {
                 copy.apply(step);
-                ASSERT_EQ(copy.stateHash(), terrain.stateHash()) << "step " << i;
+                ASSERT_EQ(copy.stateHash(), replica.stateHash()) << "step " << i;
             }
         }
-        EXPECT_EQ(copy.heading(), terrain.heading());
+        EXPECT_EQ(copy.heading(), replica.heading());
     }
 }
 
@@ -303,40 +303,40 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
     for (const ToolKind kind : support::longTools()) {
         scene::Scene scene = samples::flatScene(60, 60, 12);
         scene.rules.tuning.tool = toolOf(kind, 12);
-        sand::Replica terrain(scene);
-        terrain.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
+        sand::Replica replica(scene);
+        replica.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
         sand::Step turn{1, 2, true, {}};
         turn.heading = heading(90);
-        terrain.apply(turn);
+        replica.apply(turn);
         const sand::grid::Obstacle under =
-            Displacement(terrain.tool()).obstacle(samples::fieldOf(terrain), terrain.probe());
+            Displacement(replica.tool()).obstacle(samples::fieldOf(replica), replica.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
-                ASSERT_LE(samples::fieldOf(terrain).height(column, row), under.row(row)[column - under.cells.x0])
+                ASSERT_LE(samples::fieldOf(replica).height(column, row), under.row(row)[column - under.cells.x0])
                     << base::nameOf(kind);
             }
         }
-        for (int i = 0; i < 3000 && !terrain.settled(); ++i) {
-            terrain.apply({1, terrain.stepNumber() + 1, true, {}});
+        for (int i = 0; i < 3000 && !replica.settled(); ++i) {
+            replica.apply({1, replica.stepNumber() + 1, true, {}});
         }
-        EXPECT_TRUE(terrain.settled()) << base::nameOf(kind);
-        EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
+        EXPECT_TRUE(replica.settled()) << base::nameOf(kind);
+        EXPECT_EQ(samples::fieldOf(replica).volume(), 0);
     }
 }
 
 TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     const scene::Scene scene = sceneWith(ellipse, 5);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     sand::Step turned{1, 1, false, {}};
     turned.heading = heading(40);
-    terrain.apply(turned);
+    replica.apply(turned);
     sand::Tuning tuning = scene.rules.tuning;
     tuning.tool.kind = footprint;
-    terrain.apply({1, 2, false, {}, sand::Edit::tuned(tuning)});
-    EXPECT_EQ(terrain.heading(), heading(40));
+    replica.apply({1, 2, false, {}, sand::Edit::tuned(tuning)});
+    EXPECT_EQ(replica.heading(), heading(40));
     tuning.tool.heading = heading(70);
-    terrain.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
-    EXPECT_EQ(terrain.heading(), heading(70)) << "the operator turned it";
+    replica.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
+    EXPECT_EQ(replica.heading(), heading(70)) << "the operator turned it";
 }
 
 // Undersides of a row equal those of single cells, with either instruction set. A single cell computes one root at a

@@ -19,7 +19,7 @@
 namespace tin_samples {
 
 /// A scene file as a person writes it: dunes on 64 x 64 nominal cells, as a TIN.
-class TinTerrain : public test::FolderTest {
+class TinReplica : public test::FolderTest {
 protected:
     [[nodiscard]] scene::Scene scene(const std::string& tin = "max_error = 0.01\n", const std::string& more = "",
                                      const std::string& rim = "") const {
@@ -33,8 +33,8 @@ protected:
     }
 };
 
-inline int verticesOf(const sand::Replica& terrain) {
-    const auto& alive = samples::tinOf(terrain).triangles.triangleAt;
+inline int verticesOf(const sand::Replica& replica) {
+    const auto& alive = samples::tinOf(replica).triangles.triangleAt;
     return static_cast<int>(std::count_if(alive.begin(), alive.end(), [](std::int32_t at) { return at >= 0; }));
 }
 
