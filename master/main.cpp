@@ -148,7 +148,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.code().message()));
     }
     if (options.session.film) {
-        options.session.pace = master::Pace::fast;
+        options.session.pace = haptic_bridge::Pace::fast;
         (void)master::Film(world.wall, options.session.filmEye, options.out);  // throws before anything is drawn
     }
     if (options.haptic != "none") {

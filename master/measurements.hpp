@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "lockstep/arrival.hpp"
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/wall_figures.hpp"
@@ -21,7 +23,7 @@ class Measurements {
 public:
     /// `ranks` is the number of ranks, including the master. Times count only after frame `from`. `period` is the time
     /// between two frames at the wall's refresh rate.
-    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, Pace pace);
+    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, haptic_bridge::Pace pace);
 
     /// A frame that all ranks have agreed on.
     struct Frame {
@@ -63,7 +65,7 @@ private:
 
     const std::uint64_t from_;
     const double period_;
-    const Pace pace_;
+    const haptic_bridge::Pace pace_;
     lockstep::RankStatistics ranks_;
     lockstep::Statistics frameMs_, skewUs_, broadcastBytes_;
     Latency latency_;

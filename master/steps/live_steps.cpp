@@ -22,11 +22,11 @@ constexpr const char* kOtherSand = "the hand felt other sand than the wall has s
 
 }  // namespace
 
-LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
+LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
                      std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock)
     : now_(clock ? std::move(clock) : host::monotonicNs),
       link_(std::move(server), {scene.rules.digest(), scene.name}, std::move(security), now_,
-            pace == Pace::fast ? scene.rules.stepsPerSecond : 0),
+            pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace),
       pace_(pace),
       source_(link_.hasServer() ? Source::starting : Source::own),

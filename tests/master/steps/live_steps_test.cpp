@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kLooks = 1200ms;  // time in which a link lo
 class LiveStepsTest : public testing::Test {
 protected:
     master::LiveSteps stepsFrom(const haptic_bridge::Address& server) {
-        return {server, scene_, master::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
+        return {server, scene_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
     }
     void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
     /// Shows one frame, and returns its steps.
@@ -69,7 +69,8 @@ protected:
 };
 
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
-    master::LiveSteps live(std::nullopt, scene_, master::Pace::realtime, 0, {}, [this] { return nowNs_.load(); });
+    master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
+                           [this] { return nowNs_.load(); });
     std::array<lockstep::PointerReport, 2> reports{};
     live.pointed(reports, wall_, nowNs_);
     EXPECT_STREQ(live.hand(), "hand points");
