@@ -138,8 +138,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             "sandwall-master ... : -n {} sandwall-render-node",
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
-    std::vector<master::Place> places;
-    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places), master::Place::parse);
+    std::vector<master::RankMachine> places;
+    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places),
+                   master::RankMachine::parse);
     master::requirePlaces(cluster.hosts(), world.wall, places);
     try {
         host::makeFolders(options.out);

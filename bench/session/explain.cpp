@@ -63,7 +63,7 @@ private:
 void explainTinMemory(const scene::Scene& scene, Explanation& rows) {
     const sand::Replica replica(scene);
     const sand::tin::Triangles& mesh = std::get<sand::TinData>(replica.surface().data()).view.triangles;
-    const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
+    const std::size_t perVertex = sizeof(sand::tin::LatticePoint) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
     rows.memory("vertices", mesh.places.size() * perVertex,
                 fmt::format("{} of them: place, volume, share of the ground, height, hash", mesh.places.size()));
     rows.memory("triangles", mesh.triangles.size() * sizeof(sand::tin::Triangle),

@@ -11,7 +11,7 @@
 namespace bench {
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::VertexSand;
 
 constexpr double kToolRadius = 16.8;  // [cell]; about 1000 cells are below a round tool and in the ring beside it
@@ -23,7 +23,7 @@ constexpr int kEach = 10;             // imprints per run, and steps of its drag
 /// Returns level sand with one vertex per cell, at a random place in the middle half of the cell.
 VertexSand jittered(int side, std::mt19937& random) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     for (std::int32_t y = 0; y < side; ++y) {
         for (std::int32_t x = 0; x < side; ++x) {
             const auto within = [&](std::int32_t cell) {
@@ -45,7 +45,7 @@ sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
 /// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `at`.
 int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
     int count = 0;
-    for (const Place& place : layer.triangles().places) {
+    for (const LatticePoint& place : layer.triangles().places) {
         const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
         count += shape.covers(offset) || shape.takes(offset) ? 1 : 0;
     }

@@ -160,7 +160,7 @@ void measureImprints(const scene::Scene& scene, const std::vector<Action>& actio
 int verticesBelowAndBeside(const scene::Scene& scene, const sand::ProbePoint& at) {
     const sand::TurnedShape tool(scene.rules.tuning.tool);
     const auto& places = scene.tin->places;
-    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
+    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::LatticePoint& place) {
         const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
         return tool.covers(offset) || tool.takes(offset);
     }));

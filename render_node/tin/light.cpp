@@ -12,7 +12,7 @@
 namespace render_node {
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangle;
 using sand::tin::Triangles;
@@ -52,7 +52,7 @@ bool overlapOnGround(const Box& a, const Box& b) {
 glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& around) {
     const Triangles& mesh = tin.triangles;
     const auto at = [&](Vertex corner) {
-        const Place& place = mesh.places[static_cast<std::size_t>(corner)];
+        const LatticePoint& place = mesh.places[static_cast<std::size_t>(corner)];
         return glm::dvec3(kUnitsPerProbe * place.x, kUnitsPerProbe * place.y,
                           tin.heights[static_cast<std::size_t>(corner)]);
     };
@@ -224,7 +224,7 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 void TinSurface::addVerticesAround(const std::vector<sand::CellRect>& cells) {
     for (const sand::CellRect& rect : cells) {
         const sand::CellRect reach = rect.grownBy(kLightReach);
-        const Place southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
+        const LatticePoint southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
         squares_.visitNear(southWest, northEast, [&](Vertex number) {
             const TinVertex& drawn = vertex(number);
             if (drawn.x >= southWest.x && drawn.x <= northEast.x && drawn.y >= southWest.y && drawn.y <= northEast.y) {

@@ -11,7 +11,7 @@ namespace render_node {
 namespace {
 
 using sand::tin::kNobody;
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
@@ -145,7 +145,7 @@ TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
         now.x = now.y = -1;
         return now;
     }
-    const Place& place = tin.triangles.places[static_cast<std::size_t>(number)];
+    const LatticePoint& place = tin.triangles.places[static_cast<std::size_t>(number)];
     now.x = place.x;
     now.y = place.y;
     now.height = static_cast<float>(tin.heights[static_cast<std::size_t>(number)] * unit_);

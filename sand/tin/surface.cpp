@@ -253,7 +253,7 @@ void TinSurface::audit(int tiles) {
 std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return TileHash::valuesOf(layer_, tile); }
 
 void TinSurface::corrupt(int column, int row, int bit) {
-    const Place place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
+    const LatticePoint place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
     const Located found = locate(layer_.triangles(), place, lastFound_);
     const Vertex vertex = layer_.triangles().triangles[static_cast<std::size_t>(found.triangle)].corner[0];
     const std::int64_t volume = layer_.volumes()[static_cast<std::size_t>(vertex)];

@@ -36,7 +36,7 @@ std::uint64_t TileHash::hashOf(const VertexSand& layer, Vertex vertex) {
         return 0;
     }
     const auto i = static_cast<std::size_t>(vertex);
-    const Place place = layer.triangles().places[i];
+    const LatticePoint place = layer.triangles().places[i];
     const std::uint64_t hash = mixed(mixed(mixed(1, static_cast<std::uint64_t>(vertex)), together(place.x, place.y)),
                                      static_cast<std::uint64_t>(layer.volumes()[i]));
     return layer.moving()[i] != 0 ? mixed(hash, 1) : hash;
@@ -127,7 +127,7 @@ std::vector<std::int32_t> TileHash::valuesOf(const VertexSand& layer, int tile) 
     forEachOf(layer, tile, [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
         const bool alive = layer.triangles().alive(vertex);
-        const Place place = alive ? layer.triangles().places[i] : Place{-1, -1};
+        const LatticePoint place = alive ? layer.triangles().places[i] : LatticePoint{-1, -1};
         const auto volume = static_cast<std::uint64_t>(alive ? layer.volumes()[i] : 0);
         values.insert(values.end(), {place.x, place.y, static_cast<std::int32_t>(volume >> 32),
                                      static_cast<std::int32_t>(volume & 0xffffffffU), alive ? layer.moving()[i] : 0});

@@ -52,7 +52,7 @@ Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene) {
     for (std::size_t i = 0; i < tin.triangles.places.size(); ++i) {
         if (onGround[i]) {
             numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-            const sand::tin::Place place = tin.triangles.places[i];
+            const sand::tin::LatticePoint place = tin.triangles.places[i];
             mesh.vertices.push_back(
                 {reference.west + place.x * length, reference.south + place.y * length,
                  (tin.heights[i] * scene.terrain.unit() + reference.datum) * reference.heightPerUnit});

@@ -179,7 +179,7 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& a
 
 /// Returns the exact volume of each part of the sand that walls, holes and rims separate over the whole field, by a
 /// place in it. On a grid, cells are joined over faces, and the place is the first cell by rows. On a TIN, vertices are
-/// joined by edges of ground triangles, and the place is that of the first vertex in the order of Place.
+/// joined by edges of ground triangles, and the place is that of the first vertex in the order of LatticePoint.
 inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Replica& sand) {
     std::vector<std::size_t> up;
     const auto root = [&](std::size_t at) {
@@ -226,7 +226,7 @@ inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Rep
             up[std::max(a, b)] = std::min(a, b);
         }
     }
-    std::map<std::size_t, std::pair<sand::tin::Place, std::int64_t>> parts;
+    std::map<std::size_t, std::pair<sand::tin::LatticePoint, std::int64_t>> parts;
     for (std::size_t at = 0; at < up.size(); ++at) {
         if (mesh.alive(static_cast<sand::tin::Vertex>(at)) && layer.stars()[at] > 0) {
             const auto [part, fresh] = parts.try_emplace(root(at), mesh.places[at], 0);

@@ -67,7 +67,7 @@ public:
     /// Adds a vertex in the middle of a triangle.
     Vertex split(Slot slot, double height) {
         const auto [a, b, c] = triangle(slot).corner;
-        const sand::tin::Place p = place(a), q = place(b), r = place(c);
+        const sand::tin::LatticePoint p = place(a), q = place(b), r = place(c);
         const auto vertex = static_cast<Vertex>(mesh_.places.size());
         mesh_.places.push_back({(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3});
         heights_.push_back(height);
@@ -80,7 +80,7 @@ public:
         return vertex;
     }
     /// Moves a vertex within its triangles.
-    void move(Vertex vertex, const sand::tin::Place& to) {
+    void move(Vertex vertex, const sand::tin::LatticePoint& to) {
         mesh_.places[static_cast<std::size_t>(vertex)] = to;
         damage_.vertices.push_back(vertex);
     }
@@ -160,7 +160,7 @@ public:
 
 private:
     [[nodiscard]] sand::tin::Triangle& triangle(Slot slot) { return mesh_.triangles[static_cast<std::size_t>(slot)]; }
-    [[nodiscard]] const sand::tin::Place& place(Vertex vertex) const {
+    [[nodiscard]] const sand::tin::LatticePoint& place(Vertex vertex) const {
         return mesh_.places[static_cast<std::size_t>(vertex)];
     }
     void add(const std::array<Vertex, 3>& corner) {

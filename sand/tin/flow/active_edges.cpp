@@ -40,7 +40,7 @@ std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
     return released;
 }
 
-double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
+double ActiveEdges::undersideAt(Vertex vertex, const LatticePoint& place) {
     if (held_ == nullptr) {
         return ActiveMesh::kFree;
     }
@@ -157,7 +157,7 @@ void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weig
 bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     const std::array<Vertex, 3> corners = smallestFirst(mesh.triangles[index(slot)].corner);  // as in facetOf()
-    std::array<Place, 3> at;
+    std::array<LatticePoint, 3> at;
     std::array<double, 3> heights{}, under{};
     for (std::size_t k = 0; k < 3; ++k) {
         at[k] = mesh.places[index(corners[k])];

@@ -29,7 +29,7 @@ namespace sand::tin {
 /// any other sand on the rim, wake() is called. Not thread-safe.
 class ActiveEdges {
 public:
-    using Underside = std::function<std::int32_t(Place)>;
+    using Underside = std::function<std::int32_t(LatticePoint)>;
 
     explicit ActiveEdges(Rim rim = Rim::closed) : rim_(rim) {}
 
@@ -71,7 +71,7 @@ private:
     /// A vertex that is or was watched below an obstacle.
     struct Held {
         Vertex vertex;
-        Place place;
+        LatticePoint place;
         std::int32_t underside;
     };
 
@@ -85,7 +85,7 @@ private:
     void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const VertexSand& layer, Vertex vertex);
-    [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
+    [[nodiscard]] double undersideAt(Vertex vertex, const LatticePoint& place);
     [[nodiscard]] bool spills(const Triangles& mesh, Vertex vertex) const {
         return rim_ == Rim::open && isOnRim(mesh, mesh.places[static_cast<std::size_t>(vertex)]);
     }

@@ -59,7 +59,7 @@ struct TriangleSide {
 /// Returns by how much a triangle may be steeper than its slopes [unit per probe unit]. Heights are accurate to half a
 /// unit at best. The slack is the slope that three heights make if each is off by that. A plane with the slope at
 /// which sand rests is therefore at rest, and slivers freeze.
-[[nodiscard]] double slackOf(const Place& a, const Place& b, const Place& c);
+[[nodiscard]] double slackOf(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c);
 
 /// Returns the facet of a triangle, with the slack of slackOf().
 [[nodiscard]] Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes);

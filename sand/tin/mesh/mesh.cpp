@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int32_t kMaxSide = 1 << 22;
 
-std::string toText(const Place& place) { return std::to_string(place.x) + ", " + std::to_string(place.y); }
+std::string toText(const LatticePoint& place) { return std::to_string(place.x) + ", " + std::to_string(place.y); }
 
 }  // namespace
 
@@ -35,7 +35,7 @@ const std::shared_ptr<const Holes>& Mesh::holes() const { return triangulation_-
 
 int Mesh::vertexCount() const { return triangulation_->vertexCount(); }
 
-void Mesh::requireInside(const Place& place) const {
+void Mesh::requireInside(const LatticePoint& place) const {
     const Triangles& mesh = triangles();
     if (place.x < 0 || place.y < 0 || place.x > mesh.width || place.y > mesh.depth) {
         throw std::invalid_argument("a vertex at " + toText(place) + ", outside the field of " +
@@ -49,13 +49,13 @@ void Mesh::requireAlive(Vertex vertex) const {
     }
 }
 
-Vertex Mesh::insert(Place place) {
+Vertex Mesh::insert(LatticePoint place) {
     requireInside(place);
     return triangulation_->insert(place);
 }
 
-std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
-    std::for_each(places.begin(), places.end(), [this](const Place& place) { requireInside(place); });
+std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
+    std::for_each(places.begin(), places.end(), [this](const LatticePoint& place) { requireInside(place); });
     const auto [order, first] = spatialOrder(places);
     // First find the vertices that exist already, then give out numbers in the order of `places`, then change the
     // mesh.
@@ -180,7 +180,7 @@ Mesh::Difference Mesh::takeDifference() {
     return triangulation_->differences.takeDifference(triangles());
 }
 
-Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
+Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<LatticePoint>> places,
                    std::span<const std::pair<Vertex, Vertex>> constraints, std::shared_ptr<const Holes> holes) {
     Mesh mesh(width, depth, std::move(holes));
     for (std::size_t i = 0; i < 4; ++i) {
@@ -188,7 +188,7 @@ Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::
             throw std::invalid_argument("the first four vertices are not the corners of the field");
         }
     }
-    std::vector<Place> there;
+    std::vector<LatticePoint> there;
     std::vector<Vertex> numbers;
     Triangulation& triangulation = *mesh.triangulation_;
     triangulation.reserveNumbers(places.size());

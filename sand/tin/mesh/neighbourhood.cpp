@@ -8,7 +8,7 @@
 namespace sand::tin {
 namespace {
 
-Box around(const std::array<Place, 3>& corners) {
+Box around(const std::array<LatticePoint, 3>& corners) {
     const auto& [a, b, c] = corners;
     return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
 }
@@ -73,7 +73,7 @@ void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
         return;
     }
     seen_.clear();
-    const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
+    const LatticePoint middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
     last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
@@ -168,7 +168,7 @@ void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
     }
 }
 
-bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance) {
+bool isNear(const LatticePoint& place, const LatticePoint& from, const LatticePoint& to, std::int32_t distance) {
     const auto squared = [](std::int64_t x, std::int64_t y) { return x * x + y * y; };
     const std::int64_t limit = std::int64_t{distance} * distance;
     const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;

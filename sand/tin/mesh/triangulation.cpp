@@ -182,10 +182,10 @@ std::vector<Vertex> Triangulation::outlineFrom(Vertex vertex) const {
     return others;
 }
 
-Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
-    const Place& from = place(vertex);
+Vertex Triangulation::nextAlong(Vertex vertex, const LatticePoint& to) const {
+    const LatticePoint& from = place(vertex);
     for (const Vertex other : link(vertex)) {
-        const Place& there = place(other);
+        const LatticePoint& there = place(other);
         const auto isBetween = [](std::int32_t a, std::int32_t b, std::int32_t c) {
             return std::min(a, c) <= b && b <= std::max(a, c);
         };
@@ -350,7 +350,7 @@ VertexPair Triangulation::edgeAt(const Located& located) const {
     return ends({located.triangle, static_cast<std::size_t>(zero - located.weights.begin())});
 }
 
-Vertex Triangulation::insertAt(const Located& located, const Place& place, Vertex number) {
+Vertex Triangulation::insertAt(const Located& located, const LatticePoint& place, Vertex number) {
     last_ = located.triangle;
     if (const std::size_t corner = cornerAt(located); corner < 3) {
         return triangle(located.triangle).corner[corner];

@@ -42,7 +42,7 @@ public:
     [[nodiscard]] std::vector<Vertex> outlineFrom(Vertex vertex) const;
     /// Returns the other end of the constraint that leads from `vertex` straight towards `to` and ends at `to` or
     /// before it. Returns kNobody if there is no such constraint.
-    [[nodiscard]] Vertex nextAlong(Vertex vertex, const Place& to) const;
+    [[nodiscard]] Vertex nextAlong(Vertex vertex, const LatticePoint& to) const;
     [[nodiscard]] int vertexCount() const { return vertexCount_; }
 
     /// Returns the smallest free number. It stays in use until giveBack().
@@ -54,13 +54,13 @@ public:
     void reserve(std::size_t vertices);
     /// Returns the vertex at a place within the field. A new vertex gets the number `number`, or a free one if that is
     /// kNobody.
-    Vertex insert(const Place& place, Vertex number = kNobody) { return insertAt(find(place), place, number); }
+    Vertex insert(const LatticePoint& place, Vertex number = kNobody) { return insertAt(find(place), place, number); }
     /// Returns the triangle that contains a place. The search begins where the last change was.
-    [[nodiscard]] Located find(const Place& place) { return locate(mesh_, place, last_); }
+    [[nodiscard]] Located find(const LatticePoint& place) { return locate(mesh_, place, last_); }
     /// Returns the ends of the edge on which the place lies. Returns kNobody twice if it lies on no edge or at a
     /// vertex.
     [[nodiscard]] VertexPair edgeAt(const Located& located) const;
-    Vertex insertAt(const Located& located, const Place& place, Vertex number);
+    Vertex insertAt(const Located& located, const LatticePoint& place, Vertex number);
     /// Removes a vertex, which must not be a corner of the field.
     void remove(Vertex vertex);
     void release(Vertex a, Vertex b);
@@ -95,7 +95,9 @@ private:
         return mesh_.triangles[static_cast<std::size_t>(slot)];
     }
     [[nodiscard]] Triangle& triangle(std::int32_t slot) { return mesh_.triangles[static_cast<std::size_t>(slot)]; }
-    [[nodiscard]] const Place& place(Vertex vertex) const { return mesh_.places[static_cast<std::size_t>(vertex)]; }
+    [[nodiscard]] const LatticePoint& place(Vertex vertex) const {
+        return mesh_.places[static_cast<std::size_t>(vertex)];
+    }
     [[nodiscard]] std::int64_t area(Vertex a, Vertex b, Vertex c) const {
         return doubledArea(place(a), place(b), place(c));
     }

@@ -15,7 +15,7 @@ constexpr std::size_t kMostAround = 64;  // vertices with more neighbours stay, 
 /// is the origin, so that the sums are of products of small numbers.
 double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& link) {
     const auto& places = layer.triangles().places;
-    const Place origin = places[static_cast<std::size_t>(vertex)];
+    const LatticePoint origin = places[static_cast<std::size_t>(vertex)];
     const double base = layer.heights()[static_cast<std::size_t>(vertex)];
     struct Point {
         double x, y, z;

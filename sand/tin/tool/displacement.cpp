@@ -15,7 +15,7 @@ constexpr std::int32_t kWay = 16 * kProbePerCell;
 /// Shortest way between two presses [probe unit]. A hand that is sampled often moves less, and every press costs time.
 constexpr std::int32_t kNoWay = kProbePerCell / 4;
 
-Offset offsetOf(const Place& place, const ProbePoint& at) {
+Offset offsetOf(const LatticePoint& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
 }
 
@@ -23,7 +23,7 @@ Box boxOf(const CellRect& cells) {
     return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
 }
 
-Box boxOf(const Place& a, const Place& b) {
+Box boxOf(const LatticePoint& a, const LatticePoint& b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
 }
 
@@ -56,7 +56,7 @@ Displacement::Displacement(const Tool& tool, const DetailRules& rules, std::shar
       neighbourhood_(std::move(neighbourhood)) {}
 
 Underside Displacement::underside(const ProbePoint& at) const {
-    return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
+    return [shape = turned_, at](const LatticePoint& place) { return shape.underside(at.z, offsetOf(place, at)); };
 }
 
 Box Displacement::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(at.x, at.y)); }
@@ -165,7 +165,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
     return layer.edit([&](Mesh& mesh) {
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
-        std::vector<Place> there = outline.points;
+        std::vector<LatticePoint> there = outline.points;
         for (std::size_t i = 0; rules_.spacing > 0 && i < neighbourhood_->vertices().size(); ++i) {
             const Vertex vertex = neighbourhood_->vertices()[i];
             if (mesh.triangles().alive(vertex)) {
@@ -176,16 +176,16 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             imprint.stand = {at, tool_};
             imprint.putInto(mesh, outline, rules_.maxVertices);
         }
-        const auto wanted = [&](const Place& place) {
+        const auto wanted = [&](const LatticePoint& place) {
             return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
         };
         refine(mesh, rules_, chunk.box, wanted, there, edges);
         if (holes != nullptr) {
-            const auto wantedOnBorder = [&](const Place& place) { return isNearTool(place, chunk.presses); };
+            const auto wantedOnBorder = [&](const LatticePoint& place) { return isNearTool(place, chunk.presses); };
             refineHoles(mesh, rules_, chunk.box, wantedOnBorder, there);
         }
         if (chunk.last || !rules_.keepsRim) {  // a rim that keeps its vertices needs none when the tool leaves
-            const auto wantedOnRim = [&](const Place& place) {
+            const auto wantedOnRim = [&](const LatticePoint& place) {
                 // Holes::holds() returns true for every place that is not inside the field.
                 const Triangles& field = mesh.triangles();
                 return wanted({std::min(place.x, field.width - 1), std::min(place.y, field.depth - 1)});
@@ -197,7 +197,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
 
 /// Returns whether the tool takes or lays down sand at a place or one square farther. All vertices that take sand
 /// should have equal and small shares of the ground.
-bool Displacement::isNearTool(const Place& place, const std::vector<Press>& presses) const {
+bool Displacement::isNearTool(const LatticePoint& place, const std::vector<Press>& presses) const {
     const std::int64_t step = rules_.spacing;
     for (const Press& press : presses) {
         const Offset offset = offsetOf(place, press.at);
@@ -239,7 +239,7 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
         return;
     }
     Box around;
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         around = around.joinedWith({place.x, place.y, place.x, place.y});
     }
     around = around.grownBy(distance);
@@ -247,7 +247,7 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     // near.
     const std::int32_t band = std::max((around.y1 - around.y0) / kBands, distance) + 1;
     std::vector<Edges> near(static_cast<std::size_t>((around.y1 - around.y0) / band) + 1);
-    const auto put = [&](const Place& a, const Place& b) {
+    const auto put = [&](const LatticePoint& a, const LatticePoint& b) {
         const std::int32_t first = std::min(a.y, b.y) - distance - around.y0;
         const std::int32_t last = std::max(a.y, b.y) + distance - around.y0;
         for (std::int32_t i = first / band; i <= last / band; ++i) {
@@ -257,12 +257,12 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     for (const auto& [a, b] : outline.edges) {
         put(a, b);
     }
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         put(place, place);
     }
     Link link;
     for (const Vertex vertex : neighbourhood_->vertices()) {
-        const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
+        const LatticePoint place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
         if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
             continue;
         }

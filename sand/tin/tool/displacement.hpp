@@ -83,7 +83,7 @@ private:
     struct Receiver {
         Vertex vertex;  // kNobody: beyond the rim
         double weight;
-        Place place;  // only beyond the rim
+        LatticePoint place;  // only beyond the rim
         Volume share = 0;
     };
 
@@ -93,7 +93,7 @@ private:
     std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
-    [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
+    [[nodiscard]] bool isNearTool(const LatticePoint& place, const std::vector<Press>& presses) const;
 
     void press(VertexSand& layer, Rim rim, const Press& press, Work& work);
     /// Does the work of press() part by part, beside a hole.

@@ -68,14 +68,14 @@ void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices)
         return;
     }
     std::vector<Vertex> vertices;
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         const int before = mesh.vertexCount();
         vertices.push_back(mesh.insert(place));
         if (mesh.vertexCount() > before) {
             points.push_back({vertices.back(), place});
         }
     }
-    const auto vertexAt = [&](const Place& place) {
+    const auto vertexAt = [&](const LatticePoint& place) {
         return vertices[static_cast<std::size_t>(std::find(outline.points.begin(), outline.points.end(), place) -
                                                  outline.points.begin())];
     };

@@ -20,7 +20,7 @@ namespace sand::tin {
 struct Imprint {
     struct Point {
         Vertex vertex;
-        Place place;  // shows whether the number has passed to another vertex
+        LatticePoint place;  // shows whether the number has passed to another vertex
         friend bool operator==(const Point&, const Point&) = default;
     };
     /// Position of the outline, and the tool that it belongs to.

@@ -27,7 +27,7 @@ Vertex Displacement::partOf(const VertexSand& layer, const Receiver& receiver) {
         return partOf(receiver.vertex);
     }
     const auto key = [&](Vertex vertex) {
-        const Place& place = layer.triangles().places[index(vertex)];
+        const LatticePoint& place = layer.triangles().places[index(vertex)];
         const std::int64_t x = std::int64_t{place.x} - receiver.place.x, y = std::int64_t{place.y} - receiver.place.y;
         return std::tuple(x * x + y * y, place.y, place.x);
     };
@@ -41,7 +41,7 @@ void Displacement::findParts(const VertexSand& layer, const ProbePoint& at) {
     const Triangles& mesh = layer.triangles();
     up_.resize(std::max(up_.size(), mesh.places.size()), kNobody);
     for (const Vertex vertex : neighbourhood_->vertices()) {
-        const Place& place = mesh.places[index(vertex)];
+        const LatticePoint& place = mesh.places[index(vertex)];
         const Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
         if (layer.stars()[index(vertex)] > 0 && (turned_.takes(offset) || turned_.covers(offset))) {
             up_[index(vertex)] = vertex;

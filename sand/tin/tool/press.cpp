@@ -11,7 +11,7 @@ namespace {
 constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, of either sign
 constexpr int kSquaresBeyond = 16;  // lattice squares per tool radius, for the ground beyond an open rim
 
-Offset offsetFrom(const Place& place, const ProbePoint& at) {
+Offset offsetFrom(const LatticePoint& place, const ProbePoint& at) {
     return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
 }
 
@@ -29,7 +29,7 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
                   cells.y1 * kProbePerCell};
     for (const Vertex vertex : neighbourhood_->vertices()) {
         const auto index = static_cast<std::size_t>(vertex);
-        const Place place = layer.triangles().places[index];
+        const LatticePoint place = layer.triangles().places[index];
         if (!box.holds(place)) {
             continue;
         }
@@ -84,7 +84,7 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
     };
     for (std::int64_t y = first(box.y0); y <= box.y1; y += step) {
         for (std::int64_t x = first(box.x0); x <= box.x1; x += step) {
-            const Place place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+            const LatticePoint place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
             const Offset offset = offsetFrom(place, press.at);
             if (field.holds(place) || !turned_.takes(offset) || turned_.covers(offset)) {
                 continue;

@@ -26,7 +26,7 @@ std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0
 /// A vertex by number and place. Within one change, a number may pass from one vertex to another.
 struct Key {
     Vertex vertex = kNobody;
-    Place place;
+    LatticePoint place;
     // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Key&, const Key&) = default;
 };
@@ -58,7 +58,7 @@ private:
 
 struct Node {
     Vertex vertex = kNobody;
-    Place place;
+    LatticePoint place;
     std::uint32_t part = 0;  // first node of its piece
     bool before = false, now = false;
     std::int64_t star = 0;  // in the current mesh [probe unit²]
@@ -101,7 +101,7 @@ public:
     /// Returns the first triangle of the list for which visit(piece) is true, or null. Visits only triangles that may
     /// contain the place.
     template <class Visit>
-    [[nodiscard]] const Mesh::Piece* first(const Place& place, const Visit& visit) const {
+    [[nodiscard]] const Mesh::Piece* first(const LatticePoint& place, const Visit& visit) const {
         const std::size_t at = strip(place.x);
         if (place.x < west_ || at >= strips_.size()) {
             return nullptr;
@@ -238,7 +238,7 @@ private:
 
     /// Returns the height of the previous surface at `place` [unit]. If several triangles share the place, the first
     /// one counts.
-    [[nodiscard]] double oldHeight(const Place& place) {
+    [[nodiscard]] double oldHeight(const LatticePoint& place) {
         if (!strips_) {
             strips_.emplace(difference_.went);
         }

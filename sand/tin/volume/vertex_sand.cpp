@@ -110,7 +110,7 @@ std::vector<Vertex> VertexSand::stopMoving() {
     return stopped;
 }
 
-Vertex VertexSand::insert(Place place) {
+Vertex VertexSand::insert(LatticePoint place) {
     const Vertex vertex = mesh_.insert(place);
     remap();
     return vertex;

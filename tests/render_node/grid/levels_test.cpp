@@ -49,7 +49,7 @@ sand::HeightField hills(int columns, int rows, std::uint32_t seed) {
 
 sand::CellRect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * kSide + 1, (y + 1) * kSide + 1}; }
 
-using Place = std::pair<int, int>;  // column and row of the vertex grid
+using GridPoint = std::pair<int, int>;  // column and row of the vertex grid
 
 /// Field whose chunks have random levels.
 class Patchwork {
@@ -79,8 +79,8 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
     const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         const Patchwork patchwork(seed);
-        std::map<Place, SandVertex> vertices;
-        std::map<std::pair<Place, Place>, int> edges;
+        std::map<GridPoint, SandVertex> vertices;
+        std::map<std::pair<GridPoint, GridPoint>, int> edges;
         for (int chunk = 0; chunk < kChunks * kChunks; ++chunk) {
             const int x = chunk % kChunks, y = chunk / kChunks;
             const ChunkLevels levels = patchwork.at(x, y);

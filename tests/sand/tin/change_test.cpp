@@ -24,7 +24,7 @@ Seen seen(const Mesh& mesh, std::size_t slot) {
     }
     const Triangle& triangle = mesh.triangles().triangles[slot];
     for (std::size_t i = 0; i < 3; ++i) {
-        const Place& place = mesh.triangles().places[static_cast<std::size_t>(triangle.corner[i])];
+        const LatticePoint& place = mesh.triangles().places[static_cast<std::size_t>(triangle.corner[i])];
         corners.push_back({triangle.corner[i], place.x, place.y, triangle.constrained[i] ? 1 : 0});
     }
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -98,7 +98,7 @@ TEST(Locate, FindsTheFirstOfAllTrianglesThatHoldAPlaceFromWherever) {
     };
     for (std::int32_t y = -2; y <= 17; ++y) {
         for (std::int32_t x = -2; x <= 22; ++x) {
-            const Place inside{std::clamp(x, 0, 20), std::clamp(y, 0, 15)};
+            const LatticePoint inside{std::clamp(x, 0, 20), std::clamp(y, 0, 15)};
             std::int32_t expected = kNobody;
             for (std::int32_t slot = 0; slot < static_cast<std::int32_t>(triangles.triangles.size()); ++slot) {
                 const Triangle& triangle = triangles.triangles[static_cast<std::size_t>(slot)];

@@ -30,14 +30,14 @@ Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool
 
 double lowest(const VertexSand& layer) {
     double result = 0;
-    forEachVertex(layer, [&](Vertex, const Place&, double height) { result = std::min(result, height); });
+    forEachVertex(layer, [&](Vertex, const LatticePoint&, double height) { result = std::min(result, height); });
     return result;
 }
 
 /// Expects that no vertex below the tool is above its underside.
 void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& at) {
     const auto underside = tool.underside(at);
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         EXPECT_LE(height, underside(place)) << "vertex " << vertex;
     });
 }
@@ -96,7 +96,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         const sand::Tool turned = ellipse.turnedTo(*sand::headingOf(degrees));
         const double depth = (at.z - turned.radius) * 256.0;
         int inside = 0;
-        forEachVertex(layer, [&, tool = at](Vertex vertex, const Place& place, double height) {
+        forEachVertex(layer, [&, tool = at](Vertex vertex, const LatticePoint& place, double height) {
             if (sand::TurnedShape(turned).covers({place.x - tool.x, place.y - tool.y})) {
                 EXPECT_EQ(height, depth) << "vertex " << vertex;
                 ++inside;
@@ -105,9 +105,9 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         EXPECT_GT(inside, 32 + 60);
         const auto outline = sand::tin::placed(sand::tin::Outline::of(turned), at.x, at.y, layer.triangles());
         for (const auto& [from, to] : outline.edges) {
-            const auto vertexAt = [&](const Place& wanted) {
+            const auto vertexAt = [&](const LatticePoint& wanted) {
                 Vertex found = sand::tin::kNobody;
-                forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+                forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
                     found = place == wanted ? vertex : found;
                 });
                 return found;
@@ -121,8 +121,8 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
 double lengthOfConstraints(const VertexSand& layer) {
     double length = 0;
     for (const auto& [a, b] : layer.mesh().constraints()) {
-        const Place &from = layer.triangles().places[sand::tin::index(a)],
-                    &to = layer.triangles().places[sand::tin::index(b)];
+        const LatticePoint &from = layer.triangles().places[sand::tin::index(a)],
+                           &to = layer.triangles().places[sand::tin::index(b)];
         length += std::hypot(to.x - from.x, to.y - from.y) / sand::kProbePerCell;
     }
     return length;
@@ -197,7 +197,7 @@ TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
     tool.drag(layer, imprint, Rim::closed, std::array{from, to});
     expectClear(layer, tool, to);
     double ahead = 0, behind = 0;
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         const double above =
             std::max(height, 0.0) * static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
         ahead += place.x > to.x ? above : 0;
@@ -242,11 +242,11 @@ TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
     const Displacement::Work done = press(layer, imprint, tool, probeAt(6, 4, 30));
     EXPECT_TRUE(done.touched.empty());
     EXPECT_TRUE(layer.volume() == before);
-    forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, 0); });
+    forEachVertex(layer, [](Vertex, const LatticePoint&, double height) { EXPECT_EQ(height, 0); });
     const Displacement::Work spilt = press(layer, imprint, tool, probeAt(6, 4, 30), Rim::open);
     EXPECT_TRUE(spilt.outflow > 0);
     EXPECT_TRUE(layer.volume() + spilt.outflow == before);
-    forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, -10 * kCell); });
+    forEachVertex(layer, [](Vertex, const LatticePoint&, double height) { EXPECT_EQ(height, -10 * kCell); });
 }
 
 TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
@@ -261,7 +261,7 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
         EXPECT_TRUE(layer.volume() + done.outflow == before);
         // Each vertex of the ring takes sand in proportion to its star. A quarter of the ring lies in the field.
         double kept = 0, stars = 0;
-        forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
+        forEachVertex(layer, [&](Vertex vertex, const LatticePoint&, double height) {
             const auto star = static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
             kept += std::max(height, 0.0) * star;
             stars += height > 0 ? star : 0;

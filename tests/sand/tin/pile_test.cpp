@@ -177,7 +177,7 @@ double between(const VertexSand& one, const VertexSand& other, int n) {
     std::int32_t here = sand::tin::kNobody, there = sand::tin::kNobody;
     for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {
-            const Place place{x * kCell + kCell / 2, y * kCell + kCell / 2};
+            const LatticePoint place{x * kCell + kCell / 2, y * kCell + kCell / 2};
             const double height = heightAt(one, place, here);
             sum += std::abs(height - heightAt(other, place, there));
             all += height;

@@ -49,7 +49,7 @@ private:
         std::map<Vertex, double> weights;
         std::int64_t taken = 0;
         double total = 0;
-        forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+        forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
             taken -= std::min<std::int64_t>(volume(vertex), 0);
             const Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
             const std::int64_t part = way == ProbePoint{} ? 1 : shape.share(offset, {way.x, way.y});
@@ -76,7 +76,7 @@ private:
 
 void expectShares(const Pressed& pressed) {
     ASSERT_GT(pressed.expected.size(), 50U);
-    forEachVertex(pressed.layer, [&](Vertex vertex, const Place& place, double) {
+    forEachVertex(pressed.layer, [&](Vertex vertex, const LatticePoint& place, double) {
         const auto found = pressed.expected.find(vertex);
         const std::int64_t expected = found == pressed.expected.end() ? 0 : found->second;
         ASSERT_EQ(std::max<std::int64_t>(pressed.volume(vertex), 0), expected)

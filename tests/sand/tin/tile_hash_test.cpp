@@ -13,8 +13,8 @@
 namespace tin_hash {
 namespace {
 
+using sand::tin::LatticePoint;
 using sand::tin::Mesh;
-using sand::tin::Place;
 using sand::tin::TileHash;
 using sand::tin::TinState;
 using sand::tin::Vertex;
@@ -26,7 +26,7 @@ constexpr std::int32_t kSide = 2560;  // [probe unit]
 std::uint64_t hashOf(const VertexSand& layer, const TinState& state = {}) { return TileHash(layer).update(state); }
 
 /// Returns sand with further vertices at `places`, and with the volume 1000 in vertex 4, the first of them.
-VertexSand layerWith(const std::vector<Place>& places) {
+VertexSand layerWith(const std::vector<LatticePoint>& places) {
     Mesh mesh(kSide, kSide);
     static_cast<void>(mesh.insert(places));
     VertexSand layer(std::move(mesh));
