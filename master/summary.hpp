@@ -176,7 +176,7 @@ struct Summary {
         visit("haptic/refused_by_server", base::byName<RefusalCode>(it.incidents.refusedHere));
         visit("haptic/refused/servers", base::byName<RefusalCode>(it.incidents.refused));
         const haptic_bridge::Report report = it.haptic.value_or(haptic_bridge::Report{});
-        visit("haptic/refused/guests", base::byName<RefusalCode>(report.refused));
+        visit("haptic/refused/connections", base::byName<RefusalCode>(report.refused));
         if (it.haptic) {
             visit("haptic", ReportPart{report});
         }

@@ -104,7 +104,7 @@ TEST_F(SchemaFiles, OfTheSummaryRequiresEveryKeyThatIsAlwaysThere) {
     summary.haptic.reset();
     const Json haptic = host::jsonOf<Json>(summary)["haptic"];
     EXPECT_EQ(keysOf(haptic), schemaOf("summary")["properties"]["haptic"]["required"].get<Keys>());
-    EXPECT_EQ(keysOf(haptic["refused"]), (Keys{"guests", "servers"}));
+    EXPECT_EQ(keysOf(haptic["refused"]), (Keys{"connections", "servers"}));
 }
 
 TEST_F(SchemaFiles, OfStatusAndSummaryHaveEveryCounterOfIncidents) {

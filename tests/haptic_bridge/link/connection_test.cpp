@@ -143,17 +143,17 @@ class TlsEnds : public testing::Test {
 protected:
     void SetUp() override {
         base::Bytes there, back, plain;
-        guest_->begin(there);
+        clientEnd_->begin(there);
         while (!there.empty() || !back.empty()) {
             const base::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
-            host_->receive(forth, plain, back);
-            guest_->receive(answers, plain, there);
+            serverEnd_->receive(forth, plain, back);
+            clientEnd_->receive(answers, plain, there);
         }
-        ASSERT_TRUE(host_->established() && guest_->established());
+        ASSERT_TRUE(serverEnd_->established() && clientEnd_->established());
     }
     const Security& security_ = loadSecurity("test");
     std::unique_ptr<TlsContext> server_ = security_.tlsServer("", ""), client_ = security_.tlsClient();
-    std::unique_ptr<TlsSession> host_ = server_->open(), guest_ = client_->open();
+    std::unique_ptr<TlsSession> serverEnd_ = server_->open(), clientEnd_ = client_->open();
 };
 
 TEST_F(TlsEnds, CarryMuchInRecordsOfSixteenKibibytes) {
@@ -161,8 +161,8 @@ TEST_F(TlsEnds, CarryMuchInRecordsOfSixteenKibibytes) {
     for (std::size_t i = 0; i < much.size(); ++i) {
         much[i] = static_cast<std::uint8_t>(i * 7 + i / 1000);
     }
-    host_->seal(much, sealed);
-    guest_->receive(sealed, plain, reply);
+    serverEnd_->seal(much, sealed);
+    clientEnd_->receive(sealed, plain, reply);
     EXPECT_EQ(plain, much);
 }
 

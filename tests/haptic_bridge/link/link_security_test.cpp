@@ -19,9 +19,9 @@ struct Capture {
     std::mutex mutex;
     base::Bytes there, back;
     ImpairedLink::Tap tap() {
-        return [this](std::span<const std::uint8_t> bytes, bool fromGuest) {
+        return [this](std::span<const std::uint8_t> bytes, bool fromClient) {
             const std::lock_guard lock(mutex);
-            base::Bytes& all = fromGuest ? there : back;
+            base::Bytes& all = fromClient ? there : back;
             all.insert(all.end(), bytes.begin(), bytes.end());
         };
     }
