@@ -88,7 +88,7 @@ BENCHMARK(moveHead)
     ->UseRealTime();
 
 /// Gives the changed heights of a new furrow to the view, and draws. Argument: side of the changed square [cell].
-void updateDamage(benchmark::State& state) {
+void updateChange(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(64, 48);
@@ -100,7 +100,7 @@ void updateDamage(benchmark::State& state) {
         target.finish();
     }
 }
-BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(updateChange)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// Measures a frame in which the tool of Dorjgotov et al. 2007 digs, for one eye of a tile that shows the whole field.
 /// Argument 0: 1 draws what changed, 0 everything. Argument 1: cells on a side. The step of sand is not timed.

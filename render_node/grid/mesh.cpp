@@ -110,7 +110,7 @@ bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
         const HeightRange heights = heightsAround(vertices, overwritten);
-        damage_.add(revision_, {vertices, heights});
+        changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
         markChanged(chunksAround(vertices), vertices);
         rim |= surface_.touchesRim(cells);
@@ -249,7 +249,7 @@ Box SandMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heigh
 
 std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
     std::vector<Box> changed;
-    for (const auto& [since, part] : damage_.since(revision)) {
+    for (const auto& [since, part] : changes_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
     }
     updateLevels(levels, revision, rule, changed);

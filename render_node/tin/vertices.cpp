@@ -51,7 +51,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
       chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth_ / chunkSide + 1)),
       squares_(width_, depth_, chunkSide),
       relief_(width_, depth_),
-      damaged_(width_ * probe_, depth_ * probe_) {
+      changedBoxes_(width_ * probe_, depth_ * probe_) {
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<Vertex> all;
@@ -92,17 +92,17 @@ TinSurface::Change TinSurface::replaceWhole(const SurfaceView& tin) {
     return change;
 }
 
-TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& damage) {
+TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& sandChange) {
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<std::int32_t> replaced;
-    for (const std::int32_t slot : damage.triangles) {
+    for (const std::int32_t slot : sandChange.triangles) {
         if (triangle(slot) != drawnOf(mesh.triangles[static_cast<std::size_t>(slot)])) {
             replaced.push_back(slot);
         }
     }
-    std::vector<Vertex> others = moved(tin, damage.vertices);
+    std::vector<Vertex> others = moved(tin, sandChange.vertices);
     reshaped_.clear();
     reshaped_.add(replaced);
     for (const Vertex number : others) {
@@ -110,14 +110,14 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinCha
             aroundVertex(mesh, number, [this](std::int32_t slot, int) { reshaped_.add(slot); });
         }
     }
-    const auto damageAll = [&] {
+    const auto addBoxes = [&] {
         for (const std::int32_t slot : reshaped_.all()) {
             if (triangle(slot).alive()) {
-                damaged_.add(boxOf(triangle(slot)));
+                changedBoxes_.add(boxOf(triangle(slot)));
             }
         }
     };
-    damageAll();
+    addBoxes();
     change.rim = move(tin, others);
     for (const std::int32_t slot : replaced) {
         replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
@@ -129,12 +129,12 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinCha
             }
         });
     }
-    damageAll();
+    addBoxes();
     const std::vector<Vertex> lit = relight(tin, reshaped_.all());
     others.insert(others.end(), lit.begin(), lit.end());
     sortOnce(others);
     change.vertices = std::move(others);
-    change.boxes = damaged_.take();
+    change.boxes = changedBoxes_.take();
     return change;
 }
 

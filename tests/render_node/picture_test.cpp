@@ -87,7 +87,7 @@ TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
     EXPECT_LT(west, level - 25);
 }
 
-TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
+TEST_F(Picture, OfTheChangeAloneEqualsThatOfEverything) {
     const scene::Scene scene = sample::duneScene(150);
     sand::Replica replica(scene);
     ScenePainter partial(scene, glm::dmat4(1));
