@@ -65,8 +65,8 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
         latency_.toMaster.add(milliseconds(timed.receivedNs - sent));
         latency_.queued.add(milliseconds(frame.broadcast - timed.receivedNs));
         latency_.drawn.add(milliseconds(drawn - frame.broadcast));
-        latency_.swapped.add(milliseconds(frame.swap.at - drawn));
-        latency_.wholeWay.add(milliseconds(frame.swap.at - sent));
+        latency_.swapped.add(milliseconds(frame.swap.timeNs - drawn));
+        latency_.wholeWay.add(milliseconds(frame.swap.timeNs - sent));
     }
 }
 

@@ -182,7 +182,7 @@ bool Session::showFrame(bool& more) {
     }
     check_.shown(frame.frame, shownSand());
     record_.shown(swap, frame.frame, sand_, steps_->epoch());
-    record_.keepIncidents(incidents(), swap.at);
+    record_.keepIncidents(incidents(), swap.timeNs);
     more = !frame.stop;
     return true;
 }

@@ -42,11 +42,11 @@ sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
     return {probe(x), probe(y), probe(z)};
 }
 
-/// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `at`.
-int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
+/// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `probe`.
+int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& probe) {
     int count = 0;
     for (const LatticePoint& place : layer.triangles().places) {
-        const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+        const sand::Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
         count += shape.covers(offset) || shape.takes(offset) ? 1 : 0;
     }
     return count;
@@ -70,12 +70,12 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         };
         for (int i = 0; i < kEach; ++i) {
             const double x = somewhere();
-            const sand::ProbePoint at = handAt(x, somewhere(), kToolRadius - kDepth);
-            near = verticesNear(layer, sand::TurnedShape(tool), at);
+            const sand::ProbePoint probe = handAt(x, somewhere(), kToolRadius - kDepth);
+            near = verticesNear(layer, sand::TurnedShape(tool), probe);
             sand::tin::Imprint imprint;
             imprints.push_back(secondsOf([&] {
                 sand::tin::Displacement displacement(tool, rules);
-                displacement.drag(layer, imprint, sand::Rim::closed, std::array{at});
+                displacement.drag(layer, imprint, sand::Rim::closed, std::array{probe});
             }));
             sand::tin::Displacement(tool, rules).leave(layer, imprint);
             static_cast<void>(layer.takeChange());

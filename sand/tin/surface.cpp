@@ -147,7 +147,7 @@ void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
-    sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
+    sawAll_ = state_.imprint.stand && state_.imprint.stand->probe == path.back();
 }
 
 void TinSurface::leave(const Tool& tool) {
@@ -155,9 +155,9 @@ void TinSurface::leave(const Tool& tool) {
     meshChanged();
 }
 
-void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
+void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
     if (detail_.removals > 0) {
-        const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(at);
+        const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(probe);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
             meshChanged();
         }
@@ -165,11 +165,11 @@ void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
     moved_.clear();
     if (tool != nullptr) {
         const Displacement& here = displacementOf(*tool);
-        const Underside under = here.underside(at);
-        const Imprint::Stand stand{at, *tool};
+        const Underside under = here.underside(probe);
+        const Imprint::Stand stand{probe, *tool};
         if (held_ != stand) {
             held_ = stand;
-            wakeFull(under, here.reach(at));
+            wakeFull(under, here.reach(probe));
         }
         erosion_.sweep(layer_, sweeps, &under, moved_);
     } else {

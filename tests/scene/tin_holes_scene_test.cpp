@@ -61,13 +61,13 @@ std::vector<Step> strokes(std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
     std::vector<Step> all;
-    sand::ProbePoint at{kRasterSide * 128, kRasterSide * 128, 600};
+    sand::ProbePoint probe{kRasterSide * 128, kRasterSide * 128, 600};
     for (int i = 0; i < steps; ++i) {
         Step step{.epoch = 1, .number = static_cast<std::uint64_t>(i + 1), .engaged = i % 16 < 11, .path = {}};
         for (int points = below(4); points > 0; --points) {
-            at = {std::clamp(at.x + below(801) - 400, 0, kRasterSide * 256),
-                  std::clamp(at.y + below(801) - 400, 0, kRasterSide * 256), 300 + below(900)};
-            step.path.push_back(at);
+            probe = {std::clamp(probe.x + below(801) - 400, 0, kRasterSide * 256),
+                     std::clamp(probe.y + below(801) - 400, 0, kRasterSide * 256), 300 + below(900)};
+            step.path.push_back(probe);
         }
         all.push_back(step);
     }

@@ -33,12 +33,12 @@ std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach, std::
 
 Imprint::Stand decodeStand(base::ByteReader& reader) {
     Imprint::Stand stand;
-    stand.at.x = reader.get<std::int32_t>();
-    stand.at.y = reader.get<std::int32_t>();
-    stand.at.z = reader.get<std::int32_t>();
+    stand.probe.x = reader.get<std::int32_t>();
+    stand.probe.y = reader.get<std::int32_t>();
+    stand.probe.z = reader.get<std::int32_t>();
     stand.tool = base::read<Tool>(reader);
-    const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
-                      std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
+    const bool near = std::min({stand.probe.x, stand.probe.y, stand.probe.z}) >= -kMaxProbe &&
+                      std::max({stand.probe.x, stand.probe.y, stand.probe.z}) <= kMaxProbe;
     if (!near) {
         throw base::FormatError("an imprint with a tool out of range");
     }
@@ -130,7 +130,7 @@ void Imprint::encode(base::ByteWriter& writer) const {
     if (!stand) {
         return;
     }
-    encodePoint(stand->at, writer);
+    encodePoint(stand->probe, writer);
     base::putMember(writer, stand->tool);
     writer.putVarint(points.size());
     for (const Point& point : points) {

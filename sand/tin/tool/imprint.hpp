@@ -25,7 +25,7 @@ struct Imprint {
     };
     /// Position of the outline, and the tool that it belongs to.
     struct Stand {
-        ProbePoint at;
+        ProbePoint probe;
         Tool tool;
         friend bool operator==(const Stand&, const Stand&) = default;
     };

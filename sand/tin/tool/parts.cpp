@@ -37,12 +37,12 @@ Vertex Displacement::partOf(const VertexSand& layer, const Receiver& receiver) {
 }
 
 /// Finds the vertices that the tool covers or that may take sand, and joins those with a common edge on ground.
-void Displacement::findParts(const VertexSand& layer, const ProbePoint& at) {
+void Displacement::findParts(const VertexSand& layer, const ProbePoint& probe) {
     const Triangles& mesh = layer.triangles();
     up_.resize(std::max(up_.size(), mesh.places.size()), kNobody);
     for (const Vertex vertex : neighbourhood_->vertices()) {
         const LatticePoint& place = mesh.places[index(vertex)];
-        const Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+        const Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
         if (layer.stars()[index(vertex)] > 0 && (turned_.takes(offset) || turned_.covers(offset))) {
             up_[index(vertex)] = vertex;
             inParts_.push_back(vertex);
@@ -67,7 +67,7 @@ void Displacement::forgetParts() {
 }
 
 void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& done) {
-    findParts(layer, press.at);
+    findParts(layer, press.probe);
     const std::vector<Cut> cuts = std::exchange(cut_, {});
     const auto receiversOf = [&](bool everywhere) {
         receivers_.clear();
@@ -104,7 +104,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         }
         takeOurs(*around);
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
-            addNeighbours(layer, press.at, [&](Vertex vertex) { return partOf(vertex) == part; });
+            addNeighbours(layer, press.probe, [&](Vertex vertex) { return partOf(vertex) == part; });
         }
         deal(layer, true, done);
     }

@@ -96,8 +96,8 @@ TEST(GridUndo, OfAToolAcrossTheBordersOfTilesRestoresSandThatDoesNotSlide) {
             for (int beside = -9; beside <= 9; ++beside) {
                 sand::Replica replica(scene);
                 replica.apply({1, 1, false, {}});
-                const sand::ProbePoint at{(column - beside) * kProbePerCell, (row + beside) * kProbePerCell, 0};
-                replica.apply({1, 2, true, {at}});
+                const sand::ProbePoint probe{(column - beside) * kProbePerCell, (row + beside) * kProbePerCell, 0};
+                replica.apply({1, 2, true, {probe}});
                 ASSERT_FALSE(sameHeights(samples::fieldOf(replica), scene.terrain));
                 replica.apply({1, 3, false, {}, sand::Edit::undo});
                 ASSERT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain))

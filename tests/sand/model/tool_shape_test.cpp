@@ -78,19 +78,19 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
         for (const Heading& turn : {heading(0), heading(90), heading(30), heading(217.3, true)}) {
             sand::HeightField field(90, 80, 1.0);
             const Tool tool = toolOf(kind, 24, turn);
-            const ProbePoint at{probes(44.3), probes(39.6), probes(20)};
-            Displacement(tool).drag(field, Rim::closed, nullptr, at, at);
+            const ProbePoint probe{probes(44.3), probes(39.6), probes(20)};
+            Displacement(tool).drag(field, Rim::closed, nullptr, probe, probe);
             int below = 0;
             for (int row = 0; row < field.rows(); ++row) {
                 for (int column = 0; column < field.columns(); ++column) {
-                    const long double x = (column + 0.5L) * kProbePerCell - at.x,
-                                      y = (row + 0.5L) * kProbePerCell - at.y;
+                    const long double x = (column + 0.5L) * kProbePerCell - probe.x,
+                                      y = (row + 0.5L) * kProbePerCell - probe.y;
                     const auto depth = depthAt(tool, x, y);
                     if (!depth) {
                         EXPECT_GE(field.height(column, row), 0) << base::nameOf(kind) << " beside";
                         continue;
                     }
-                    const long double underside = (at.z - *depth * tool.radius) * kUnitsPerCell / kProbePerCell;
+                    const long double underside = (probe.z - *depth * tool.radius) * kUnitsPerCell / kProbePerCell;
                     const long double expected = std::min(0.0L, underside);
                     ASSERT_NEAR(static_cast<double>(field.height(column, row) - expected), 0, 1)
                         << base::nameOf(kind) << " at " << column << ", " << row;
@@ -112,10 +112,10 @@ struct Way {
     unsigned bits;
     int columns, rows;
 
-    [[nodiscard]] ProbePoint of(ProbePoint at) const {
-        const std::int32_t x = (bits & 1) != 0 ? columns * kProbePerCell - at.x : at.x;
-        const std::int32_t y = (bits & 2) != 0 ? rows * kProbePerCell - at.y : at.y;
-        return (bits & 4) != 0 ? ProbePoint{y, x, at.z} : ProbePoint{x, y, at.z};
+    [[nodiscard]] ProbePoint of(ProbePoint probe) const {
+        const std::int32_t x = (bits & 1) != 0 ? columns * kProbePerCell - probe.x : probe.x;
+        const std::int32_t y = (bits & 2) != 0 ? rows * kProbePerCell - probe.y : probe.y;
+        return (bits & 4) != 0 ? ProbePoint{y, x, probe.z} : ProbePoint{x, y, probe.z};
     }
     [[nodiscard]] Heading of(Heading turn) const {
         for (const unsigned bit : {1U, 2U, 4U}) {

@@ -23,9 +23,9 @@ using sand::tin::Imprint;
 
 constexpr double kCell = sand::kUnitsPerCell;
 
-Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool, const ProbePoint& at,
+Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool, const ProbePoint& probe,
                          Rim rim = Rim::closed) {
-    return tool.drag(layer, imprint, rim, std::array{at});
+    return tool.drag(layer, imprint, rim, std::array{probe});
 }
 
 double lowest(const VertexSand& layer) {
@@ -35,8 +35,8 @@ double lowest(const VertexSand& layer) {
 }
 
 /// Expects that no vertex below the tool is above its underside.
-void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& at) {
-    const auto underside = tool.underside(at);
+void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& probe) {
+    const auto underside = tool.underside(probe);
     forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         EXPECT_LE(height, underside(place)) << "vertex " << vertex;
     });
@@ -156,8 +156,8 @@ TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
         Displacement tool(toolOf(static_cast<ToolKind>(kind), 7, *sand::headingOf(31)), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
-        const ProbePoint at = probeAt(20, 15, 6);
-        press(layer, imprint, tool, at);
+        const ProbePoint probe = probeAt(20, 15, 6);
+        press(layer, imprint, tool, probe);
         EXPECT_FALSE(layer.mesh().constraints().empty());
         EXPECT_FALSE(imprint.points.empty());
         const double deep = lowest(layer);
@@ -216,8 +216,8 @@ TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
     Displacement tool(toolOf(ToolKind::ellipsoid, 4), fineRules());
     const std::array<ProbePoint, 4> poses{probeAt(-20, 15, 0), probeAt(60, 60, -10), probeAt(15, 15, 4.5),
                                           ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, -sand::kMaxProbe}};
-    for (const ProbePoint& at : poses) {
-        EXPECT_TRUE(press(layer, imprint, tool, at).touched.empty());
+    for (const ProbePoint& probe : poses) {
+        EXPECT_TRUE(press(layer, imprint, tool, probe).touched.empty());
     }
     tool.leave(layer, imprint);
     EXPECT_EQ(bytesOf(layer), before);
@@ -255,9 +255,9 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
         Displacement tool(toolOf(ToolKind::sphere, 4), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
-        const ProbePoint at = probeAt(0, 0, 2);
-        const Displacement::Work done = press(layer, imprint, tool, at, rim);
-        expectClear(layer, tool, at);
+        const ProbePoint probe = probeAt(0, 0, 2);
+        const Displacement::Work done = press(layer, imprint, tool, probe, rim);
+        expectClear(layer, tool, probe);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
         // Each vertex of the ring takes sand in proportion to its star. A quarter of the ring lies in the field.
         double kept = 0, stars = 0;
@@ -352,11 +352,11 @@ TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
     Displacement tool(toolOf(ToolKind::rectangle, 5, *sand::headingOf(10)), DetailRules{});
     Imprint imprint;
     const auto before = layer.volume();
-    const ProbePoint at = probeAt(20, 20, 4);
-    const Displacement::Work done = press(layer, imprint, tool, at);
+    const ProbePoint probe = probeAt(20, 20, 4);
+    const Displacement::Work done = press(layer, imprint, tool, probe);
     EXPECT_EQ(done.touched.size(), 36U);  // 32 control points and the field's corners
     EXPECT_EQ(layer.mesh().constraints().size(), 32U);
-    expectClear(layer, tool, at);
+    expectClear(layer, tool, probe);
     EXPECT_TRUE(layer.volume() == before);
 }
 

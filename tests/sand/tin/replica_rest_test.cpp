@@ -126,16 +126,16 @@ TEST_F(TinReplica, NoSandSlidesBecauseItLeansOnAToolWhichHasMovedNone) {
                                           << "\n[material]\ntalus_deg = 34\n[tool]\nshape = \"circle\"\nradius = 0.5\n";
     const scene::Scene scene = scene::loadScene(folder_ / "slope.toml");
     int slid = 0;
-    for (sand::ProbePoint at : places) {
-        at.z += scene.rules.tuning.tool.radius;
+    for (sand::ProbePoint probe : places) {
+        probe.z += scene.rules.tuning.tool.radius;
         Replica replica(scene), fresh(scene);
         replica.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
         ASSERT_TRUE(replica.settled());
         fresh.decodeState(replica.encodeState());
         for (Replica* one : {&replica, &fresh}) {
-            one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {at}});
+            one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {probe}});
         }
-        ASSERT_EQ(fresh.stateHash(), replica.stateHash()) << at.x << ", " << at.y;
+        ASSERT_EQ(fresh.stateHash(), replica.stateHash()) << probe.x << ", " << probe.y;
         slid += replica.settled() ? 0 : 1;
     }
     EXPECT_EQ(slid, 0);

@@ -89,9 +89,9 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
     hashes.add("an imprint", with([](TinState&) {}));
     hashes.add("outflow", with([](TinState& state) { state.outflow = 1; }));
     hashes.add("the next to go", with([](TinState& state) { state.nextToGo = 1; }));
-    hashes.add("x", with([](TinState& state) { state.imprint.stand->at.x = 1; }));
-    hashes.add("y", with([](TinState& state) { state.imprint.stand->at.y = 1; }));
-    hashes.add("z", with([](TinState& state) { state.imprint.stand->at.z = 1; }));
+    hashes.add("x", with([](TinState& state) { state.imprint.stand->probe.x = 1; }));
+    hashes.add("y", with([](TinState& state) { state.imprint.stand->probe.y = 1; }));
+    hashes.add("z", with([](TinState& state) { state.imprint.stand->probe.z = 1; }));
     hashes.add("kind", with([](TinState& state) { state.imprint.stand->tool.kind = sand::ToolKind::footprint; }));
     hashes.add("radius", with([](TinState& state) { state.imprint.stand->tool.radius = 501; }));
     hashes.add("width", with([](TinState& state) { state.imprint.stand->tool.halfWidth = 201; }));
