@@ -94,7 +94,7 @@ void Cluster::farewell() const {
     }
 }
 
-void Cluster::tellLastWords(std::vector<std::string> names, LastWords lastWords) const {
+void Cluster::setLastWords(std::vector<std::string> names, LastWords lastWords) const {
     const std::lock_guard lock(mutex_);
     if (!names.empty()) {
         names_ = std::move(names);

@@ -94,7 +94,7 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& r
     // Collects the values of the first odd rank's tile from all ranks. One wrong value suggests a bit flip, many
     // suggest a bug.
     const TileRequest request{result.odd.empty() ? -1 : result.odd.front().tile};
-    const int tile = base::decoded<TileRequest>(barrier.tellAll(base::encoded(request))).tile;
+    const int tile = base::decoded<TileRequest>(barrier.broadcast(base::encoded(request))).tile;
     const auto heights = collectHeights(barrier, replica, tile);
     if (!barrier.cluster().isMaster()) {
         return std::nullopt;

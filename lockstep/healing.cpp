@@ -6,7 +6,7 @@
 namespace lockstep {
 
 Healing heal(FrameBarrier& barrier, sand::Replica& replica, const Remedy& fromMaster) {
-    const Remedy remedy = base::decoded<Remedy>(barrier.tellAll(base::encoded(fromMaster)));
+    const Remedy remedy = base::decoded<Remedy>(barrier.broadcast(base::encoded(fromMaster)));
     if (!remedy.goOn) {
         return Healing::ended;
     }

@@ -74,7 +74,7 @@ private:
     std::filesystem::path file_;
     Incidents before_, kept_;
     std::int64_t triedNs_ = 0;
-    bool toldFailure_ = false;  // since the last write that succeeded
+    bool printedFailure_ = false;  // since the last write that succeeded
 };
 
 }  // namespace master

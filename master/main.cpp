@@ -195,7 +195,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
 }
 
 /// Makes the watchdog of the start and the end write failure.json. `wall` is null until it is known.
-void tellLastWords(const lockstep::Cluster& cluster, const Options& options, const walls::Wall* wall) {
+void setLastWords(const lockstep::Cluster& cluster, const Options& options, const walls::Wall* wall) {
     master::RankLabels labels;
     if (wall != nullptr) {
         labels = master::RankLabels::of(cluster, *wall);
@@ -205,7 +205,7 @@ void tellLastWords(const lockstep::Cluster& cluster, const Options& options, con
         }
         labels.tiles.resize(labels.hosts.size());
     }
-    cluster.tellLastWords(labels.names, [labels, out = options.out](int rank, const std::string& line) {
+    cluster.setLastWords(labels.names, [labels, out = options.out](int rank, const std::string& line) {
         (void)master::writeFailure(labels.failure("hung", rank, line), out);
     });
 }
@@ -213,10 +213,10 @@ void tellLastWords(const lockstep::Cluster& cluster, const Options& options, con
 int runSession(const lockstep::Cluster& cluster, Options& options) {
     std::optional<World> world;
     bool sessionOpen = false;
-    tellLastWords(cluster, options, nullptr);
+    setLastWords(cluster, options, nullptr);
     try {
         world.emplace(loadWorld(cluster, options));
-        tellLastWords(cluster, options, &world->wall);
+        setLastWords(cluster, options, &world->wall);
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
@@ -381,7 +381,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     lockstep::dieWithParent();
-    host::tellRankLog();
+    host::sendRankLog();
     // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);
     bool parsed = false;

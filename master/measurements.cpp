@@ -70,8 +70,8 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
     }
 }
 
-void Measurements::sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
-                               bool last, std::int64_t nowNs) {
+void Measurements::printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
+                                 bool last, std::int64_t nowNs) {
     if (!last && nowNs - lastProgress_ < kSecondNs) {
         return;
     }

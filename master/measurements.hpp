@@ -46,8 +46,8 @@ public:
 
     /// Prints the line of progress and emits the event `progress`, at most once per second, and always if `last` is
     /// true.
-    void sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
-                     std::int64_t nowNs);
+    void printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
+                       std::int64_t nowNs);
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
     /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.

@@ -70,7 +70,7 @@ public:
 
     /// Answers all clients that wait for an edit that the edit waits for room on the disk. The haptic server may
     /// already have these edits, so they cannot be taken back. They are done when there is room.
-    void tellWhoWaitsForRoom();
+    void answerEditsThatWaitForRoom();
     /// Answers the clients whose edits are in `steps`, which the wall shows now.
     void answer(const std::vector<haptic_bridge::TimedStep>& steps);
     /// Calls Captures::take. A later obey() answers the clients.

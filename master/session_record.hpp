@@ -86,7 +86,7 @@ private:
     template <class Write>
     void onDisk(const Write& write);
     [[noreturn]] void endForDisk(const DiskFailure& failure) const;
-    void tellRecovery(std::uint64_t frame, const MasterSand& sand) const;
+    void reportRecovery(std::uint64_t frame, const MasterSand& sand) const;
 
     const std::filesystem::path out_;
     const RecordOptions options_;

@@ -40,7 +40,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     lockstep::dieWithParent();
-    host::tellRankLog();
+    host::sendRankLog();
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);

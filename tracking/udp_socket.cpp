@@ -106,10 +106,10 @@ std::optional<std::span<const std::uint8_t>> UdpReceiver::next() {
 }
 
 std::uint64_t UdpReceiver::strangers() const {
-    std::array<std::uint32_t, SK_MEMINFO_VARS> told{};
-    socklen_t size = sizeof told;
-    const bool known = from_ && getsockopt(native_, SOL_SOCKET, SO_MEMINFO, told.data(), &size) == 0;
-    return strangers_ + (known ? told[SK_MEMINFO_DROPS] : 0);
+    std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
+    socklen_t size = sizeof info;
+    const bool known = from_ && getsockopt(native_, SOL_SOCKET, SO_MEMINFO, info.data(), &size) == 0;
+    return strangers_ + (known ? info[SK_MEMINFO_DROPS] : 0);
 }
 
 UdpSender::UdpSender(const std::string& host, std::uint16_t port) : to_(asio::ip::make_address(host), port) {

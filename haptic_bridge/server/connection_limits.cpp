@@ -61,19 +61,19 @@ std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& 
                                            std::int64_t nowNs) {
     count(code);
     std::pair key{address, code};
-    if (!said_.contains(key) && said_.size() >= kRemembered) {
-        std::erase_if(said_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
-        if (said_.size() >= kRemembered) {
+    if (!printed_.contains(key) && printed_.size() >= kRemembered) {
+        std::erase_if(printed_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
+        if (printed_.size() >= kRemembered) {
             key = {"", code};
         }
     }
-    const auto [said, first] = said_.try_emplace(key, Said{nowNs, 0});
-    if (!first && nowNs - said->second.ns < kQuietNs) {
-        ++said->second.more;
+    const auto [printed, first] = printed_.try_emplace(key, Printed{nowNs, 0});
+    if (!first && nowNs - printed->second.ns < kQuietNs) {
+        ++printed->second.more;
         return std::nullopt;
     }
-    const std::uint64_t more = said->second.more;
-    said->second = {nowNs, 0};
+    const std::uint64_t more = printed->second.more;
+    printed->second = {nowNs, 0};
     return more == 0 ? line : fmt::format("{} (and {} more of this kind since the last such line)", line, more);
 }
 

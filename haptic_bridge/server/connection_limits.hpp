@@ -54,12 +54,12 @@ public:
     [[nodiscard]] const RefusalCounts& counts() const { return counts_; }
 
 private:
-    struct Said {
+    struct Printed {
         std::int64_t ns = 0;
         std::uint64_t more = 0;
     };
     RefusalCounts counts_{};
-    std::map<std::pair<std::string, RefusalCode>, Said> said_;
+    std::map<std::pair<std::string, RefusalCode>, Printed> printed_;
 };
 
 /// Admits unauthenticated connections as often as ConnectionLimits allows, and logs refusals with the reason. `log`

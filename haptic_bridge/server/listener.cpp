@@ -101,11 +101,11 @@ void Listener::shut(const std::string& reason) {
         connection->makeRoom();
     }
     for (const auto& watcher : roster_->watchers()) {
-        watcher->sayGoodbye(reason);
+        watcher->sendGoodbye(reason);
     }
     if (const auto master = roster_->master()) {
         last = master->connection();
-        master->sayGoodbye(reason);
+        master->sendGoodbye(reason);
     }
     stopWhenGone(last, 60);
 }

@@ -139,7 +139,7 @@ void Peer::take(const Bye&) {
     if (phase_ <= Phase::proving) {
         outOfTurn();
     } else {
-        sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
+        sendGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
     }
 }
 
@@ -315,7 +315,7 @@ Report Peer::report() const {
     return report;
 }
 
-void Peer::sayGoodbye(const std::string& reason) {
+void Peer::sendGoodbye(const std::string& reason) {
     if (phase_ == Phase::over || phase_ == Phase::leaving) {
         return;
     }

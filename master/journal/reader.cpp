@@ -144,20 +144,20 @@ bool JournalReader::readRecord(base::Bytes& body) {
     if (length > size_ - place_.offset - static_cast<std::int64_t>(kAroundPayload)) {
         return false;
     }
-    std::uint64_t said = 0;
-    const std::size_t wanted = std::size_t{length} + 1 + sizeof said;
+    std::uint64_t stored = 0;
+    const std::size_t wanted = std::size_t{length} + 1 + sizeof stored;
     if (readInto(stream_, body, static_cast<std::int64_t>(wanted)).size() != wanted) {
         return false;
     }
-    std::memcpy(&said, body.data() + body.size() - sizeof said, sizeof said);
-    body.resize(body.size() - sizeof said);
-    if (recordChecksum(body, place_.chain) != said) {
+    std::memcpy(&stored, body.data() + body.size() - sizeof stored, sizeof stored);
+    body.resize(body.size() - sizeof stored);
+    if (recordChecksum(body, place_.chain) != stored) {
         return false;
     }
     if (const auto mark = markOf(body); mark && *mark != static_cast<std::uint64_t>(place_.offset)) {
         return false;
     }
-    place_.chain = said;
+    place_.chain = stored;
     return true;
 }
 

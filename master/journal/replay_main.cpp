@@ -208,7 +208,7 @@ int run(const Options& options) {
     }
     const master::Journal journal = master::readJournal(options.file);
     if (options.steps.empty()) {  // the export has printed it
-        master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+        master::printMissing(options.file, journal.tornBytes, journal.end.has_value());
     }
     sand::Replica replica(journal.scene);
     Forces forces(journal, options);

@@ -29,11 +29,11 @@ public:
     using base::InputError::InputError;
 };
 
-void requireHash(sand::Replica& replica, const JournalEnd& said, const fs::path& journal) {
-    if (replica.stepNumber() == said.step && replica.stateHash() != said.hash) {
+void requireHash(sand::Replica& replica, const JournalEnd& recorded, const fs::path& journal) {
+    if (replica.stepNumber() == recorded.step && replica.stateHash() != recorded.hash) {
         throw OtherSand(fmt::format(
             "{}: after step {} the session had {:016x}, the replay has {:016x}; it is of another version or damaged",
-            journal.string(), said.step, said.hash, replica.stateHash()));
+            journal.string(), recorded.step, recorded.hash, replica.stateHash()));
     }
 }
 

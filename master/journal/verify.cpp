@@ -32,7 +32,7 @@ public:
             ++records_;
             std::visit(*this, *record);
         }
-        say();
+        print();
         return differing_ == 0 && badCheckpoints_ == 0 ? 0 : 1;
     }
 
@@ -78,14 +78,14 @@ public:
     void operator()(const JournalForce&) {}
 
 private:
-    void compare(const JournalEnd& said) {
+    void compare(const JournalEnd& recorded) {
         ++hashes_;
-        if (said.step == replica_.stepNumber() && said.hash == replica_.stateHash()) {
+        if (recorded.step == replica_.stepNumber() && recorded.hash == replica_.stateHash()) {
             return;
         }
         if (differing_++ == 0) {
-            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", said.step, said.hash,
-                            replica_.stateHash());
+            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", recorded.step,
+                            recorded.hash, replica_.stateHash());
         }
     }
     void compareCheckpoint() {
@@ -102,7 +102,7 @@ private:
         }
         badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;
     }
-    void say() {
+    void print() {
         const FileOrigin& origin = reader_.header().origin;
         fmt::print("origin       sandwall {}, journal format {}, algorithm {}\n", origin.release, origin.format,
                    origin.algorithm);

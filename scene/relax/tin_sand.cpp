@@ -68,8 +68,8 @@ Lattice latticeOf(const Extent& extent) {
     for (const std::size_t axis : {0U, 1U}) {
         farthest = std::max({farthest, std::abs(extent.least.at(axis)), std::abs(extent.most.at(axis))});
     }
-    const double told = std::nextafter(farthest, HUGE_VAL) - farthest;
-    const auto [step, fine] = exactStep(std::max(longer / kStepsAcross, kFineSteps * told));
+    const double rounding = std::nextafter(farthest, HUGE_VAL) - farthest;
+    const auto [step, fine] = exactStep(std::max(longer / kStepsAcross, kFineSteps * rounding));
     return {{std::floor(extent.least[0] / fine) * fine, std::floor(extent.least[1] / fine) * fine, step}, 0, 0};
 }
 

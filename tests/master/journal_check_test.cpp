@@ -144,7 +144,7 @@ TEST_F(Check, AResumedSessionTakesTheSandOfTheJournalAndNamesTheMajority) {
     EXPECT_EQ(resumed->hash, replica_.stateHash());
     ASSERT_TRUE(resumed->outvoted.has_value());
     EXPECT_EQ(resumed->outvoted->majority.sand.step, step);
-    check_.tellResumed(*resumed->outvoted);
+    check_.reportResumed(*resumed->outvoted);
     EXPECT_EQ(incidents_.outvoted, 1U);
     EXPECT_FALSE(check_.pending());
     // Once the session has resumed, the majority is no longer in doubt.

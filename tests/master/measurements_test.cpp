@@ -117,12 +117,12 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
 TEST(Measurements, SayHowManyFramesASecondHas) {
     Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     constexpr std::int64_t kStart = 1'000'000 * kMs;
-    measurements.sayProgress(1, 1, "", "no hand", false, kStart);
-    measurements.sayProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
+    measurements.printProgress(1, 1, "", "no hand", false, kStart);
+    measurements.printProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
     nlohmann::json status;
     measurements.describe(status, {});
     EXPECT_EQ(status["fps"], 0) << "less than a second has passed";
-    measurements.sayProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
+    measurements.printProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
     measurements.describe(status, {});
     EXPECT_NEAR(status["fps"].get<double>(), 60, 1e-9);
     EXPECT_EQ(status["slowest"], nullptr);

@@ -63,8 +63,8 @@ TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
                                       {"journal_state", "written"},
                                       {"checkpoints_failed", 0},
                                       {"restarts", 0}}));
-    master::tellRecovery({}, folder_);
-    master::tellRecovery({}, folder_);
+    master::reportRecovery({}, folder_);
+    master::reportRecovery({}, folder_);
     record.describe(status);
     EXPECT_EQ(status["restarts"], 2);
     EXPECT_EQ(record.summary().parts, 1U);

@@ -90,16 +90,16 @@ inline VertexSand layerOf(Kind kind, int n, double degrees = 0, std::uint32_t se
 template <class Visit>
 void everywhereIn(const std::array<LatticePoint, 3>& at, const Visit& visit) {
     constexpr int kParts = 16;
-    const auto tell = [&](double a, double b) {
+    const auto visitPoint = [&](double a, double b) {
         const std::array<double, 3> weights{a / kParts, b / kParts, 1 - (a + b) / kParts};
         visit(weights, (weights[0] * at[0].x + weights[1] * at[1].x + weights[2] * at[2].x) / kCell,
               (weights[0] * at[0].y + weights[1] * at[1].y + weights[2] * at[2].y) / kCell);
     };
     for (int i = 0; i < kParts; ++i) {
         for (int j = 0; i + j < kParts; ++j) {
-            tell(i + 1 / 3.0, j + 1 / 3.0);
+            visitPoint(i + 1 / 3.0, j + 1 / 3.0);
             if (i + j + 1 < kParts) {
-                tell(i + 2 / 3.0, j + 2 / 3.0);
+                visitPoint(i + 2 / 3.0, j + 2 / 3.0);
             }
         }
     }

@@ -21,13 +21,13 @@ namespace test {
 class SandServer {
 public:
     /// Returns the hash to send with a step of link number `link`, from 1 on; `hash` is the right one.
-    using Say = std::function<std::uint64_t(int link, std::uint64_t step, std::uint64_t hash)>;
+    using HashToSend = std::function<std::uint64_t(int link, std::uint64_t step, std::uint64_t hash)>;
     static std::uint64_t truth(int /*link*/, std::uint64_t /*step*/, std::uint64_t hash) { return hash; }
 
-    explicit SandServer(const scene::Scene& scene, Say say = truth)
+    explicit SandServer(const scene::Scene& scene, HashToSend hashToSend = truth)
         : identity_{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name},
           stepsPerSecond_(static_cast<std::uint32_t>(scene.rules.stepsPerSecond)),
-          say_(std::move(say)),
+          hashToSend_(std::move(hashToSend)),
           sand_(scene),
           server_([this](FakeServer::Connection& connection) { talk(connection); }) {}
 
@@ -83,14 +83,14 @@ private:
             obey(connection, *message);
             if (const auto leaving = leaving_.exchange(haptic_bridge::Audited::no);
                 leaving != haptic_bridge::Audited::no) {
-                sayGoodbye(connection, leaving);
+                sendGoodbye(connection, leaving);
                 lied_ = true;
                 return;
             }
         }
     }
 
-    static void sayGoodbye(const FakeServer::Connection& connection, haptic_bridge::Audited audited) {
+    static void sendGoodbye(const FakeServer::Connection& connection, haptic_bridge::Audited audited) {
         haptic_bridge::Report last;
         last.audited = audited;
         connection.send(last);
@@ -107,7 +107,7 @@ private:
         } else if (const auto* share = std::get_if<haptic_bridge::ForceShare>(&message)) {
             keepShare(*share);
         } else if (std::holds_alternative<haptic_bridge::Bye>(message) && answer_) {
-            sayGoodbye(connection, *answer_);
+            sendGoodbye(connection, *answer_);
         }
     }
 
@@ -127,7 +127,7 @@ private:
         }
         const std::uint64_t step = links_ > 0 ? claimed_.value_or(sand_.stepNumber()) : sand_.stepNumber();
         connection.reader.expectState(true);
-        connection.send(haptic_bridge::NeedState{step, said_.contains(step) ? said_[step] : sand_.stateHash()});
+        connection.send(haptic_bridge::NeedState{step, sent_.contains(step) ? sent_[step] : sand_.stateHash()});
         while (const auto message = connection.next()) {
             if (const auto* state = std::get_if<haptic_bridge::State>(&*message)) {
                 ++states_;
@@ -153,17 +153,17 @@ private:
         }
         sand_.apply(message.step);
         const std::uint64_t hash = sand_.stateHash();
-        message.stateHash = said_[message.step.number] = say_(link, message.step.number, hash);
+        message.stateHash = sent_[message.step.number] = hashToSend_(link, message.step.number, hash);
         lied_ = lied_ || message.stateHash != hash;
         connection.send(message);
     }
 
     const haptic_bridge::Identity identity_;
     const std::uint32_t stepsPerSecond_;
-    const Say say_;
+    const HashToSend hashToSend_;
     // For the server thread only.
     sand::Replica sand_;
-    std::map<std::uint64_t, std::uint64_t> said_;  // hashes that were sent, by step
+    std::map<std::uint64_t, std::uint64_t> sent_;  // hashes that were sent, by step
     std::optional<sand::Edit> edit_;               // edit for the next step
     bool lied_ = false;                            // sent a wrong hash; its sand counts as wrong until it gets a state
 

@@ -239,7 +239,7 @@ TEST(LoopFuzz, EveryPushOfARandomServerKeepsTheBoundsAndIsOnRecord) {
         }
         ASSERT_FALSE(HasFailure()) << test::again(seed + i);
     }
-    counts.tell(kLoopCount, "loop", count, seed);
+    counts.print(kLoopCount, "loop", count, seed);
 }
 
 }  // namespace

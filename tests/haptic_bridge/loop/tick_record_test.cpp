@@ -41,7 +41,7 @@ scene::Scene ramp() {
 class Recorded : public testing::Test {
 protected:
     void open(const std::string& file) {
-        open(file, [this](const std::string& line) { told_.push_back(line); });
+        open(file, [this](const std::string& line) { printed_.push_back(line); });
     }
     void open(const std::string& file, std::function<void(const std::string&)> log) {
         hand_ = std::make_unique<HapticTick>(
@@ -104,7 +104,7 @@ protected:
     FeltSand surface_;
     std::vector<sand::Step> steps_;
     std::vector<base::Bytes> pieces_;
-    std::vector<std::string> told_;
+    std::vector<std::string> printed_;
     std::int64_t ticks_ = 0;
     int engaged_ = 0;
 };
@@ -121,7 +121,7 @@ TEST_F(Recorded, ReplaysToTheSameRowsByteForByte) {
     EXPECT_EQ(rows, written());
     EXPECT_EQ(replay.left(), 0U);
     EXPECT_NE(rows.find(",1\n"), std::string::npos);
-    EXPECT_TRUE(told_.empty());
+    EXPECT_TRUE(printed_.empty());
 }
 
 TEST_F(Recorded, LeavesOutTicksOfStepsThatWereNotShown) {
@@ -193,10 +193,10 @@ TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
         open(file);
         sit(20);
         recorder_.reset();
-        ASSERT_EQ(told_.size(), 1U);
-        EXPECT_EQ(told_[0], "--record " + file +
-                                ": cannot be written (No space left on device); the file ends here, and the session "
-                                "continues");
+        ASSERT_EQ(printed_.size(), 1U);
+        EXPECT_EQ(printed_[0], "--record " + file +
+                                   ": cannot be written (No space left on device); the file ends here, and the session "
+                                   "continues");
         const std::string written = folder_.read("ticks.csv");
         EXPECT_TRUE(written.empty() || written.ends_with('\n')) << "a whole row";
         TickReplay replay(scene_, pieces_);

@@ -52,8 +52,8 @@ public:
         share(std::nullopt);
         maker_.release();
     }
-    void share(const std::optional<haptic_bridge::ForceShare>& told) {
-        hand_->shareForce(haptic_bridge::feltShare(ceiling_, told));
+    void share(const std::optional<haptic_bridge::ForceShare>& sent) {
+        hand_->shareForce(haptic_bridge::feltShare(ceiling_, sent));
     }
     void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
 
