@@ -216,7 +216,7 @@ void Cluster::abort(int status) const {
     std::_Exit(status);
 }
 
-void dieWithParent() {
+void endWithParent() {
     const pid_t parent = getppid();
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     // If the parent ended before the call, the kernel sends no signal.

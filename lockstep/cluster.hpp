@@ -103,7 +103,7 @@ private:
 
 /// Asks the kernel to kill this process when its parent process (mpirun, its daemon or the launcher) ends. No process
 /// then outlives the job, even if mpirun is killed.
-void dieWithParent();
+void endWithParent();
 
 [[nodiscard]] std::string hostName();
 /// Returns the name of this machine and the id of its last start, "node01/3f2a…". No two machines have the same, also

@@ -380,7 +380,7 @@ int main(int argc, char** argv) {
     if (line.answersHelp(argc, argv)) {
         return 0;
     }
-    lockstep::dieWithParent();
+    lockstep::endWithParent();
     host::sendRankLog();
     // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);

@@ -114,7 +114,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
     const bool last = ends() || shownThen >= options_.steps;
     frame.stop = last && check_.mayEnd(now, shownThen);
-    frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.wantsCapture());
+    frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
     // The last frame compares the whole sand, because no later frame finds what is wrong now.
     frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
     return frame;
@@ -196,7 +196,7 @@ bool Session::agree(const lockstep::FrameMessage& frame) {
 Incidents Session::incidents() const {
     Incidents all = counted_;
     all.firstDifference = check_.firstDifference();
-    all.stands += record_.stands();
+    all.stops += record_.stops();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
     all.reconnects += link.reconnects;

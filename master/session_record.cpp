@@ -169,7 +169,7 @@ Summary::Journal SessionRecord::summary() const {
     result.checkpointsFailed = journal_->checkpointsFailed();
     result.checkpointsBeyond = journal_->checkpointsBeyond();
     result.whole = journal_->whole();
-    result.stoodSeconds = journal_->stoodSeconds();
+    result.stoppedSeconds = journal_->stoppedSeconds();
     for (const double ms : journal_->copyMs()) {
         result.checkpointMs.add(ms);
     }

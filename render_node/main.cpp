@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     if (line.answersHelp(argc, argv)) {
         return 0;
     }
-    lockstep::dieWithParent();
+    lockstep::endWithParent();
     host::sendRankLog();
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {

@@ -57,7 +57,7 @@ void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
     help_.reset();
 }
 
-void TilePainter::drawAnew() {
+void TilePainter::drawAgain() {
     memories_.assign(memories_.size(), {});
     shown_.assign(shown_.size(), lockstep::Pattern::none);
 }

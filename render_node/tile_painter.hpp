@@ -48,7 +48,7 @@ public:
     void showAs(const walls::Wall& wall, const walls::Tile& tile);
 
     /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.
-    void drawAnew();
+    void drawAgain();
 
     /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL;
     /// GlContext::present() does. Throws std::runtime_error if a shader of an overlay or a test pattern does not

@@ -164,7 +164,7 @@ private:
                 return false;
             }
             if (healing == lockstep::Healing::healed) {
-                painter_->drawAnew();
+                painter_->drawAgain();
                 draw(frame, figures);
             }
             mine.stateHash = replica_->stateHash();

@@ -40,7 +40,7 @@ struct Options {
     Guards::Mode guards = Guards::Mode::on;
     int sandThreads = 1;
     TimingTests tests;
-    bool dieWithParent = false;
+    bool endWithParent = false;
     std::string record;
     bool force = true;
     double forceScale = 1;
@@ -294,7 +294,7 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
     host::addSandThreads(line, options.sandThreads).offeredBy({"run"});
-    line.flag("--die-with-parent", options.dieWithParent, "end in order when the program that started this one ends");
+    line.flag("--die-with-parent", options.endWithParent, "end in order when the program that started this one ends");
 }
 
 }  // namespace
@@ -315,7 +315,7 @@ int main(int count, char** words) {
         return *status;
     }
     try {
-        if (options.dieWithParent) {
+        if (options.endWithParent) {
             endWithParent(parent);
         }
         serve(options);

@@ -112,7 +112,7 @@ void JournalReader::fail(const std::string& why) const {
     throw base::InputError(fmt::format("{}: {}", partOf(place_.journal, place_.part).string(), why));
 }
 
-bool JournalReader::goesOn() const {
+bool JournalReader::continues() const {
     const fs::path file = partOf(place_.journal, place_.part + 1);
     std::error_code none;
     std::ifstream next;
@@ -172,7 +172,7 @@ void JournalReader::endHere(const std::string& why) {
             fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_, why));
         }
     }
-    if (goesOn()) {
+    if (continues()) {
         fail(fmt::format(
             "cut off at byte {}, but {} continues the session after missing records; everything before is intact",
             place_.offset, partOf(place_.journal, place_.part + 1).filename().string()));

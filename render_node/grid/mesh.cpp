@@ -173,7 +173,7 @@ void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visi
 int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
     Chunk& asked = chunk(x, y);
     if (asked.chosenFor != choice_) {
-        if (!asked.measured && !rule.wantsEveryCell()) {
+        if (!asked.measured && !rule.needsEveryCell()) {
             asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
             asked.measured = true;
         }

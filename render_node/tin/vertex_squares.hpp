@@ -21,7 +21,7 @@ public:
         : side_(side),
           columns_(numberOf(width) + 1),
           rows_(numberOf(depth) + 1),
-          standing_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+          vertices_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
     void add(Vertex vertex, const LatticePoint& place) { around(place).push_back(vertex); }
     /// Removes a vertex that was added at `place`.
@@ -38,7 +38,7 @@ public:
                   north = std::min(numberOf(northEast.y), rows_ - 1);
         for (int row = std::max(numberOf(southWest.y), 0); row <= north; ++row) {
             for (int column = std::max(numberOf(southWest.x), 0); column <= east; ++column) {
-                std::for_each(standing_[at(column, row)].begin(), standing_[at(column, row)].end(), visit);
+                std::for_each(vertices_[at(column, row)].begin(), vertices_[at(column, row)].end(), visit);
             }
         }
     }
@@ -49,12 +49,12 @@ private:
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
     [[nodiscard]] std::vector<Vertex>& around(const LatticePoint& place) {
-        return standing_[at(numberOf(place.x), numberOf(place.y))];
+        return vertices_[at(numberOf(place.x), numberOf(place.y))];
     }
 
     double side_;
     int columns_, rows_;
-    std::vector<std::vector<Vertex>> standing_;  // row by row from the south-west
+    std::vector<std::vector<Vertex>> vertices_;  // row by row from the south-west
 };
 
 }  // namespace render_node

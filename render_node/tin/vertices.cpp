@@ -10,7 +10,7 @@
 namespace render_node {
 namespace {
 
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangles;
@@ -30,7 +30,7 @@ TinTriangle TinSurface::drawnOf(const sand::tin::Triangle& triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t from = (static_cast<std::size_t>(least) + i) % 3;
         drawn.corner[i] = triangle.corner[from];
-        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != kNobody;
+        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != kNoNumber;
     }
     return drawn;
 }
@@ -179,7 +179,7 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
         TinVertex& drawn = vertex(number);
         const TinVertex before = std::exchange(drawn, placed(tin, number));
         if (before.x != drawn.x || before.y != drawn.y) {
-            standElsewhere(number, before);
+            moveSquare(number, before);
         }
         if (drawn.x >= 0) {
             drawn.mottling = mottlingOf(drawn.x, drawn.y);
@@ -190,7 +190,7 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
     return rim;
 }
 
-void TinSurface::standElsewhere(Vertex number, const TinVertex& before) {
+void TinSurface::moveSquare(Vertex number, const TinVertex& before) {
     const TinVertex& drawn = vertex(number);
     if (before.x >= 0) {
         squares_.remove(number, {before.x, before.y});

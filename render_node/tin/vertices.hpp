@@ -35,9 +35,9 @@ static_assert(sizeof(TinVertex) == 20);
 /// Triangle of a TIN, as it is drawn. Its corners are counter-clockwise and begin with the smallest number. So all
 /// replicas compute it alike, although their meshes may have other slots and begin with other corners.
 struct TinTriangle {
-    std::array<sand::tin::Vertex, 3> corner{sand::tin::kNobody, sand::tin::kNobody, sand::tin::kNobody};
+    std::array<sand::tin::Vertex, 3> corner{sand::tin::kNoNumber, sand::tin::kNoNumber, sand::tin::kNoNumber};
     std::array<bool, 3> marked{};  // whether the edge opposite the corner is a constraint inside the field
-    [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNobody; }
+    [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNoNumber; }
     friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
 };
 
@@ -116,7 +116,7 @@ private:
     [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex vertex) const;
     [[nodiscard]] std::vector<Vertex> moved(const sand::tin::SurfaceView& tin, std::span<const Vertex> asked) const;
     [[nodiscard]] bool move(const sand::tin::SurfaceView& tin, std::span<const Vertex> vertices);
-    void standElsewhere(Vertex vertex, const TinVertex& before);
+    void moveSquare(Vertex vertex, const TinVertex& before);
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);

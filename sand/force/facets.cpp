@@ -180,10 +180,10 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::LatticePoint& midd
     };
     index_.clear();
     slots_.clear();
-    take(locate(mesh, middle, tin::kNobody).triangle);
+    take(locate(mesh, middle, tin::kNoNumber).triangle);
     for (std::size_t i = 0; i < slots_.size() && slots_.size() <= kMost; ++i) {
         for (const std::int32_t beyond : mesh.triangles[at(slots_[i])].neighbour) {
-            if (beyond != tin::kNobody) {
+            if (beyond != tin::kNoNumber) {
                 take(beyond);
             }
         }
@@ -205,7 +205,7 @@ void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Latt
         y[k] = kParts * (place.y - middle.y);
         height[k] = tin.heights[at(triangle.corner[from])] * unit_ * kProbePerCell / kUnitsPerCell;
         const std::int32_t beyond =
-            triangle.neighbour[from] == tin::kNobody ? -1 : index_.find(triangle.neighbour[from]);
+            triangle.neighbour[from] == tin::kNoNumber ? -1 : index_.find(triangle.neighbour[from]);
         facet.beyond[k] = static_cast<std::int16_t>(beyond);
     }
     for (std::size_t side = 0; side < 3; ++side) {

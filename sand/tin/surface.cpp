@@ -147,7 +147,7 @@ void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
-    sawAll_ = state_.imprint.stand && state_.imprint.stand->probe == path.back();
+    sawAll_ = state_.imprint.pose && state_.imprint.pose->probe == path.back();
 }
 
 void TinSurface::leave(const Tool& tool) {
@@ -166,9 +166,9 @@ void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
     if (tool != nullptr) {
         const Displacement& here = displacementOf(*tool);
         const Underside under = here.underside(probe);
-        const Imprint::Stand stand{probe, *tool};
-        if (held_ != stand) {
-            held_ = stand;
+        const Imprint::Pose pose{probe, *tool};
+        if (held_ != pose) {
+            held_ = pose;
             wakeFull(under, here.reach(probe));
         }
         erosion_.sweep(layer_, sweeps, &under, moved_);
@@ -241,7 +241,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     sawAll_ = false;
     coarsening_.forget();
     changed_.reset();
-    lastFound_ = kNobody;
+    lastFound_ = kNoNumber;
 }
 
 void TinSurface::audit(int tiles) {

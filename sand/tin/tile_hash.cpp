@@ -58,7 +58,7 @@ std::uint64_t TileHash::constraintsOf(const VertexSand& layer, std::int32_t slot
     std::uint64_t sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
-        if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody) {
+        if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNoNumber) {
             sum += mixed(2, together(a, b));
         }
     }

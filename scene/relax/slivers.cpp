@@ -8,7 +8,7 @@ namespace scene::relax {
 namespace {
 
 using sand::tin::index;
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::LatticePoint;
 using sand::tin::Triangle;
 using sand::tin::Triangles;
@@ -38,7 +38,7 @@ public:
         // Triangles beyond a taken one are now at the boundary. The list grows during the loop.
         for (std::size_t next = 0; next < taken_.size(); ++next) {
             for (const std::int32_t beyond : mesh_.triangles[index(taken_[next])].neighbour) {
-                if (beyond != kNobody) {
+                if (beyond != kNoNumber) {
                     look(beyond);
                 }
             }
@@ -52,7 +52,7 @@ private:
     }
     [[nodiscard]] bool looksOutwards(const Triangle& triangle, std::size_t side) const {
         const std::int32_t beyond = triangle.neighbour.at(side % 3);
-        return beyond == kNobody || isOutside_[index(beyond)];
+        return beyond == kNoNumber || isOutside_[index(beyond)];
     }
 
     /// Takes a triangle at the boundary if it is a sliver.

@@ -127,7 +127,7 @@ void DualProjection::surround(const std::vector<Vertex>& corners) {
         fallen[2 * vertex] = spill.now;
         fallen[2 * vertex + 1] = spill.before;
     }
-    std::vector<std::int32_t> local(mesh.places.size(), kNobody);
+    std::vector<std::int32_t> local(mesh.places.size(), kNoNumber);
     vertices_.clear();
     for (std::size_t vertex = 0; vertex < local.size(); ++vertex) {
         if (edges_[vertex] < kFar) {

@@ -48,7 +48,7 @@ double half(const LatticePoint& apex, const LatticePoint& begin, const LatticePo
 
 TriangleSide across(const Triangles& mesh, TriangleSide side) {
     const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
-    if (beyond == kNobody || triangleOf(mesh, beyond).hole) {
+    if (beyond == kNoNumber || triangleOf(mesh, beyond).hole) {
         return {};
     }
     const auto& back = triangleOf(mesh, beyond).neighbour;
@@ -58,7 +58,7 @@ TriangleSide across(const Triangles& mesh, TriangleSide side) {
 void Weights::forget(const Mesh::Change& change) {
     for (const std::int32_t slot : change.triangles) {
         if (static_cast<std::size_t>(slot) < halves_.size()) {
-            halves_[static_cast<std::size_t>(slot)].first = kNobody;
+            halves_[static_cast<std::size_t>(slot)].first = kNoNumber;
         }
     }
     for (const Vertex vertex : change.vertices) {
@@ -127,7 +127,7 @@ Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, T
         return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) * step;
     };
     edge.left = weight(side);
-    if (across.triangle != kNobody) {
+    if (across.triangle != kNoNumber) {
         edge.rightFacet = across.triangle;
         edge.right = weight(across);
     }

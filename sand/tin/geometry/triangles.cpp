@@ -35,7 +35,7 @@ std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre
             if (next == slot) {
                 return first;
             }
-            if (next == kNobody) {
+            if (next == kNoNumber) {
                 break;
             }
             if (sortedCorners(mesh.triangles[at(next)]) < sortedCorners(mesh.triangles[at(first)])) {
@@ -70,7 +70,7 @@ std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const LatticePoint
             found = vertex;
         }
     }
-    return found < count && mesh.triangleAt[found] != kNobody ? mesh.triangleAt[found] : slot;
+    return found < count && mesh.triangleAt[found] != kNoNumber ? mesh.triangleAt[found] : slot;
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ Located locate(const Triangles& mesh, LatticePoint place, std::int32_t from) {
         const std::int32_t next = triangle.neighbour[side];
         if (zeros == 2 && here.weights[side] > 0) {
             first = firstAround(mesh, slot, triangle.corner[side]);
-        } else if (zeros == 1 && here.weights[side] == 0 && next != kNobody &&
+        } else if (zeros == 1 && here.weights[side] == 0 && next != kNoNumber &&
                    sortedCorners(mesh.triangles[at(next)]) < sortedCorners(triangle)) {
             first = next;
         }

@@ -30,18 +30,19 @@ struct LatticePoint {
 
 /// Number of a vertex. A vertex keeps its number while it lives. A new vertex gets the smallest free number.
 using Vertex = std::int32_t;
-inline constexpr std::int32_t kNobody = -1;  // stands for a missing vertex, triangle or other number
+inline constexpr std::int32_t kNoNumber = -1;  // stands for a missing vertex, triangle or other number
 
 /// Returns `number` as an index of an array.
 [[nodiscard]] constexpr std::size_t index(std::int32_t number) { return static_cast<std::size_t>(number); }
 
 /// Triangle with its corners counter-clockwise. neighbour[k] and constrained[k] belong to the edge opposite corner[k].
 struct Triangle {
-    std::array<Vertex, 3> corner{kNobody, kNobody, kNobody};
-    std::array<std::int32_t, 3> neighbour{kNobody, kNobody, kNobody};  // by slot; kNobody across the field's rim
-    std::array<bool, 3> constrained{};                                 // always true for edges of the rim
-    bool hole = false;                                                 // without ground: cells without data (holes.hpp)
-    [[nodiscard]] bool alive() const { return corner[0] != kNobody; }
+    std::array<Vertex, 3> corner{kNoNumber, kNoNumber, kNoNumber};
+    std::array<std::int32_t, 3> neighbour{kNoNumber, kNoNumber,
+                                          kNoNumber};  // by slot; kNoNumber across the field's rim
+    std::array<bool, 3> constrained{};                 // always true for edges of the rim
+    bool hole = false;                                 // without ground: cells without data (holes.hpp)
+    [[nodiscard]] bool alive() const { return corner[0] != kNoNumber; }
     [[nodiscard]] bool isGround() const { return alive() && !hole; }
 };
 
@@ -51,12 +52,12 @@ struct Triangle {
 /// order of their corners depend on history, so that no state may depend on them.
 struct Triangles {
     std::vector<LatticePoint> places;      // by vertex
-    std::vector<std::int32_t> triangleAt;  // by vertex: slot of one of its triangles; kNobody if there is no vertex
+    std::vector<std::int32_t> triangleAt;  // by vertex: slot of one of its triangles; kNoNumber if there is no vertex
     std::vector<Triangle> triangles;       // by slot
     std::int32_t width = 0, depth = 0;     // size of the field, which begins at (0, 0) [probe unit]
     [[nodiscard]] bool alive(Vertex vertex) const {
         return vertex >= 0 && vertex < static_cast<Vertex>(triangleAt.size()) &&
-               triangleAt[static_cast<std::size_t>(vertex)] != kNobody;
+               triangleAt[static_cast<std::size_t>(vertex)] != kNoNumber;
     }
 };
 
@@ -67,12 +68,12 @@ struct Triangles {
 
 /// The triangle that contains a place, on its edges too.
 struct Located {
-    std::int32_t triangle = kNobody;        // slot
+    std::int32_t triangle = kNoNumber;      // slot
     std::array<std::int64_t, 3> weights{};  // doubled areas opposite the corners [probe unit²]; sum: the triangle's
 };
 
 /// Returns the triangle that contains `place`, which is clamped to the field first. Walks there from the triangle
-/// `from`, or from any triangle if `from` is kNobody. If several triangles share the place, returns the one whose
+/// `from`, or from any triangle if `from` is kNoNumber. If several triangles share the place, returns the one whose
 /// sorted corners come first. The result depends only on mesh and place. The cost is the number of triangles on the
 /// way, so start from the last one found.
 [[nodiscard]] Located locate(const Triangles& mesh, LatticePoint place, std::int32_t from);
@@ -96,7 +97,7 @@ void aroundVertex(const Triangles& mesh, Vertex vertex, const Visit& visit) {
                 visit(slot, corner);
             }
             slot = triangle.neighbour[kTurned[static_cast<std::size_t>(corner + turn)]];
-        } while (slot != kNobody && slot != first);
+        } while (slot != kNoNumber && slot != first);
         if (slot == first) {
             return;
         }

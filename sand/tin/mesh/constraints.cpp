@@ -87,7 +87,7 @@ Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
         }
         return false;
     });
-    while (hit.vertex == kNobody) {
+    while (hit.vertex == kNoNumber) {
         hit.edge = ends(side);
         if (isConstrained(side)) {
             break;
@@ -154,8 +154,8 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
         const auto [a, b] = wanted.back();
         wanted.pop_back();
         const Hit hit = follow(a, b);
-        if (hit.vertex != kNobody) {
-            if (const Side side = findEdge(a, hit.vertex); side.slot != kNobody && isConstrained(side)) {
+        if (hit.vertex != kNoNumber) {
+            if (const Side side = findEdge(a, hit.vertex); side.slot != kNoNumber && isConstrained(side)) {
                 path.before.push_back(ascending(a, hit.vertex));
             }
             carve(a, hit);
@@ -172,7 +172,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             break;  // a state with more vertices could not be decoded
         }
         const VertexPair split = edgeAt(where);  // edge at the crossing, which insertAt() splits too
-        const Vertex middle = insertAt(where, crossing, kNobody);
+        const Vertex middle = insertAt(where, crossing, kNoNumber);
         bend(split.first, split.second, middle);
         wanted.emplace_back(a, b);
         if (middle != a && middle != b) {
@@ -181,7 +181,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             wanted.emplace_back(a, middle);
         }
         // Split c–d too, unless insertAt() has just done that.
-        if (middle != c && middle != d && findEdge(c, d).slot != kNobody && isConstrained(findEdge(c, d))) {
+        if (middle != c && middle != d && findEdge(c, d).slot != kNoNumber && isConstrained(findEdge(c, d))) {
             bend(c, d, middle);
             release(c, d);
             wanted.emplace_back(middle, d);

@@ -59,7 +59,7 @@ std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
     const auto [order, first] = spatialOrder(places);
     // First find the vertices that exist already, then give out numbers in the order of `places`, then change the
     // mesh.
-    std::vector<Vertex> numbers(places.size(), kNobody);
+    std::vector<Vertex> numbers(places.size(), kNoNumber);
     for (const std::uint32_t index : order) {
         const Located located = triangulation_->find(places[index]);
         if (const std::size_t corner = cornerAt(located); corner < 3) {
@@ -70,7 +70,7 @@ std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (first[i] != i) {
             numbers[i] = numbers[first[i]];
-        } else if (numbers[i] == kNobody) {
+        } else if (numbers[i] == kNoNumber) {
             numbers[i] = triangulation_->takeNumber();
         }
     }
@@ -120,7 +120,7 @@ bool Mesh::hasOutline() const {
         Vertex at = triangles().triangles[static_cast<std::size_t>(located.triangle)].corner[corner];
         while (triangles().places[static_cast<std::size_t>(at)] != part.to) {
             at = triangulation_->nextAlong(at, part.to);
-            if (at == kNobody) {
+            if (at == kNoNumber) {
                 return false;
             }
         }
@@ -144,7 +144,7 @@ void Mesh::release(Vertex a, Vertex b) {
     requireAlive(a);
     requireAlive(b);
     const Side side = triangulation_->findEdge(a, b);
-    if (side.slot != kNobody && !triangulation_->isOutline(side)) {
+    if (side.slot != kNoNumber && !triangulation_->isOutline(side)) {
         triangulation_->release(a, b);
     }
 }
@@ -153,7 +153,7 @@ bool Mesh::isConstrained(Vertex a, Vertex b) const {
     requireAlive(a);
     requireAlive(b);
     const Side side = triangulation_->findEdge(a, b);
-    return side.slot != kNobody && triangulation_->isConstrained(side);
+    return side.slot != kNoNumber && triangulation_->isConstrained(side);
 }
 
 std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
@@ -162,7 +162,7 @@ std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
         for (std::size_t i = 0; i < 3; ++i) {
             const Vertex a = triangle.corner[next(i)];
             const Vertex b = triangle.corner[previous(i)];
-            if (triangle.constrained[i] && triangle.neighbour[i] != kNobody && a < b) {
+            if (triangle.constrained[i] && triangle.neighbour[i] != kNoNumber && a < b) {
                 constraints.emplace_back(a, b);
             }
         }

@@ -95,11 +95,11 @@ public:
         // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
         friend auto operator<=>(const Piece&, const Piece&) = default;
     };
-    /// Triangles that went and triangles that came since the last call, whatever their slots are. Both lists are in
-    /// ascending order and cover the same ground. Recording begins with the first call, which returns an empty
-    /// Difference. takeChange() and takeDifference() do not affect each other.
+    /// Triangles that were removed and triangles that were added since the last call, whatever their slots are. Both
+    /// lists are in ascending order and cover the same ground. Recording begins with the first call, which returns an
+    /// empty Difference. takeChange() and takeDifference() do not affect each other.
     struct Difference {
-        std::vector<Piece> went, came;
+        std::vector<Piece> removed, added;
     };
     [[nodiscard]] Difference takeDifference();
 

@@ -62,7 +62,7 @@ private:
     Box box_;
     std::vector<Vertex> vertices_, stay_, come_;
     std::vector<std::int32_t> triangles_, found_;  // found_ is longer than the list in it, to save resizing
-    std::int32_t last_ = kNobody;                  // triangle at which the next search begins; saves time only
+    std::int32_t last_ = kNoNumber;                // triangle at which the next search begins; saves time only
     base::IndexSet seen_;                          // slots that look() has found
 };
 

@@ -21,7 +21,7 @@ std::int64_t ceilDivided(std::int64_t value, std::int64_t by) { return -floorDiv
 struct Worst {
     double error = 0;
     std::int64_t sample = kNone;
-    std::int32_t slot = kNobody;
+    std::int32_t slot = kNoNumber;
     std::uint32_t version = 0;  // of the slot when the error was measured; a newer version makes it invalid
     /// Orders a heap: the largest error is on top, and of equal errors the first sample.
     friend bool operator<(const Worst& a, const Worst& b) {

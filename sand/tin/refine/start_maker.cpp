@@ -288,7 +288,7 @@ TinStart startOf(const VertexSand& layer, const Settings& settings) {
     start.depth = mesh.depth;
     start.settings = settings;
     start.holes = layer.mesh().holes();
-    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNobody);
+    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNoNumber);
     for (std::size_t i = 0; i < mesh.triangleAt.size(); ++i) {
         if (mesh.alive(static_cast<Vertex>(i))) {
             numberOf[i] = static_cast<Vertex>(start.places.size());

@@ -101,7 +101,7 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
         chunk.last = chunk.presses.back().probe == path.back();
         work(layer, imprint, rim, chunk, done);
     }
-    if (imprint.stand && imprint.stand->probe != path.back()) {  // the tool has moved out of the field
+    if (imprint.pose && imprint.pose->probe != path.back()) {  // the tool has moved out of the field
         leave(layer, imprint);
     }
     sortOnce(done.touched);
@@ -111,8 +111,8 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
 }
 
 void Displacement::leave(VertexSand& layer, Imprint& imprint) {
-    if (imprint.stand && !rules_.keepsConstraints) {
-        const ProbePoint probe = imprint.stand->probe;
+    if (imprint.pose && !rules_.keepsConstraints) {
+        const ProbePoint probe = imprint.pose->probe;
         const Box box = reach(probe);
         if (rules_.spacing > 0) {  // otherwise the neighbourhood is not used
             neighbourhood_->look(layer.triangles(), box);
@@ -124,10 +124,10 @@ void Displacement::leave(VertexSand& layer, Imprint& imprint) {
 
 void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
     neighbourhood_->look(layer.triangles(), chunk.box);
-    const Imprint::Stand here{chunk.presses.back().probe, tool_};
+    const Imprint::Pose here{chunk.presses.back().probe, tool_};
     const bool still =
-        imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
-                                             [&](const Press& press) { return press.probe == here.probe; });
+        imprint.pose == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
+                                            [&](const Press& press) { return press.probe == here.probe; });
     if (!still) {
         if (!reachesSand(layer, chunk)) {
             leave(layer, imprint);
@@ -178,7 +178,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             }
         }
         if (chunk.last) {
-            imprint.stand = {probe, tool_};
+            imprint.pose = {probe, tool_};
             imprint.putInto(mesh, outline, rules_.maxVertices);
         }
         const auto wanted = [&](const LatticePoint& place) {
@@ -228,7 +228,7 @@ Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint)
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         for (std::size_t k = 0; k < 3; ++k) {
             const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
-            if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody &&
+            if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNoNumber &&
                 !std::binary_search(ours.begin(), ours.end(), std::pair(a, b))) {
                 edges.emplace_back(mesh.places[static_cast<std::size_t>(a)], mesh.places[static_cast<std::size_t>(b)]);
             }

@@ -81,7 +81,7 @@ private:
         std::int64_t taken;
     };
     struct Receiver {
-        Vertex vertex;  // kNobody: beyond the rim
+        Vertex vertex;  // kNoNumber: beyond the rim
         double weight;
         LatticePoint place;  // only beyond the rim
         Volume share = 0;
@@ -111,7 +111,7 @@ private:
     [[nodiscard]] bool isWithinAllSand(const VertexSand& layer) const;
     void findParts(const VertexSand& layer, const ProbePoint& probe);
     void forgetParts();
-    /// Returns the first vertex of a vertex's part, or kNobody if it is in no part.
+    /// Returns the first vertex of a vertex's part, or kNoNumber if it is in no part.
     [[nodiscard]] Vertex partOf(Vertex vertex);
     [[nodiscard]] Vertex partOf(const VertexSand& layer, const Receiver& receiver);
 
@@ -125,7 +125,7 @@ private:
     Volume taken_ = 0;
     std::vector<Receiver> receivers_;
     std::vector<Vertex> inParts_;  // vertices in parts, ascending
-    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNobody outside all parts
+    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNoNumber outside all parts
 };
 
 }  // namespace sand::tin

@@ -24,12 +24,12 @@ struct Imprint {
         friend bool operator==(const Point&, const Point&) = default;
     };
     /// Position of the outline, and the tool that it belongs to.
-    struct Stand {
+    struct Pose {
         ProbePoint probe;
         Tool tool;
-        friend bool operator==(const Stand&, const Stand&) = default;
+        friend bool operator==(const Pose&, const Pose&) = default;
     };
-    std::optional<Stand> stand;                    // nullopt if no tool is in the sand
+    std::optional<Pose> pose;                      // nullopt if no tool is in the sand
     std::vector<Point> points;                     // that were not vertices before
     std::vector<std::pair<Vertex, Vertex>> edges;  // that were not constrained before
 

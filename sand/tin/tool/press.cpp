@@ -91,7 +91,7 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
             }
             const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
             if (part > 0) {
-                receivers_.push_back({kNobody, static_cast<double>(part) * share, place});
+                receivers_.push_back({kNoNumber, static_cast<double>(part) * share, place});
             }
         }
     }
@@ -144,7 +144,7 @@ void Displacement::shareOut() {
 
 /// Returns whether the sand of a receiver stays within its limits when it gets its share.
 bool Displacement::hasRoom(const VertexSand& layer, const Receiver& receiver) const {
-    if (receiver.vertex == kNobody) {
+    if (receiver.vertex == kNoNumber) {
         return true;
     }
     const Volume raised = layer.volumes()[index(receiver.vertex)] + receiver.share;
@@ -163,7 +163,7 @@ bool Displacement::isWithinAllSand(const VertexSand& layer) const {
         magnitude += grown(cut.vertex, -Volume{cut.taken});
     }
     for (const Receiver& receiver : receivers_) {
-        magnitude += receiver.vertex == kNobody ? 0 : grown(receiver.vertex, receiver.share);
+        magnitude += receiver.vertex == kNoNumber ? 0 : grown(receiver.vertex, receiver.share);
     }
     return magnitude <= kMostSand;
 }
@@ -189,7 +189,7 @@ bool Displacement::deal(VertexSand& layer, bool toSome, Work& done) {
         done.touched.push_back(cut.vertex);
     }
     for (const Receiver& receiver : receivers_) {
-        if (receiver.vertex == kNobody) {
+        if (receiver.vertex == kNoNumber) {
             done.outflow += receiver.share;
         } else {
             layer.add(receiver.vertex, static_cast<std::int64_t>(receiver.share));

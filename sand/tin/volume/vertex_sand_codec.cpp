@@ -68,7 +68,7 @@ VertexSandParts VertexSand::parts() const {
     const Triangles& mesh = triangles();
     VertexSandParts parts{mesh.width, mesh.depth, mesh.places, volumes_, moving_, mesh_.constraints(), mesh_.holes()};
     for (std::size_t i = 0; i < parts.places.size(); ++i) {
-        if (mesh.triangleAt[i] == kNobody) {
+        if (mesh.triangleAt[i] == kNoNumber) {
             parts.places[i] = VertexSandParts::kNowhere;
         }
     }

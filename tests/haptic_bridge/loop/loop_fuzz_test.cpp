@@ -170,8 +170,8 @@ private:
         if (dice_.chance(0.0004 * trouble_)) {
             server_.unlink();
         }
-        if (dice_.chance(server_.wallStands ? 0.003 : 0.0005 * trouble_)) {
-            server_.wallStands = !server_.wallStands;
+        if (dice_.chance(server_.sandIsStopped ? 0.003 : 0.0005 * trouble_)) {
+            server_.sandIsStopped = !server_.sandIsStopped;
         }
         if (dice_.chance(server_.sandThreadHangs ? 0.02 : 0.0005 * trouble_)) {
             server_.sandThreadHangs = !server_.sandThreadHangs;

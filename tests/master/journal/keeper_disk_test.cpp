@@ -82,7 +82,7 @@ TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         EXPECT_EQ(keeper_->state(), "written");
-        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_EQ(keeper_->stops(), 1U);
         EXPECT_EQ(replica_.stepNumber(), stood + 1);
         expectWhole(replica_.stepNumber());
         keeper_.reset();
@@ -113,7 +113,7 @@ TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
         while (!showFrame()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
-        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_EQ(keeper_->stops(), 1U);
         EXPECT_TRUE(keeper_->hasRoomFor(1 << 10, place()));
         keeper_.reset();
     });
@@ -125,7 +125,7 @@ TEST_F(KeeperDisk, SandThatDoesNotFitStopsNothing) {
         EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, replica_.stateHash()}));
         EXPECT_EQ(keeper_->state(), "written");
         EXPECT_TRUE(showFrame());
-        EXPECT_EQ(keeper_->stands(), 0U);
+        EXPECT_EQ(keeper_->stops(), 0U);
         keeper_.reset();
     });
 }

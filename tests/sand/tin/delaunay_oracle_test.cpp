@@ -17,7 +17,7 @@ namespace {
 
 using mesh_checks::LatticePoint;
 using mesh_checks::Mesh;
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::Triangle;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Oracle = CGAL::Constrained_Delaunay_triangulation_2<Kernel>;
@@ -80,7 +80,7 @@ private:
         }
         ++edges.onCircles;
         const std::int32_t other = triangle.neighbour[i];
-        const Triangle beyond = other == kNobody ? Triangle{} : mesh_.triangles[static_cast<std::size_t>(other)];
+        const Triangle beyond = other == kNoNumber ? Triangle{} : mesh_.triangles[static_cast<std::size_t>(other)];
         for (std::size_t k = 0; beyond.alive() && k < 3; ++k) {
             const bool isThere = beyond.corner[(k + 1) % 3] == triangle.corner[(i + 2) % 3] &&
                                  beyond.corner[(k + 2) % 3] == triangle.corner[(i + 1) % 3];

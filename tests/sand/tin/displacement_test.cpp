@@ -106,7 +106,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         const auto outline = sand::tin::placed(sand::tin::Outline::of(turned), at.x, at.y, layer.triangles());
         for (const auto& [from, to] : outline.edges) {
             const auto vertexAt = [&](const LatticePoint& wanted) {
-                Vertex found = sand::tin::kNobody;
+                Vertex found = sand::tin::kNoNumber;
                 forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
                     found = place == wanted ? vertex : found;
                 });

@@ -9,7 +9,7 @@
 namespace mesh_checks {
 namespace {
 
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::Triangle;
 using sand::tin::Wide;
 
@@ -66,7 +66,7 @@ private:
         int living = 0;
         for (std::size_t i = 0; i < mesh_.places.size(); ++i) {
             const std::int32_t slot = mesh_.triangleAt.at(i);
-            if (slot == kNobody) {
+            if (slot == kNoNumber) {
                 continue;
             }
             ++living;
@@ -104,10 +104,10 @@ private:
         const bool rim = (from.x == to.x && (to.x == 0 || to.x == mesh_.width)) ||
                          (from.y == to.y && (to.y == 0 || to.y == mesh_.depth));
         const std::int32_t other = triangle.neighbour[i];
-        if (rim != (other == kNobody)) {
+        if (rim != (other == kNoNumber)) {
             fail("neighbours and rim disagree at " + edgeName(from, to));
         }
-        if (other == kNobody) {
+        if (other == kNoNumber) {
             ++rim_;
             if (!triangle.constrained[i]) {
                 fail("a rim edge that is not constrained at " + edgeName(from, to));
@@ -193,7 +193,7 @@ std::vector<std::optional<LatticePoint>> placesOf(const Mesh& mesh) {
     std::vector<std::optional<LatticePoint>> places;
     const Triangles& triangles = mesh.triangles();
     for (std::size_t i = 0; i < triangles.places.size(); ++i) {
-        places.push_back(triangles.triangleAt[i] == kNobody ? std::nullopt : std::optional(triangles.places[i]));
+        places.push_back(triangles.triangleAt[i] == kNoNumber ? std::nullopt : std::optional(triangles.places[i]));
     }
     return places;
 }
@@ -221,7 +221,7 @@ Mesh madeInAnotherOrder(const Mesh& mesh, std::mt19937& random) {
 std::vector<Vertex> livingVertices(const Mesh& mesh) {
     std::vector<Vertex> living;
     for (std::size_t i = 0; i < mesh.triangles().places.size(); ++i) {
-        if (mesh.triangles().triangleAt[i] != kNobody) {
+        if (mesh.triangles().triangleAt[i] != kNoNumber) {
             living.push_back(static_cast<Vertex>(i));
         }
     }

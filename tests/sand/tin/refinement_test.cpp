@@ -119,7 +119,7 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
         std::vector<double> heights;
         const auto look = [&] {
             heights.clear();
-            std::int32_t near = sand::tin::kNobody;
+            std::int32_t near = sand::tin::kNoNumber;
             for (std::int32_t y = 0; y <= 24 * 256; y += 128) {
                 for (std::int32_t x = 0; x <= 24 * 256; x += 128) {
                     heights.push_back(heightAt(layer, {x, y}, near));
@@ -171,7 +171,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
             shake(vertex);
             coarsening.touch(layer.triangles(), {&vertex, 1});
         }
-        Vertex came = sand::tin::kNobody;
+        Vertex came = sand::tin::kNoNumber;
         if (step % 8 == 0) {
             const LatticePoint place{somewhere(), somewhere()};
             both([&](VertexSand& one) { came = one.insert(place); });

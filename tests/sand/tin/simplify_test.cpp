@@ -46,7 +46,7 @@ std::vector<double> errorsOf(const Simplified& tin, const Raster& raster) {
         if (std::isnan(raster.heights[i])) {
             continue;
         }
-        const auto found = sand::tin::locate(mesh.triangles(), raster.placeOf(i), sand::tin::kNobody);
+        const auto found = sand::tin::locate(mesh.triangles(), raster.placeOf(i), sand::tin::kNoNumber);
         const auto& triangle = mesh.triangles().triangles[static_cast<std::size_t>(found.triangle)];
         double sum = 0, area = 0;
         for (std::size_t k = 0; k < 3; ++k) {

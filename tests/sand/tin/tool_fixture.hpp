@@ -53,7 +53,7 @@ inline double heightAt(const VertexSand& layer, const LatticePoint& place, std::
     return sum / weights;
 }
 inline double heightAt(const VertexSand& layer, const LatticePoint& place) {
-    std::int32_t near = sand::tin::kNobody;
+    std::int32_t near = sand::tin::kNoNumber;
     return heightAt(layer, place, near);
 }
 
