@@ -68,7 +68,7 @@ void writeLine(std::string_view line) {
     }
 }
 
-void tellRankLog() {
+void sendRankLog() {
     if (const std::string path = variable("SANDWALL_RANK_LOG"); !path.empty()) {
         std::array<char, 256> name{};
         gethostname(name.data(), name.size() - 1);

@@ -23,7 +23,7 @@ void writeLine(std::string_view line);
 [[nodiscard]] std::string relayedLine(int rank, std::string_view text);
 
 /// Sends the name of the file that holds the output of this rank, if the launcher is on another host.
-void tellRankLog();
+void sendRankLog();
 
 /// Removes that file. Call it at a good end, because nobody needs the file then.
 void removeRankLog();

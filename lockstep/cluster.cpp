@@ -94,7 +94,7 @@ void Cluster::farewell() const {
     }
 }
 
-void Cluster::tellLastWords(std::vector<std::string> names, LastWords lastWords) const {
+void Cluster::setLastWords(std::vector<std::string> names, LastWords lastWords) const {
     const std::lock_guard lock(mutex_);
     if (!names.empty()) {
         names_ = std::move(names);
@@ -216,7 +216,7 @@ void Cluster::abort(int status) const {
     std::_Exit(status);
 }
 
-void dieWithParent() {
+void endWithParent() {
     const pid_t parent = getppid();
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     // If the parent ended before the call, the kernel sends no signal.

@@ -63,7 +63,7 @@ public:
     using LastWords = std::function<void(int rank, const std::string& line)>;
     /// Sets what the watchdog of the start and the end calls and prints. `names` are the names of the ranks in
     /// messages, in order of rank; an empty list leaves them as they are. Only the master needs this. Any thread.
-    void tellLastWords(std::vector<std::string> names, LastWords lastWords) const;
+    void setLastWords(std::vector<std::string> names, LastWords lastWords) const;
 
     /// Sets whether the start may take an hour, because the ranks wait while the master replays a journal.
     void mayTakeLong(bool may) const;
@@ -103,7 +103,7 @@ private:
 
 /// Asks the kernel to kill this process when its parent process (mpirun, its daemon or the launcher) ends. No process
 /// then outlives the job, even if mpirun is killed.
-void dieWithParent();
+void endWithParent();
 
 [[nodiscard]] std::string hostName();
 /// Returns the name of this machine and the id of its last start, "node01/3f2a…". No two machines have the same, also

@@ -7,28 +7,28 @@
 namespace lockstep {
 namespace {
 
-Account accountOf(sand::Replica& terrain) {
-    Account account{terrain.stateHash(), {}};
-    account.tiles = terrain.hashTiles().tileHashes();
+Account accountOf(sand::Replica& replica) {
+    Account account{replica.stateHash(), {}};
+    account.tiles = replica.hashTiles().tileHashes();
     return account;
 }
 
-std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Replica& terrain) {
+std::vector<Account> collectAccounts(FrameBarrier& barrier, sand::Replica& replica) {
     std::vector<Account> accounts;
-    for (const base::Bytes& bytes : barrier.collect(base::encoded(accountOf(terrain)))) {
+    for (const base::Bytes& bytes : barrier.collect(base::encoded(accountOf(replica)))) {
         accounts.push_back(base::decoded<Account>(bytes));
     }
     return accounts;
 }
 
-std::vector<std::int32_t> heightsOf(const sand::Replica& terrain, int tile) {
-    return tile >= 0 ? terrain.valuesOf(tile) : std::vector<std::int32_t>();
+std::vector<std::int32_t> heightsOf(const sand::Replica& replica, int tile) {
+    return tile >= 0 ? replica.valuesOf(tile) : std::vector<std::int32_t>();
 }
 
 /// Returns the values in hash tile `tile` of all ranks at the master, in order of rank.
-std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Replica& terrain, int tile) {
+std::vector<std::vector<std::int32_t>> collectHeights(FrameBarrier& barrier, const sand::Replica& replica, int tile) {
     std::vector<std::vector<std::int32_t>> all;
-    for (const base::Bytes& bytes : barrier.collect(base::encoded(TileValues{heightsOf(terrain, tile)}))) {
+    for (const base::Bytes& bytes : barrier.collect(base::encoded(TileValues{heightsOf(replica, tile)}))) {
         all.push_back(base::decoded<TileValues>(bytes).values);
     }
     return all;
@@ -74,9 +74,9 @@ Vote countVotes(const std::vector<Account>& accounts) {
     return result;
 }
 
-std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& terrain, const Arbiter& arbiter) {
-    terrain.audit(terrain.hashTiles().tileCount());
-    const std::vector<Account> accounts = collectAccounts(barrier, terrain);
+std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& replica, const Arbiter& arbiter) {
+    replica.audit(replica.hashTiles().tileCount());
+    const std::vector<Account> accounts = collectAccounts(barrier, replica);
     Divergence result;
     if (barrier.cluster().isMaster()) {
         const Account right = judge(accounts, arbiter, result);
@@ -94,8 +94,8 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& t
     // Collects the values of the first odd rank's tile from all ranks. One wrong value suggests a bit flip, many
     // suggest a bug.
     const TileRequest request{result.odd.empty() ? -1 : result.odd.front().tile};
-    const int tile = base::decoded<TileRequest>(barrier.tellAll(base::encoded(request))).tile;
-    const auto heights = collectHeights(barrier, terrain, tile);
+    const int tile = base::decoded<TileRequest>(barrier.broadcast(base::encoded(request))).tile;
+    const auto heights = collectHeights(barrier, replica, tile);
     if (!barrier.cluster().isMaster()) {
         return std::nullopt;
     }
@@ -105,7 +105,7 @@ std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& t
         if (odd.tile < 0) {
             continue;
         }
-        odd.cells = terrain.hashTiles().cellsOf(odd.tile);
+        odd.cells = replica.hashTiles().cellsOf(odd.tile);
         const auto& wrong = heights[static_cast<std::size_t>(odd.rank)];
         for (std::size_t i = 0; odd.tile == tile && i < wrong.size(); ++i) {
             odd.cellsDiffering += wrong[i] == right[i] ? 0 : 1;

@@ -88,7 +88,7 @@ struct Arbiter {
 /// Finds the ranks whose sand is wrong. Call it after a barrier with the verdict Verdict::otherSand. Each rank first
 /// computes its hashes again from memory. Returns the result at the master and nullopt on other ranks. Only the
 /// master's argument `arbiter` counts. Collective.
-[[nodiscard]] std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& terrain,
+[[nodiscard]] std::optional<Divergence> findDivergence(FrameBarrier& barrier, sand::Replica& replica,
                                                        const Arbiter& arbiter = {});
 
 }  // namespace lockstep

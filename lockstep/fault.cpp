@@ -14,7 +14,7 @@ FaultsOfRank::FaultsOfRank(const std::vector<Fault>& all, int rank) {
                  [rank](const Fault& fault) { return fault.rank == rank; });
 }
 
-void FaultsOfRank::strike(std::uint64_t frame, sand::Replica& terrain) const {
+void FaultsOfRank::strike(std::uint64_t frame, sand::Replica& replica) const {
     for (const Fault& fault : faults_) {
         if (fault.frame != frame) {
             continue;
@@ -22,7 +22,7 @@ void FaultsOfRank::strike(std::uint64_t frame, sand::Replica& terrain) const {
         if (fault.kind == Fault::Kind::die) {
             std::raise(fault.signal);
         } else if (fault.kind == Fault::Kind::diverge) {
-            terrain.corrupt(fault.column, fault.row, fault.bit);
+            replica.corrupt(fault.column, fault.row, fault.bit);
         }
         while (fault.kind == Fault::Kind::hang) {
             std::this_thread::sleep_for(std::chrono::hours(1));

@@ -64,7 +64,7 @@ public:
 
     /// Injects the faults at the beginning of frame `frame`: ends the process, never returns, or flips a bit of a cell
     /// without updating the hash.
-    void strike(std::uint64_t frame, sand::Replica& terrain) const;
+    void strike(std::uint64_t frame, sand::Replica& replica) const;
     /// Sleeps after frame `frame` has been drawn, if a fault makes it slow. A sleep leaves the cores free, as a slow
     /// graphics card does.
     void delay(std::uint64_t frame) const;

@@ -309,7 +309,7 @@ std::vector<base::Bytes> FrameBarrier::collect(const base::Bytes& mine) {
     return all;
 }
 
-base::Bytes FrameBarrier::tellAll(const base::Bytes& fromMaster) {
+base::Bytes FrameBarrier::broadcast(const base::Bytes& fromMaster) {
     base::Bytes got = pass(kMaster, cluster_.isMaster() ? ranks_ : std::vector<int>{cluster_.rank()}, fromMaster);
     return cluster_.isMaster() ? fromMaster : got;
 }

@@ -96,7 +96,7 @@ public:
     /// Returns the bytes `mine` of all ranks at the master, in order of rank; an empty list on other ranks. Collective.
     [[nodiscard]] std::vector<base::Bytes> collect(const base::Bytes& mine);
     /// Returns the master's argument `fromMaster` on all ranks. Collective.
-    [[nodiscard]] base::Bytes tellAll(const base::Bytes& fromMaster);
+    [[nodiscard]] base::Bytes broadcast(const base::Bytes& fromMaster);
 
     [[nodiscard]] const Cluster& cluster() const { return cluster_; }
     /// Sets what the watchdog names while the master waits for no rank, such as "its journal". `what` must stay valid.

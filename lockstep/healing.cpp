@@ -5,8 +5,8 @@
 
 namespace lockstep {
 
-Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMaster) {
-    const Remedy remedy = base::decoded<Remedy>(barrier.tellAll(base::encoded(fromMaster)));
+Healing heal(FrameBarrier& barrier, sand::Replica& replica, const Remedy& fromMaster) {
+    const Remedy remedy = base::decoded<Remedy>(barrier.broadcast(base::encoded(fromMaster)));
     if (!remedy.goOn) {
         return Healing::ended;
     }
@@ -15,12 +15,12 @@ Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMa
     if (!remedy.odd.empty()) {
         const bool gives = rank == remedy.source;
         const base::Bytes state =
-            barrier.pass(remedy.source, remedy.odd, gives ? terrain.encodeState() : base::Bytes());
+            barrier.pass(remedy.source, remedy.odd, gives ? replica.encodeState() : base::Bytes());
         if (odd) {
-            terrain.decodeState(state);
+            replica.decodeState(state);
         }
     }
-    terrain.audit(terrain.hashTiles().tileCount());
+    replica.audit(replica.hashTiles().tileCount());
     return odd ? Healing::healed : Healing::spared;
 }
 

@@ -39,6 +39,6 @@ enum class Healing : std::uint8_t {
 ///
 /// Only the master's argument `fromMaster` counts. Throws base::FormatError if the received bytes are not a state of
 /// this sand. Collective.
-[[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Replica& terrain, const Remedy& fromMaster = {});
+[[nodiscard]] Healing heal(FrameBarrier& barrier, sand::Replica& replica, const Remedy& fromMaster = {});
 
 }  // namespace lockstep

@@ -85,7 +85,7 @@ bool Agreement::healSand(std::uint64_t frame, MasterSand& sand, StepSource& step
         const std::vector<std::string> healed = countHealed(frame, divergence, odd);
         lines.insert(lines.end(), healed.begin(), healed.end());
     }
-    tell(lines, out_ / "divergence.txt");
+    report(lines, out_ / "divergence.txt");
     if (!broken && divergence.journal) {
         // No rank has the right sand, so the master takes it from the journal and sends it to the others.
         sand.replica().decodeState(divergence.journal->encodeState());
@@ -175,7 +175,7 @@ void Agreement::reportOtherViews(std::uint64_t frame) {
     unhealed_ += odd.size();
     host::emitEvent("view_divergence", {{"frame", frame}, {"rank", odd.front()}});
     const std::vector<std::string> lines = lockstep::describeOtherViews(arrivals, labels_.names);
-    tell(lines, out_ / "divergence.txt");
+    report(lines, out_ / "divergence.txt");
     (void)writeFailure(labels_.failure("broken", odd.front(), lines.front()), out_);
 }
 

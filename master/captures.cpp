@@ -32,13 +32,13 @@ CaptureFolder::~CaptureFolder() {
 void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall,
                     lockstep::FrameBarrier& barrier, BackgroundJobs& jobs) {
     const auto folder = std::make_shared<CaptureFolder>(out_);
-    BackgroundJobs::Result said{nlohmann::json({{"ok", true},
-                                                {"folder", folder->path().filename().string()},
-                                                {"frame", frame},
-                                                {"step", sand.replica().stepNumber()},
-                                                {"state_hash", fmt::format("{:016x}", sand.hash())}})
-                                    .dump(),
-                                {}};
+    BackgroundJobs::Result answer{nlohmann::json({{"ok", true},
+                                                  {"folder", folder->path().filename().string()},
+                                                  {"frame", frame},
+                                                  {"step", sand.replica().stepNumber()},
+                                                  {"state_hash", fmt::format("{:016x}", sand.hash())}})
+                                      .dump(),
+                                  {}};
     std::function<void()> write;
     if (mayBeHeld(wall)) {
         auto held = std::make_shared<const HeldPictures>(holdWallPictures(barrier, wall));
@@ -57,10 +57,10 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
         };
     }
     jobs.start(
-        [said = std::move(said), write = std::move(write), folder] {
+        [answer = std::move(answer), write = std::move(write), folder] {
             write();
             folder->keep();
-            return said;
+            return answer;
         },
         std::exchange(clients_, {}), BackgroundJobs::Kind::capture);
 }

@@ -90,7 +90,7 @@ std::vector<std::string> describeDivergence(const DivergedFrame& diverged, const
     return lines;
 }
 
-void tell(const std::vector<std::string>& lines, const std::filesystem::path& file) {
+void report(const std::vector<std::string>& lines, const std::filesystem::path& file) {
     std::string text;
     for (const std::string& line : lines) {
         host::printLine("{}", line);

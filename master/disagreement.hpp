@@ -29,6 +29,6 @@ void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesys
                                                           const std::filesystem::path& journal);
 
 /// Prints `lines` on standard error, and appends them to `file`.
-void tell(const std::vector<std::string>& lines, const std::filesystem::path& file);
+void report(const std::vector<std::string>& lines, const std::filesystem::path& file);
 
 }  // namespace master

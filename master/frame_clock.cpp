@@ -27,7 +27,7 @@ double FrameClock::sinceSwap(std::int64_t now) const {
 }
 
 double FrameClock::timeOf(std::uint64_t frame, std::int64_t now) const {
-    if (pace_ == Pace::fast) {
+    if (pace_ == haptic_bridge::Pace::fast) {
         return static_cast<double>(frame) * period_;
     }
     return last_ == 0 ? 0 : static_cast<double>(now - first_) * 1e-9;

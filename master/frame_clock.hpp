@@ -3,14 +3,14 @@
 
 #include <cstdint>
 
-#include "master/steps/step_source.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 
 namespace master {
 
 /// One swap of the wall: the moment after the master has sent the verdict that all ranks agree. Each rank swaps when it
 /// has the verdict.
 struct Swap {
-    std::int64_t at = 0;        // [ns]
+    std::int64_t timeNs = 0;    // [ns]
     std::int64_t interval = 0;  // [ns], since the swap before; 0 at the first swap
     bool first = false;         // the first swap of this process
 
@@ -26,10 +26,11 @@ struct Swap {
 class FrameClock {
 public:
     /// `refreshHz` is positive [frames per second].
-    explicit FrameClock(double refreshHz, Pace pace = Pace::realtime) : period_(1 / refreshHz), pace_(pace) {}
+    explicit FrameClock(double refreshHz, haptic_bridge::Pace pace = haptic_bridge::Pace::realtime)
+        : period_(1 / refreshHz), pace_(pace) {}
 
     [[nodiscard]] double period() const { return period_; }  // [s]
-    [[nodiscard]] Pace pace() const { return pace_; }
+    [[nodiscard]] haptic_bridge::Pace pace() const { return pace_; }
     /// Returns the earliest time at which the next frame begins [ns]; 0 means at once. A fast session waits only while
     /// it is `held`, which means that it takes no steps.
     [[nodiscard]] std::int64_t next(bool held = false) const { return atOnce(held) ? 0 : start_ + periodNs(); }
@@ -52,10 +53,10 @@ public:
 
 private:
     [[nodiscard]] std::int64_t periodNs() const { return static_cast<std::int64_t>(1e9 * period_); }
-    [[nodiscard]] bool atOnce(bool held) const { return pace_ == Pace::fast && !held; }
+    [[nodiscard]] bool atOnce(bool held) const { return pace_ == haptic_bridge::Pace::fast && !held; }
 
     double period_;  // [s]
-    Pace pace_;
+    haptic_bridge::Pace pace_;
     std::int64_t start_ = 0;             // [ns], begin of the frame before
     std::int64_t first_ = 0, last_ = 0;  // [ns], first and last swap; 0 before the first
 };

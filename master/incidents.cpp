@@ -65,9 +65,9 @@ void IncidentFile::write(const Incidents& incidents) {
         whole.stream() << host::jsonOf(incidents).dump() << '\n';
         whole.keep();
         kept_ = incidents;
-        toldFailure_ = false;
+        printedFailure_ = false;
     } catch (const base::InputError& error) {
-        if (!std::exchange(toldFailure_, true)) {  // once, because it tries again four times a second
+        if (!std::exchange(printedFailure_, true)) {  // once, because it tries again four times a second
             host::printLine("{}; the incidents are counted, and written when that is possible", error.what());
         }
     }

@@ -20,7 +20,7 @@ struct Incidents {
     std::uint64_t stepsLeftOut = 0;                         // steps with a sand::Replica::leftOut()
     std::uint64_t links = 0, reconnects = 0;                // of the haptic link, see LinkCounters
     haptic_bridge::RefusalCounts refusedHere{}, refused{};  // of the haptic link, see LinkCounters
-    std::uint64_t stands = 0;                               // times that the sand was stopped because the disk was full
+    std::uint64_t stops = 0;                                // times that the sand was stopped because the disk was full
     std::uint64_t firstDifference = 0;                      // first frame in which sand or a view differed; 0: none
 
     /// Returns firstDifference; nullopt if it is 0.
@@ -43,7 +43,7 @@ struct Incidents {
         counters(it, visit);
         visit("links", it.links);
         visit("reconnects", it.reconnects);
-        visit("stands", it.stands);
+        visit("stands", it.stops);
         visit("first_difference", it.firstDifference);
         visit("refused_by_server", base::byName<haptic_bridge::RefusalCode>(it.refusedHere));
         visit("refused", base::byName<haptic_bridge::RefusalCode>(it.refused));
@@ -74,7 +74,7 @@ private:
     std::filesystem::path file_;
     Incidents before_, kept_;
     std::int64_t triedNs_ = 0;
-    bool toldFailure_ = false;  // since the last write that succeeded
+    bool printedFailure_ = false;  // since the last write that succeeded
 };
 
 }  // namespace master

@@ -31,8 +31,8 @@ void JournalCheck::begin(std::uint64_t frame, const JournalEnd& sand) {
     tries_ = 0;
     doubt_.clear();  // if this sand is confirmed, so are all decisions before
     start();
-    tell(frame, "begun", sand.hash,
-         fmt::format("frame {}: the journal is replayed to step {}, to confirm the majority", frame, sand.step));
+    report(frame, "begun", sand.hash,
+           fmt::format("frame {}: the journal is replayed to step {}, to confirm the majority", frame, sand.step));
 }
 
 void JournalCheck::start() {
@@ -80,25 +80,25 @@ void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const Journa
     if (hash == majority_.sand.hash) {
         replay_.reset();
         record_.checked({frame, shown, false});
-        tell(frame, "agreed", hash,
-             fmt::format("frame {}: the journal confirms the majority of frame {}", frame, majority_.frame));
+        report(frame, "agreed", hash,
+               fmt::format("frame {}: the journal confirms the majority of frame {}", frame, majority_.frame));
         return;
     }
     wrong_ = true;
     way_ = std::numeric_limits<std::uint64_t>::max();
-    tell(frame, "disagreed", hash,
-         fmt::format("frame {}: the majority of frame {} was wrong: after step {} it had {:016x}, the journal has "
-                     "{:016x}; all ranks will take the sand of the journal",
-                     frame, majority_.frame, majority_.sand.step, majority_.sand.hash, hash));
+    report(frame, "disagreed", hash,
+           fmt::format("frame {}: the majority of frame {} was wrong: after step {} it had {:016x}, the journal has "
+                       "{:016x}; all ranks will take the sand of the journal",
+                       frame, majority_.frame, majority_.sand.step, majority_.sand.hash, hash));
 }
 
 void JournalCheck::taken(std::uint64_t frame, const JournalEnd& shown) {
     ++incidents_.outvoted;
     wrong_ = holds_ = taking_ = false;
     record_.checked({frame, shown, true});
-    tell(frame, "outvoted", rightHash_,
-         fmt::format("frame {}: all ranks have the sand of the journal, which has outvoted the majority of frame {}",
-                     frame, majority_.frame));
+    report(frame, "outvoted", rightHash_,
+           fmt::format("frame {}: all ranks have the sand of the journal, which has outvoted the majority of frame {}",
+                       frame, majority_.frame));
 }
 
 void JournalCheck::finish(std::uint64_t frame, const JournalEnd& shown, std::chrono::milliseconds patience) {
@@ -115,13 +115,13 @@ void JournalCheck::finish(std::uint64_t frame, const JournalEnd& shown, std::chr
     wrong_ = holds_ = taking_ = false;
 }
 
-void JournalCheck::tellResumed(const Outvoted& outvoted) {
+void JournalCheck::reportResumed(const Outvoted& outvoted) {
     ++incidents_.outvoted;
     majority_ = outvoted.majority;
-    tell(majority_.frame, "outvoted", outvoted.rightHash,
-         fmt::format("the majority of frame {} was wrong: after step {} it had {:016x}, the journal has {:016x}; the "
-                     "session continues with the sand of the journal",
-                     majority_.frame, majority_.sand.step, majority_.sand.hash, outvoted.rightHash));
+    report(majority_.frame, "outvoted", outvoted.rightHash,
+           fmt::format("the majority of frame {} was wrong: after step {} it had {:016x}, the journal has {:016x}; the "
+                       "session continues with the sand of the journal",
+                       majority_.frame, majority_.sand.step, majority_.sand.hash, outvoted.rightHash));
 }
 
 void JournalCheck::fail(std::uint64_t frame, const std::string& error) {
@@ -132,20 +132,20 @@ void JournalCheck::fail(std::uint64_t frame, const std::string& error) {
     }
     replay_.reset();
     doubt_ = "its journal could not be replayed: " + error;
-    tell(frame, "failed", 0,
-         fmt::format("frame {}: the journal cannot be replayed, so the majority of frame {} is not confirmed: {}",
-                     frame, majority_.frame, error));
+    report(frame, "failed", 0,
+           fmt::format("frame {}: the journal cannot be replayed, so the majority of frame {} is not confirmed: {}",
+                       frame, majority_.frame, error));
 }
 
-void JournalCheck::tell(std::uint64_t frame, const char* state, std::uint64_t rightHash,
-                        const std::string& line) const {
+void JournalCheck::report(std::uint64_t frame, const char* state, std::uint64_t rightHash,
+                          const std::string& line) const {
     host::emitEvent("journal_check", {{"state", state},
                                       {"frame", frame},
                                       {"majority_frame", majority_.frame},
                                       {"majority_step", majority_.sand.step},
                                       {"majority_hash", fmt::format("{:016x}", majority_.sand.hash)},
                                       {"journal_hash", fmt::format("{:016x}", rightHash)}});
-    master::tell({line}, out_ / "divergence.txt");
+    master::report({line}, out_ / "divergence.txt");
 }
 
 }  // namespace master

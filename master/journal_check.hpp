@@ -49,7 +49,7 @@ public:
     /// failed() then returns false if the session's sand is confirmed.
     void finish(std::uint64_t frame, const JournalEnd& shown, std::chrono::milliseconds patience);
     /// Counts and reports a majority that the replay outvoted when the session was resumed.
-    void tellResumed(const Outvoted& outvoted);
+    void reportResumed(const Outvoted& outvoted);
 
     /// Returns whether a majority's decision has not been compared yet, or the ranks must still take other sand.
     [[nodiscard]] bool pending() const { return replay_ != nullptr || taking_; }
@@ -68,7 +68,7 @@ private:
     void start();
     void compare(std::uint64_t frame, std::uint64_t hash, const JournalEnd& shown);
     void fail(std::uint64_t frame, const std::string& error);
-    void tell(std::uint64_t frame, const char* state, std::uint64_t rightHash, const std::string& line) const;
+    void report(std::uint64_t frame, const char* state, std::uint64_t rightHash, const std::string& line) const;
 
     const Record record_;
     const std::filesystem::path out_;

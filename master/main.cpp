@@ -138,8 +138,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             "sandwall-master ... : -n {} sandwall-render-node",
             options.wall, world.wall.ranks(), world.wall.ranks(), cluster.renderRanks(), world.wall.ranks()));
     }
-    std::vector<master::Place> places;
-    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places), master::Place::parse);
+    std::vector<master::RankMachine> places;
+    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places),
+                   master::RankMachine::parse);
     master::requirePlaces(cluster.hosts(), world.wall, places);
     try {
         host::makeFolders(options.out);
@@ -148,7 +149,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
             fmt::format("{}: cannot be made ({}); choose another --out", options.out, error.code().message()));
     }
     if (options.session.film) {
-        options.session.pace = master::Pace::fast;
+        options.session.pace = haptic_bridge::Pace::fast;
         (void)master::Film(world.wall, options.session.filmEye, options.out);  // throws before anything is drawn
     }
     if (options.haptic != "none") {
@@ -194,7 +195,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
 }
 
 /// Makes the watchdog of the start and the end write failure.json. `wall` is null until it is known.
-void tellLastWords(const lockstep::Cluster& cluster, const Options& options, const walls::Wall* wall) {
+void setLastWords(const lockstep::Cluster& cluster, const Options& options, const walls::Wall* wall) {
     master::RankLabels labels;
     if (wall != nullptr) {
         labels = master::RankLabels::of(cluster, *wall);
@@ -204,7 +205,7 @@ void tellLastWords(const lockstep::Cluster& cluster, const Options& options, con
         }
         labels.tiles.resize(labels.hosts.size());
     }
-    cluster.tellLastWords(labels.names, [labels, out = options.out](int rank, const std::string& line) {
+    cluster.setLastWords(labels.names, [labels, out = options.out](int rank, const std::string& line) {
         (void)master::writeFailure(labels.failure("hung", rank, line), out);
     });
 }
@@ -212,10 +213,10 @@ void tellLastWords(const lockstep::Cluster& cluster, const Options& options, con
 int runSession(const lockstep::Cluster& cluster, Options& options) {
     std::optional<World> world;
     bool sessionOpen = false;
-    tellLastWords(cluster, options, nullptr);
+    setLastWords(cluster, options, nullptr);
     try {
         world.emplace(loadWorld(cluster, options));
-        tellLastWords(cluster, options, &world->wall);
+        setLastWords(cluster, options, &world->wall);
         (void)lockstep::broadcastSession(cluster, world->message);
         sessionOpen = true;
         const auto ranks = lockstep::gatherReadiness(cluster, {lockstep::hostName(), host::buildId(), "", "", {}, 0});
@@ -379,8 +380,8 @@ int main(int argc, char** argv) {
     if (line.answersHelp(argc, argv)) {
         return 0;
     }
-    lockstep::dieWithParent();
-    host::tellRankLog();
+    lockstep::endWithParent();
+    host::sendRankLog();
     // Open MPI starts before the options are checked, because mpirun counts a process that ends without it as crashed.
     lockstep::Cluster cluster(&argc, &argv);
     bool parsed = false;

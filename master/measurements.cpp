@@ -20,7 +20,7 @@ double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 }  // namespace
 
-Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period, Pace pace)
+Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period, haptic_bridge::Pace pace)
     : from_(from), period_(period), pace_(pace), ranks_(ranks) {}
 
 void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
@@ -42,7 +42,7 @@ void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arri
     fullDiskSeconds_ += frame.held == haptic_bridge::Held::disk ? 1e-3 * lastFrameMs_ : 0;
     if (counts) {
         frameMs_.add(lastFrameMs_);
-        lateFrames_ += pace_ == Pace::realtime && lastFrameMs_ > kLate * 1e3 * period_ ? 1 : 0;
+        lateFrames_ += pace_ == haptic_bridge::Pace::realtime && lastFrameMs_ > kLate * 1e3 * period_ ? 1 : 0;
     }
     const std::vector<std::uint32_t>& swaps = ranks_.lastSwapsUs();
     if (!swaps.empty()) {
@@ -65,13 +65,13 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
         latency_.toMaster.add(milliseconds(timed.receivedNs - sent));
         latency_.queued.add(milliseconds(frame.broadcast - timed.receivedNs));
         latency_.drawn.add(milliseconds(drawn - frame.broadcast));
-        latency_.swapped.add(milliseconds(frame.swap.at - drawn));
-        latency_.wholeWay.add(milliseconds(frame.swap.at - sent));
+        latency_.swapped.add(milliseconds(frame.swap.timeNs - drawn));
+        latency_.wholeWay.add(milliseconds(frame.swap.timeNs - sent));
     }
 }
 
-void Measurements::sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
-                               bool last, std::int64_t nowNs) {
+void Measurements::printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
+                                 bool last, std::int64_t nowNs) {
     if (!last && nowNs - lastProgress_ < kSecondNs) {
         return;
     }

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "lockstep/arrival.hpp"
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/wall_figures.hpp"
@@ -21,7 +23,7 @@ class Measurements {
 public:
     /// `ranks` is the number of ranks, including the master. Times count only after frame `from`. `period` is the time
     /// between two frames at the wall's refresh rate.
-    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, Pace pace);
+    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, haptic_bridge::Pace pace);
 
     /// A frame that all ranks have agreed on.
     struct Frame {
@@ -44,8 +46,8 @@ public:
 
     /// Prints the line of progress and emits the event `progress`, at most once per second, and always if `last` is
     /// true.
-    void sayProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
-                     std::int64_t nowNs);
+    void printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
+                       std::int64_t nowNs);
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
     /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.
@@ -63,7 +65,7 @@ private:
 
     const std::uint64_t from_;
     const double period_;
-    const Pace pace_;
+    const haptic_bridge::Pace pace_;
     lockstep::RankStatistics ranks_;
     lockstep::Statistics frameMs_, skewUs_, broadcastBytes_;
     Latency latency_;

@@ -177,7 +177,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
                             "refused: free disk space and try again",
                             edits_.sandBytes(edit) - edits_.sandBytes()));
         }
-        tellWhoWaitsForRoom();
+        answerEditsThatWaitForRoom();
         throw base::InputError(
             "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
             "try again");
@@ -260,7 +260,7 @@ void OperatorDesk::close() {
     control_.reset();
 }
 
-void OperatorDesk::tellWhoWaitsForRoom() {
+void OperatorDesk::answerEditsThatWaitForRoom() {
     for (const Client client : edits_.releaseClients()) {
         control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
     }

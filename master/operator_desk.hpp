@@ -66,11 +66,11 @@ public:
     /// Returns the wall in the stereo mode that was chosen last.
     [[nodiscard]] const walls::Wall& shownWall() const { return shown_; }
     /// Returns whether pictures of the next frame are wanted.
-    [[nodiscard]] bool wantsCapture() const { return captures_.wanted(jobs_); }
+    [[nodiscard]] bool needsCapture() const { return captures_.wanted(jobs_); }
 
     /// Answers all clients that wait for an edit that the edit waits for room on the disk. The haptic server may
     /// already have these edits, so they cannot be taken back. They are done when there is room.
-    void tellWhoWaitsForRoom();
+    void answerEditsThatWaitForRoom();
     /// Answers the clients whose edits are in `steps`, which the wall shows now.
     void answer(const std::vector<haptic_bridge::TimedStep>& steps);
     /// Calls Captures::take. A later obey() answers the clients.

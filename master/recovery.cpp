@@ -86,25 +86,25 @@ Lines linesOf(const std::filesystem::path& folder) {
 
 }  // namespace
 
-void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
+void reportRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
     const Failure& failure = recovery.failure;
     // At least 0, because somebody may have set the clock back meanwhile.
     const double seconds = std::max(0.0, unixTime() - (failure.noticed > 0 ? failure.noticed : kStarted));
     host::printLine("first frame {:.2f} s after {}: step {}, frame {}", seconds, failure.what, recovery.step,
                     recovery.frame);
-    Line told{.failure = failure.what,
-              .how = failure.how,
-              .secondsToFrame = seconds,
-              .step = recovery.step,
-              .frame = recovery.frame,
-              .stateHash = fmt::format("{:016x}", recovery.stateHash),
-              .checkpointStep = recovery.checkpointStep,
-              .replayedSteps = recovery.replayedSteps,
-              .cutBytes = static_cast<std::uint64_t>(recovery.cutBytes)};
+    Line fields{.failure = failure.what,
+                .how = failure.how,
+                .secondsToFrame = seconds,
+                .step = recovery.step,
+                .frame = recovery.frame,
+                .stateHash = fmt::format("{:016x}", recovery.stateHash),
+                .checkpointStep = recovery.checkpointStep,
+                .replayedSteps = recovery.replayedSteps,
+                .cutBytes = static_cast<std::uint64_t>(recovery.cutBytes)};
     if (failure.rank) {
-        told.rank = static_cast<std::uint64_t>(*failure.rank);
+        fields.rank = static_cast<std::uint64_t>(*failure.rank);
     }
-    const std::string json = host::jsonOf(told).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+    const std::string json = host::jsonOf(fields).dump(-1, ' ', false, ordered_json::error_handler_t::replace);
     host::emitEvent("recovered", {{"recovery", host::Json{json}}});
     if (!host::appendLines(fileIn(folder), json + '\n')) {
         host::printLine("{}: cannot be written", fileIn(folder).string());

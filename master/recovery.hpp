@@ -30,7 +30,7 @@ struct Recovery {
 
 /// Prints the recovery on standard error, with the time since the failure [s], emits the event `recovered`, and appends
 /// it to `folder`/recoveries.jsonl. If the file cannot be written, prints this and continues.
-void tellRecovery(const Recovery& recovery, const std::filesystem::path& folder);
+void reportRecovery(const Recovery& recovery, const std::filesystem::path& folder);
 /// Returns the lines of `folder`/recoveries.jsonl. Each line is a JSON object with the fields of a recovery
 /// (docs/recovery.md). Leaves out a line that is cut off. Also leaves out, and prints, a line with a value that no
 /// session can write.

@@ -35,7 +35,7 @@ public:
     SandCheck(const walls::Wall& wall, const RankLabels& labels, const std::filesystem::path& out, Parts parts);
 
     /// Counts and reports a majority that the replay outvoted when the session was resumed.
-    void tellResumed(const Outvoted& outvoted) { journal_.tellResumed(outvoted); }
+    void reportResumed(const Outvoted& outvoted) { journal_.reportResumed(outvoted); }
 
     /// Call these in every frame, in this order. applied(): the master has applied all steps up to `step`.
     void applied(std::uint64_t step);

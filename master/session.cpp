@@ -66,7 +66,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
               sand_.allTiles(),
               record_.before().firstDifference}) {
     if (options_.record.resumed && options_.record.resumed->outvoted) {
-        check_.tellResumed(*options_.record.resumed->outvoted);
+        check_.reportResumed(*options_.record.resumed->outvoted);
     }
     if (options_.forceShare) {
         record_.keepForce(*options_.forceShare);
@@ -89,7 +89,7 @@ Session::Steps Session::takeSteps() {
     // Also asked while the session is paused, so that it does not continue with an old answer about the disk.
     const bool room = record_.hasRoom(desk_.edits().sandBytes(), sand_);
     if (!room && !desk_.paused()) {
-        desk_.tellWhoWaitsForRoom();
+        desk_.answerEditsThatWaitForRoom();
     }
     const std::uint64_t left = options_.steps - std::min(options_.steps, sand_.replica().stepNumber());
     const std::size_t most = held() ? 0 : std::min<std::uint64_t>(steps_->mostPerFrame(), left);
@@ -114,7 +114,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
     const bool last = ends() || shownThen >= options_.steps;
     frame.stop = last && check_.mayEnd(now, shownThen);
-    frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.wantsCapture());
+    frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
     // The last frame compares the whole sand, because no later frame finds what is wrong now.
     frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
     return frame;
@@ -136,7 +136,7 @@ void Session::keep(const lockstep::FrameMessage& frame) {
 
 /// A haptic server could send such steps in every frame. So the line is printed for the first one, and then whenever
 /// their number is a power of two.
-void Session::tellLeftOut() {
+void Session::reportLeftOut() {
     for (const LeftOut& one : sand_.takeLeftOut()) {
         const std::uint64_t count = ++counted_.stepsLeftOut;
         if (std::has_single_bit(count)) {
@@ -163,7 +163,7 @@ bool Session::showFrame(bool& more) {
     const std::int64_t broadcast = monotonicNs();
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
-    tellLeftOut();
+    reportLeftOut();
     check_.applied(sand_.replica().stepNumber());
     if (!agree(frame)) {
         return false;
@@ -182,7 +182,7 @@ bool Session::showFrame(bool& more) {
     }
     check_.shown(frame.frame, shownSand());
     record_.shown(swap, frame.frame, sand_, steps_->epoch());
-    record_.keepIncidents(incidents(), swap.at);
+    record_.keepIncidents(incidents(), swap.timeNs);
     more = !frame.stop;
     return true;
 }
@@ -196,7 +196,7 @@ bool Session::agree(const lockstep::FrameMessage& frame) {
 Incidents Session::incidents() const {
     Incidents all = counted_;
     all.firstDifference = check_.firstDifference();
-    all.stands += record_.stands();
+    all.stops += record_.stops();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
     all.reconnects += link.reconnects;
@@ -229,9 +229,9 @@ nlohmann::json Session::status() const {
     return status;
 }
 
-void Session::sayProgress(bool last) {
+void Session::printProgress(bool last) {
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
-    measure_.sayProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs());
+    measure_.printProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs());
 }
 
 int Session::run() {
@@ -239,7 +239,7 @@ int Session::run() {
     for (bool more = true; agreed && more;) {
         agreed = showFrame(more);
         if (agreed) {
-            sayProgress(!more);
+            printProgress(!more);
         }
         if (agreed && film_ && more) {
             film_->take(barrier_);
@@ -249,15 +249,15 @@ int Session::run() {
         const lockstep::Busy busy(barrier_, "the files that it writes");
         desk_.close();
     }
-    const Summary told = finish(agreed);
+    const Summary result = finish(agreed);
     int status = agreed && !steps_->strayed() ? 0 : 1;
-    if (const std::string doubt = agreed ? doubtAbout(told) : std::string(); !doubt.empty()) {
+    if (const std::string doubt = agreed ? doubtAbout(result) : std::string(); !doubt.empty()) {
         host::printLine("{}", doubt);
         (void)writeFailure({"sand", -1, "", "", doubt}, options_.out);
         status = 1;
     }
     try {
-        writeSummary(told, options_.out / "summary.json");
+        writeSummary(result, options_.out / "summary.json");
     } catch (const base::InputError& error) {  // the ranks still have pictures to send
         host::printLine("{}", error.what());
         (void)writeFailure({"summary", -1, "", "", error.what()}, options_.out);
@@ -269,7 +269,7 @@ int Session::run() {
         writeWallPictures(barrier_, desk_.shownWall(), options_.out);
     }
     if (options_.report) {
-        fmt::print("{}", describe(told));
+        fmt::print("{}", describe(result));
     }
     barrier_.watchdog().arm();  // until the destructor of the barrier, because the members after it wait for the disk
     return status;

@@ -50,7 +50,7 @@ private:
 
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
-    void tellLeftOut();
+    void reportLeftOut();
     void waitForFrame();
     [[nodiscard]] Steps takeSteps();
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
@@ -72,13 +72,13 @@ private:
     [[nodiscard]] bool agree(const lockstep::FrameMessage& frame);
     [[nodiscard]] JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
     /// Returns why the session's sand cannot be trusted at its end; an empty text if it can.
-    [[nodiscard]] std::string doubtAbout(const Summary& told) const;
+    [[nodiscard]] std::string doubtAbout(const Summary& result) const;
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
-    void sayProgress(bool last);
+    void printProgress(bool last);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
-    void tellHand(Summary& summary) const;
+    void fillHand(Summary& summary) const;
 
     const scene::Scene& scene_;
     const walls::Wall& wall_;

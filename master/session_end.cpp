@@ -61,12 +61,12 @@ Summary Session::summary() {
         summary.framesBefore = resumed->frame;
         summary.stepsBefore = resumed->step;
     }
-    summary.pace = options_.recording ? "replay" : options_.pace == Pace::fast ? "fast" : "realtime";
+    summary.pace = options_.recording ? "replay" : options_.pace == haptic_bridge::Pace::fast ? "fast" : "realtime";
     summary.refreshHz = 1 / clock_.period();
     check_.fill(summary);
     summary.unhealed += (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);
     summary.compared.serverAtEnd = steps_->serverAtEnd();
-    tellHand(summary);
+    fillHand(summary);
     if (const tracking::TrackedViewer& viewer = desk_.views().viewer(); viewer.tracked()) {
         summary.tracking = viewer.counters();
     }
@@ -83,7 +83,7 @@ Summary Session::summary() {
     return summary;
 }
 
-void Session::tellHand(Summary& summary) const {
+void Session::fillHand(Summary& summary) const {
     summary.hand.asked = options_.recording ? "none"
                          : options_.server  ? "server"
                          : options_.pointer ? "pointer"
@@ -93,17 +93,17 @@ void Session::tellHand(Summary& summary) const {
     }
 }
 
-std::string Session::doubtAbout(const Summary& told) const {
+std::string Session::doubtAbout(const Summary& result) const {
     if (!check_.doubt().empty()) {
         return fmt::format(
             "the session ends with sand that its journal does not confirm, because {}; sandwall-replay {} computes the "
             "right sand, and --resume continues with it",
             check_.doubt(), record_.journalFile().string());
     }
-    return told.exact()
+    return result.exact()
                ? std::string()
                : fmt::format("the session ends with a wrong volume: {} + outflow {} is not {}, as at the start",
-                             told.volumeFinal, told.volumeOutflow, told.volumeInitial);
+                             result.volumeFinal, result.volumeOutflow, result.volumeInitial);
 }
 
 }  // namespace master

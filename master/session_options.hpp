@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "master/drills.hpp"
 #include "master/film.hpp"
 #include "master/journal/recording.hpp"
@@ -28,7 +29,7 @@ struct SessionOptions {
     haptic_bridge::LinkSecurity security;  // of the link to the server
     std::optional<double> forceShare;      // as if an operator had set it at the start, 0 to 1; wins over the journal
     bool pointer = false;                  // the hand is the pointer of the ranks' windows
-    Pace pace = Pace::realtime;
+    haptic_bridge::Pace pace = haptic_bridge::Pace::realtime;
     std::optional<double> refreshHz;   // frames per second; nullopt: as in the wall file
     std::uint64_t steps = kNoLimit;    // the session ends when exactly this many steps have been shown
     std::uint64_t frames = kNoLimit;   // the session ends after this many frames

@@ -110,18 +110,18 @@ void SessionRecord::endForDisk(const DiskFailure& failure) const {
 
 void SessionRecord::shown(const Swap& swap, std::uint64_t frame, const MasterSand& sand, std::uint32_t epoch) {
     if (swap.first && options_.resumed) {
-        tellRecovery(frame, sand);
+        reportRecovery(frame, sand);
     }
     if (journal_) {
         journal_->shown(sand.replica(), frame, epoch, sand.hash());
     }
 }
 
-void SessionRecord::tellRecovery(std::uint64_t frame, const MasterSand& sand) const {
+void SessionRecord::reportRecovery(std::uint64_t frame, const MasterSand& sand) const {
     const ResumedSession& resumed = *options_.resumed;
-    master::tellRecovery({options_.failure, sand.replica().stepNumber(), frame, sand.hash(), resumed.checkpointStep,
-                          resumed.replayedSteps, resumed.cutBytes},
-                         out_);
+    master::reportRecovery({options_.failure, sand.replica().stepNumber(), frame, sand.hash(), resumed.checkpointStep,
+                            resumed.replayedSteps, resumed.cutBytes},
+                           out_);
 }
 
 void SessionRecord::finish(const MasterSand& sand, bool agreed) {
@@ -143,7 +143,7 @@ std::unique_ptr<sand::Replica> SessionRecord::sandOfJournal(const MasterSand& sa
     }
     try {
         return std::make_unique<sand::Replica>(
-            restoreSand(file, sand.replica().stepNumber(), {.executor = executor}).terrain);
+            restoreSand(file, sand.replica().stepNumber(), {.executor = executor}).replica);
     } catch (const std::exception& error) {  // caught, because the ranks wait for an answer
         host::printLine("{}", error.what());
         return nullptr;
@@ -159,21 +159,21 @@ void SessionRecord::describe(nlohmann::json& status) const {
 }
 
 Summary::Journal SessionRecord::summary() const {
-    Summary::Journal told;
+    Summary::Journal result;
     if (!journal_) {
-        return told;
+        return result;
     }
-    told.policy = base::nameOf(journal_->policy());
-    told.state = journal_->state();
-    told.parts = journal_->parts();
-    told.checkpointsFailed = journal_->checkpointsFailed();
-    told.checkpointsBeyond = journal_->checkpointsBeyond();
-    told.whole = journal_->whole();
-    told.stoodSeconds = journal_->stoodSeconds();
+    result.policy = base::nameOf(journal_->policy());
+    result.state = journal_->state();
+    result.parts = journal_->parts();
+    result.checkpointsFailed = journal_->checkpointsFailed();
+    result.checkpointsBeyond = journal_->checkpointsBeyond();
+    result.whole = journal_->whole();
+    result.stoppedSeconds = journal_->stoppedSeconds();
     for (const double ms : journal_->copyMs()) {
-        told.checkpointMs.add(ms);
+        result.checkpointMs.add(ms);
     }
-    return told;
+    return result;
 }
 
 }  // namespace master

@@ -66,7 +66,7 @@ public:
     void keepIncidents(const Incidents& all, std::int64_t nowNs) { incidents_.keep(all, nowNs); }
     void keepLastIncidents(const Incidents& all) { incidents_.keepLast(all); }
     /// Returns how often the sand was stopped because the disk was full, since this process began.
-    [[nodiscard]] std::uint64_t stands() const { return journal_ ? journal_->stands() : 0; }
+    [[nodiscard]] std::uint64_t stops() const { return journal_ ? journal_->stops() : 0; }
 
     /// Returns the first file of the journal. Returns an empty path if the session writes no journal, or has given it
     /// up.
@@ -86,7 +86,7 @@ private:
     template <class Write>
     void onDisk(const Write& write);
     [[noreturn]] void endForDisk(const DiskFailure& failure) const;
-    void tellRecovery(std::uint64_t frame, const MasterSand& sand) const;
+    void reportRecovery(std::uint64_t frame, const MasterSand& sand) const;
 
     const std::filesystem::path out_;
     const RecordOptions options_;

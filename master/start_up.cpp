@@ -66,10 +66,10 @@ void requireFolder(const std::filesystem::path& out) {
     }
 }
 
-Place Place::parse(const std::string& text) {
+RankMachine RankMachine::parse(const std::string& text) {
     const auto first = text.find('=');
     const auto second = first == std::string::npos ? first : text.find('=', first + 1);
-    Place place;
+    RankMachine place;
     if (second != std::string::npos) {
         place.host = text.substr(first + 1, second - first - 1);
         place.machine = text.substr(second + 1);
@@ -87,8 +87,8 @@ Place Place::parse(const std::string& text) {
 }
 
 void requirePlaces(const std::vector<lockstep::RankHost>& ranks, const walls::Wall& wall,
-                   const std::vector<Place>& places) {
-    for (const Place& place : places) {
+                   const std::vector<RankMachine>& places) {
+    for (const RankMachine& place : places) {
         for (const int rank : place.ranks) {
             const auto index = static_cast<std::size_t>(rank);
             if (index >= ranks.size() || ranks[index].machine == place.machine) {

@@ -29,20 +29,20 @@ void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const 
 void requireFolder(const std::filesystem::path& out);
 
 /// Machine on which ranks must run, as the launcher's option --place names it.
-struct Place {
+struct RankMachine {
     std::vector<int> ranks;
     std::string host;     // name by which the launcher reaches it
     std::string machine;  // lockstep::machineId() there
 
     /// Reads "1,2,5=node01=node01.lan/3f2a…". Throws base::InputError for other texts.
-    static Place parse(const std::string& text);
+    static RankMachine parse(const std::string& text);
 };
 
 /// Throws base::InputError if a rank runs on another machine than the launcher asked for, because it would draw another
-/// screen. mpirun decides where a rank runs, and its rules differ between versions. Ranks without a Place are not
+/// screen. mpirun decides where a rank runs, and its rules differ between versions. Ranks without a RankMachine are not
 /// checked.
 void requirePlaces(const std::vector<lockstep::RankHost>& ranks, const walls::Wall& wall,
-                   const std::vector<Place>& places);
+                   const std::vector<RankMachine>& places);
 /// Throws base::InputError if a rank draws another tile than that of its number in the wall.
 void requireTiles(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall);
 

@@ -109,7 +109,7 @@ struct Summary {
         lockstep::Statistics checkpointMs;  // [ms], delay of the frame loop by each checkpoint
         std::uint64_t checkpointsFailed = 0;
         std::uint64_t checkpointsBeyond = 0;  // of later steps than the journal's end, which has lost steps
-        double stoodSeconds = 0;              // [s], for which the sand was stopped because the disk was full
+        double stoppedSeconds = 0;            // [s], for which the sand was stopped because the disk was full
         template <class Self, class Visit>
         static void fields(Self& it, Visit& visit) {
             visit("policy", it.policy);
@@ -120,7 +120,7 @@ struct Summary {
             visit("checkpoints_failed", it.checkpointsFailed);
             visit("checkpoints_beyond", it.checkpointsBeyond);
             visit("checkpoint_copy_ms", Spread{it.checkpointMs});
-            visit("full_disk/seconds", it.stoodSeconds);
+            visit("full_disk/seconds", it.stoppedSeconds);
         }
     } journal;
     std::vector<host::Json> recoveries;  // of the session, each an object
@@ -176,7 +176,7 @@ struct Summary {
         visit("haptic/refused_by_server", base::byName<RefusalCode>(it.incidents.refusedHere));
         visit("haptic/refused/servers", base::byName<RefusalCode>(it.incidents.refused));
         const haptic_bridge::Report report = it.haptic.value_or(haptic_bridge::Report{});
-        visit("haptic/refused/guests", base::byName<RefusalCode>(report.refused));
+        visit("haptic/refused/connections", base::byName<RefusalCode>(report.refused));
         if (it.haptic) {
             visit("haptic", ReportPart{report});
         }
@@ -185,7 +185,7 @@ struct Summary {
         }
         visit("master_memory_bytes", it.masterResidentBytes);
         visit("journal", it.journal);
-        visit("journal/full_disk/times", it.incidents.stands);
+        visit("journal/full_disk/times", it.incidents.stops);
         visit("recoveries", it.recoveries);
         visit("per_rank", it.rankParts());
     }

@@ -29,7 +29,7 @@ public:
             failure_ = failure_ ? failure_ : error;
         }
     }
-    void tellFailure() const {
+    void throwFailure() const {
         if (failure_) {
             throw *failure_;
         }
@@ -122,7 +122,7 @@ void writeWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall,
             std::fflush(stdout);
         });
     writeWhole(whole, out);
-    out.tellFailure();
+    out.throwFailure();
 }
 
 HeldPictures holdWallPictures(lockstep::FrameBarrier& barrier, const walls::Wall& wall) {
@@ -140,7 +140,7 @@ void writeHeldPictures(const HeldPictures& held, const std::filesystem::path& fo
         out.write(tile.file, tile.image);
     }
     writeWhole(held.whole, out);
-    out.tellFailure();
+    out.throwFailure();
 }
 
 }  // namespace master

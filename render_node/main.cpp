@@ -39,8 +39,8 @@ int main(int argc, char** argv) {
     if (line.answersHelp(argc, argv)) {
         return 0;
     }
-    lockstep::dieWithParent();
-    host::tellRankLog();
+    lockstep::endWithParent();
+    host::sendRankLog();
     lockstep::Cluster cluster(&argc, &argv);
     const int status = host::runMain(line, argc, argv, [&] {
         const host::WorkerPool pool(sandThreads);

@@ -57,26 +57,26 @@ void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
     help_.reset();
 }
 
-void TilePainter::drawAnew() {
+void TilePainter::drawAgain() {
     memories_.assign(memories_.size(), {});
     shown_.assign(shown_.size(), lockstep::Pattern::none);
 }
 
-void TilePainter::paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
+void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
                         const TileFigures& figures) {
     scenePainter_.setLayers(view.layers);
     scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     const std::vector<Camera> cameras = camerasOf(view);
-    scenePainter_.update(terrain.surface().data(), terrain.takeChange(), cameras);
-    if (terrain.probe() != sand::ProbePoint{}) {  // a hand has moved the tool
-        scenePainter_.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
+    scenePainter_.update(replica.surface().data(), replica.takeChange(), cameras);
+    if (replica.probe() != sand::ProbePoint{}) {  // a hand has moved the tool
+        scenePainter_.setTool(replica.probe(), replica.engaged(), replica.tool());
     }
     if (!view.layers.shows(lockstep::Overlay::force)) {
         force_.reset();
     } else if (!force_) {
         force_.emplace(forceConstants_);
     }
-    scenePainter_.setForce(force_ ? force_->arrow(terrain) : std::nullopt);
+    scenePainter_.setForce(force_ ? force_->arrow(replica) : std::nullopt);
     const std::size_t shownEye = frame % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);

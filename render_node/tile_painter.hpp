@@ -48,17 +48,17 @@ public:
     void showAs(const walls::Wall& wall, const walls::Tile& tile);
 
     /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.
-    void drawAnew();
+    void drawAgain();
 
     /// Draws the parts of each eye's picture that changed, and composes the outputs. Does not wait for GL;
     /// GlContext::present() does. Throws std::runtime_error if a shader of an overlay or a test pattern does not
     /// compile.
     ///
-    /// @param terrain  Replica whose sand is drawn. Its list of changes is taken.
+    /// @param replica  Replica whose sand is drawn. Its list of changes is taken.
     /// @param view     Eyes and overlays of this frame. If it has a test pattern, the pattern is drawn instead.
     /// @param oneEye   With two eyes, draws only the eye of this frame: the left one in even frames.
     /// @param figures  Figures that are shown over the sand if the view has Overlay::statistics.
-    void paint(sand::Replica& terrain, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
+    void paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
                const TileFigures& figures = {});
     /// Returns the picture of each output, in the order of tile.outputs. Valid until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }

@@ -53,11 +53,11 @@ public:
                                    {"sand.frag.glsl", "spoilt on purpose"});
         }
         const scene::Scene scene = scene::Scene::decode(message.scene);
-        terrain_.emplace(scene, executor);
+        replica_.emplace(scene, executor);
         painter_.emplace(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1)), scene,
-                         lockstep::hostName(), terrain_->surface().data());
+                         lockstep::hostName(), replica_->surface().data());
         if (!message.state.empty()) {  // after the painter, because the painter's box follows from the scene's start
-            terrain_->decodeState(message.state);
+            replica_->decodeState(message.state);
         }
     }
 
@@ -92,7 +92,7 @@ public:
             const std::int64_t drawn = monotonicNs();
             figures.drawMs = static_cast<double>(drawn - start) * 1e-6;
             drawMs_.add(figures.drawMs);
-            const std::uint64_t hash = terrain_->stateHash();
+            const std::uint64_t hash = replica_->stateHash();
             const std::int64_t arrived = monotonicNs();
             if (message_.pointer) {
                 barrier.setPointer(readPointer(frame.view, clockAhead));
@@ -123,7 +123,7 @@ public:
 
 private:
     void applyFaults(lockstep::FrameMessage& frame) {
-        faults_.strike(frame.frame, *terrain_);
+        faults_.strike(frame.frame, *replica_);
         if (faults_.movesView(frame.frame)) {
             frame.view.head[0] += 1;
         }
@@ -141,14 +141,14 @@ private:
     }
 
     [[nodiscard]] lockstep::PointerReport readPointer(const lockstep::ViewState& view, std::int64_t clockAhead) {
-        return pointer_.read(context_->takePointer(), *terrain_, view, painter_->heightsEver(), clockAhead);
+        return pointer_.read(context_->takePointer(), *replica_, view, painter_->heightsEver(), clockAhead);
     }
 
     /// Draws a frame from the current sand and presents it.
     void draw(const lockstep::FrameMessage& frame, const TileFigures& figures) {
         // showsEyesInTurn() describes the previous frame, which may have had another stereo mode.
         const bool inTurn = context_->showsEyesInTurn() && shown_.stereo == walls::Stereo::active;
-        painter_->paint(*terrain_, frame.view, frame.frame, inTurn && !frame.capture, figures);
+        painter_->paint(*replica_, frame.view, frame.frame, inTurn && !frame.capture, figures);
         context_->present(painter_->outputs(), painter_->changed(), frame.frame);
     }
 
@@ -158,16 +158,16 @@ private:
                const TileFigures& figures) {
         lockstep::Verdict verdict = barrier.meet(mine);
         while (verdict == lockstep::Verdict::otherSand) {
-            (void)lockstep::findDivergence(barrier, *terrain_);
-            const lockstep::Healing healing = lockstep::heal(barrier, *terrain_);
+            (void)lockstep::findDivergence(barrier, *replica_);
+            const lockstep::Healing healing = lockstep::heal(barrier, *replica_);
             if (healing == lockstep::Healing::ended) {
                 return false;
             }
             if (healing == lockstep::Healing::healed) {
-                painter_->drawAnew();
+                painter_->drawAgain();
                 draw(frame, figures);
             }
-            mine.stateHash = terrain_->stateHash();
+            mine.stateHash = replica_->stateHash();
             verdict = barrier.meet(mine);
         }
         return verdict == lockstep::Verdict::equal;
@@ -184,9 +184,9 @@ private:
 
     void applySteps(const lockstep::FrameMessage& frame) {
         for (const sand::Step& step : frame.steps) {
-            terrain_->apply(step);
+            replica_->apply(step);
         }
-        terrain_->audit(static_cast<int>(frame.auditTiles));
+        replica_->audit(static_cast<int>(frame.auditTiles));
     }
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
@@ -242,7 +242,7 @@ private:
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // declared before all owners of GL objects
     const std::string otherFloats_;
-    std::optional<sand::Replica> terrain_;
+    std::optional<sand::Replica> replica_;
     std::optional<TilePainter> painter_;
     PointerReader pointer_;
     std::string keys_;  // pressed keys that no arrival has carried yet

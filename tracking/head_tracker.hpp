@@ -53,7 +53,7 @@ public:
 
 /// Opens the tracker of `source`, or returns null for the source "none". `restingEye` is the fixed viewer's eye [m].
 /// Throws base::InputError for a broken trace, with file, line and value, and for a port in use.
-[[nodiscard]] std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Say say,
+[[nodiscard]] std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Print print,
                                                        Clock clock = host::monotonicNs);
 
 }  // namespace tracking

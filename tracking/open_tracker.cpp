@@ -7,7 +7,7 @@
 
 namespace tracking {
 
-std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Say say, Clock clock) {
+std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restingEye, Print print, Clock clock) {
     const RoomMapping mapping = source.mapping(restingEye);
     switch (source.kind) {
         case Source::Kind::none:
@@ -15,11 +15,11 @@ std::unique_ptr<HeadTracker> openTracker(const Source& source, glm::dvec3 restin
         case Source::Kind::trace:
             return std::make_unique<TraceTracker>(HeadTrace::load(source.file, mapping));
         case Source::Kind::opentrack:
-            return std::make_unique<UdpTracker>(source, mapping, std::make_unique<OpentrackReader>(), std::move(say),
+            return std::make_unique<UdpTracker>(source, mapping, std::make_unique<OpentrackReader>(), std::move(print),
                                                 std::move(clock));
         case Source::Kind::dtrack:
             return std::make_unique<UdpTracker>(source, mapping, std::make_unique<DtrackReader>(source.body),
-                                                std::move(say), std::move(clock));
+                                                std::move(print), std::move(clock));
     }
     return nullptr;
 }

@@ -38,8 +38,9 @@ PacketSender::PacketSender(const Source& to) : to_(checked(to)), socket_(to.host
 
 void PacketSender::send(const Pose& pose) {
     ++sent_;
-    const Pose told{pose.position - to_.origin.value_or(glm::dvec3(0)), pose.right};
-    socket_.send(to_.kind == Source::Kind::opentrack ? opentrackPacket(told) : dtrackPacket(told, sent_, to_.body));
+    const Pose relative{pose.position - to_.origin.value_or(glm::dvec3(0)), pose.right};
+    socket_.send(to_.kind == Source::Kind::opentrack ? opentrackPacket(relative)
+                                                     : dtrackPacket(relative, sent_, to_.body));
 }
 
 }  // namespace tracking

@@ -10,7 +10,7 @@
 namespace tracking {
 
 /// Function that takes a line for the person who runs the wall.
-using Say = std::function<void(const std::string&)>;
+using Print = std::function<void(const std::string&)>;
 /// Monotonic clock [ns].
 using Clock = std::function<std::int64_t()>;
 
@@ -19,8 +19,8 @@ class Presence {
 public:
     static constexpr std::int64_t kLostAfterNs = 500'000'000;
 
-    /// Reports to `say`, in lines that name the tracker `what`.
-    Presence(std::string what, Say say) : what_(std::move(what)), say_(std::move(say)) {}
+    /// Reports to `print`, in lines that name the tracker `what`.
+    Presence(std::string what, Print print) : what_(std::move(what)), print_(std::move(print)) {}
 
     /// Must be called each time the tracker is read. `pose` tells whether a pose has come since the last call.
     void look(bool pose, std::int64_t nowNs);
@@ -32,7 +32,7 @@ private:
     enum class State : std::uint8_t { unseen, awaited, there, lost };
 
     std::string what_;
-    Say say_;
+    Print print_;
     State state_ = State::unseen;  // awaited: no pose has ever come, and this has been reported
     std::int64_t last_ = 0;        // [ns], time of the last pose; before it, time of the first look
     bool looked_ = false;

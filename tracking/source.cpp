@@ -20,11 +20,11 @@ constexpr int kMaxBody = 999;
 /// Parser of one source's text.
 struct Reader {
     std::string_view text;
-    const std::string& who;
+    const std::string& name;
     Source source{};
 
     [[noreturn]] void fail(const std::string& what) const {
-        throw base::InputError(fmt::format("{}: '{}': {}", who, text.substr(0, 200), what));
+        throw base::InputError(fmt::format("{}: '{}': {}", name, text.substr(0, 200), what));
     }
 
     [[nodiscard]] glm::dvec3 point(std::string_view key, std::string_view value, double most) const {
@@ -151,8 +151,8 @@ struct Reader {
 
 }  // namespace
 
-Source Source::parse(std::string_view text, const std::string& who, const std::filesystem::path& folder) {
-    Reader reader{text, who};
+Source Source::parse(std::string_view text, const std::string& name, const std::filesystem::path& folder) {
+    Reader reader{text, name};
     // Reads from the end, so that a trace's name may contain blanks.
     std::string_view words = text;
     while (true) {

@@ -35,9 +35,9 @@ struct Source {
     glm::dmat3 axes{1.0};
     glm::dvec3 eyes{0};  // [m]
 
-    /// Parses a source. Throws base::InputError that begins with `who`, such as "--track". A relative trace is in
+    /// Parses a source. Throws base::InputError that begins with `name`, such as "--track". A relative trace is in
     /// `folder`.
-    static Source parse(std::string_view text, const std::string& who, const std::filesystem::path& folder = {});
+    static Source parse(std::string_view text, const std::string& name, const std::filesystem::path& folder = {});
     /// Returns the mapping to the room. Without origin=, opentrack's origin is `restingEye` [m], because opentrack
     /// counts from the place where the head was centred. The origin of other trackers is the room's.
     [[nodiscard]] RoomMapping mapping(glm::dvec3 restingEye) const;

@@ -55,8 +55,8 @@ int send(const Options& options) {
 
 int listen(const Options& options) {
     const Source source = Source::parse(options.listen, "--listen");
-    const auto say = [](const std::string& line) { host::printLine("{}", line); };
-    const auto tracker = openTracker(source, glm::dvec3(0), say);
+    const auto print = [](const std::string& line) { host::printLine("{}", line); };
+    const auto tracker = openTracker(source, glm::dvec3(0), print);
     if (!tracker) {
         throw base::InputError("--listen: 'none' is not a tracker; give a source such as opentrack:4242");
     }

@@ -16,11 +16,11 @@ constexpr double kPause = 1;  // [s], time without a pose outside, before the ne
 
 }  // namespace
 
-TrackedViewer::TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock)
+TrackedViewer::TrackedViewer(const walls::Wall& wall, const Source& source, Print print, Clock clock)
     : tiles_(wall.tiles),
       viewer_(wall.viewer),
-      say_(say),
-      tracker_(openTracker(source, wall.viewer.eye, std::move(say), std::move(clock))) {}
+      print_(print),
+      tracker_(openTracker(source, wall.viewer.eye, std::move(print), std::move(clock))) {}
 
 const walls::Tile* TrackedViewer::tileBehind(const walls::Viewer& viewer) const {
     const auto tile = std::find_if(tiles_.begin(), tiles_.end(), [&](const walls::Tile& one) {
@@ -41,7 +41,7 @@ walls::Viewer TrackedViewer::at(double seconds) {
     if (const walls::Tile* tile = tileBehind(moved)) {
         ++outside_;
         if (!isOutside_) {
-            say_(
+            print_(
                 fmt::format("head tracking: the head at ({:.2f}, {:.2f}, {:.2f}) is not in front of tile '{}'; the "
                             "last place is held",
                             moved.eye.x, moved.eye.y, moved.eye.z, tile->name));
@@ -52,7 +52,7 @@ walls::Viewer TrackedViewer::at(double seconds) {
     }
     if (isOutside_ && seconds > outsideUntil_ + kPause) {
         isOutside_ = false;
-        say_("head tracking: the head is in front of every tile again");
+        print_("head tracking: the head is in front of every tile again");
     }
     return viewer_ = moved;
 }

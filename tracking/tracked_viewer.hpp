@@ -18,7 +18,7 @@ namespace tracking {
 class TrackedViewer {
 public:
     /// Throws base::InputError if the tracker cannot be opened.
-    TrackedViewer(const walls::Wall& wall, const Source& source, Say say, Clock clock = host::monotonicNs);
+    TrackedViewer(const walls::Wall& wall, const Source& source, Print print, Clock clock = host::monotonicNs);
 
     /// Returns the viewer at this time of the session [s]. The time is frame / refresh rate if every run must show the
     /// same, otherwise the time since the first frame.
@@ -38,7 +38,7 @@ private:
 
     std::vector<walls::Tile> tiles_;
     walls::Viewer viewer_;
-    Say say_;
+    Print print_;
     std::unique_ptr<HeadTracker> tracker_;
     std::uint64_t outside_ = 0;
     bool isOutside_ = false;

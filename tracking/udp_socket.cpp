@@ -58,14 +58,14 @@ void filter(int socket, const asio::ip::address& from) {
 
 }  // namespace
 
-UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who)
+UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& name)
     : buffer_(kLargestDatagram) {
     const asio::ip::udp::endpoint endpoint(asio::ip::make_address(host), port);
     if (!from.empty()) {
         from_ = plain(asio::ip::make_address(from));
     } else if (!endpoint.address().is_loopback()) {
         throw base::InputError(fmt::format(
-            "{}: other machines can reach {}; add the tracker's address, such as from=192.168.1.20", who, host));
+            "{}: other machines can reach {}; add the tracker's address, such as from=192.168.1.20", name, host));
     }
     error_code error;
     socket_.open(endpoint.protocol(), error);
@@ -81,10 +81,10 @@ UdpReceiver::UdpReceiver(const std::string& host, std::uint16_t port, const std:
     }
     if (error == asio::error::address_in_use) {
         throw base::InputError(
-            fmt::format("{}: port {} is in use; stop the program that has it, or take another port", who, port));
+            fmt::format("{}: port {} is in use; stop the program that has it, or take another port", name, port));
     }
     if (error) {
-        throw base::InputError(fmt::format("{}: cannot listen on {} port {}: {}", who, host, port, error.message()));
+        throw base::InputError(fmt::format("{}: cannot listen on {} port {}: {}", name, host, port, error.message()));
     }
     port_ = socket_.local_endpoint(error).port();
 }
@@ -106,10 +106,10 @@ std::optional<std::span<const std::uint8_t>> UdpReceiver::next() {
 }
 
 std::uint64_t UdpReceiver::strangers() const {
-    std::array<std::uint32_t, SK_MEMINFO_VARS> told{};
-    socklen_t size = sizeof told;
-    const bool known = from_ && getsockopt(native_, SOL_SOCKET, SO_MEMINFO, told.data(), &size) == 0;
-    return strangers_ + (known ? told[SK_MEMINFO_DROPS] : 0);
+    std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
+    socklen_t size = sizeof info;
+    const bool known = from_ && getsockopt(native_, SOL_SOCKET, SO_MEMINFO, info.data(), &size) == 0;
+    return strangers_ + (known ? info[SK_MEMINFO_DROPS] : 0);
 }
 
 UdpSender::UdpSender(const std::string& host, std::uint16_t port) : to_(asio::ip::make_address(host), port) {

@@ -16,9 +16,9 @@ namespace tracking {
 class UdpReceiver {
 public:
     /// Opens the port. `host` is an IP address. Datagrams are accepted only from the address `from`, which may be empty
-    /// if `host` is loopback. Throws base::InputError that begins with `who` if `from` is empty for another host, or if
-    /// the port cannot be opened.
-    UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& who);
+    /// if `host` is loopback. Throws base::InputError that begins with `name` if `from` is empty for another host, or
+    /// if the port cannot be opened.
+    UdpReceiver(const std::string& host, std::uint16_t port, const std::string& from, const std::string& name);
     /// Returns the next whole datagram, valid until the next call. Returns nullopt if no datagram has arrived, and
     /// after a failure. Skips datagrams from other addresses.
     [[nodiscard]] std::optional<std::span<const std::uint8_t>> next();

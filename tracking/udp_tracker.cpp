@@ -5,13 +5,13 @@
 
 namespace tracking {
 
-UdpTracker::UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader, Say say,
-                       Clock clock)
+UdpTracker::UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader,
+                       Print print, Clock clock)
     : mapping_(mapping),
       receiver_(source.host, source.port, source.from, source.text),
       reader_(std::move(reader)),
       clock_(std::move(clock)),
-      presence_(source.text, std::move(say)) {}
+      presence_(source.text, std::move(print)) {}
 
 bool UdpTracker::take(std::span<const std::uint8_t> packet, bool gone) {
     ++counters_.packets;

@@ -12,7 +12,7 @@ namespace tracking {
 /// Tracker that sends packets. Each read empties the socket and keeps the newest pose. No thread, no lock.
 class UdpTracker : public HeadTracker {
 public:
-    UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader, Say say,
+    UdpTracker(const Source& source, const RoomMapping& mapping, std::unique_ptr<PacketReader> reader, Print print,
                Clock clock);
     [[nodiscard]] std::optional<Pose> newest(double seconds) override;
     [[nodiscard]] Counters counters() const override;

@@ -25,9 +25,9 @@ struct Sums {
 scene::Scene dunesOf(int side, std::uint32_t seed) {
     scene::Scene scene = sample::flatScene(side, side, 0.01);
     sand::grid::makeDunes({.height = 0.012, .length = 0.08, .seed = seed}, scene.terrain);  // crests in every chunk
-    sand::Replica terrain(scene);
-    sample::drag(terrain, scene, {0.6, 0.7, 0.0}, {1.1, 1.0, 0.0});
-    scene.terrain = std::get<sand::GridData>(terrain.surface().data()).field;
+    sand::Replica replica(scene);
+    sample::drag(replica, scene, {0.6, 0.7, 0.0}, {1.1, 1.0, 0.0});
+    scene.terrain = std::get<sand::GridData>(replica.surface().data()).field;
     return scene;
 }
 

@@ -88,7 +88,7 @@ BENCHMARK(moveHead)
     ->UseRealTime();
 
 /// Gives the changed heights of a new furrow to the view, and draws. Argument: side of the changed square [cell].
-void updateDamage(benchmark::State& state) {
+void updateChange(benchmark::State& state) {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(512);
     const render_node::EyeTarget target(64, 48);
@@ -100,7 +100,7 @@ void updateDamage(benchmark::State& state) {
         target.finish();
     }
 }
-BENCHMARK(updateDamage)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(updateChange)->ArgName("cells")->Arg(0)->Arg(64)->Arg(312)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// Measures a frame in which the tool of Dorjgotov et al. 2007 digs, for one eye of a tile that shows the whole field.
 /// Argument 0: 1 draws what changed, 0 everything. Argument 1: cells on a side. The step of sand is not timed.
@@ -112,7 +112,7 @@ void dig(benchmark::State& state) {
     // The default of a scene file.
     const double radius = 0.01 / scene.terrain.cellSize();
     scene.rules.tuning.sweepsPerStep = std::max(4, static_cast<int>(std::ceil(radius * radius / 6)));
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     render_node::ScenePainter view(scene, glm::dmat4(1));
     const render_node::EyeTarget target(1024, 768);
     const sample::Window window{0.25, 0.25, 0.75, 0.75};
@@ -122,13 +122,13 @@ void dig(benchmark::State& state) {
     double pixels = 0;
     for (auto _ : state) {
         state.PauseTiming();
-        const double at = static_cast<double>(terrain.stepNumber() % 200) / 200;
+        const double at = static_cast<double>(replica.stepNumber() % 200) / 200;
         const double place = 0.7 + 0.6 * at;
-        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
+        replica.apply({0, replica.stepNumber() + 1, true, {sample::probeAt(scene, {place, place, 0.01})}});
         state.ResumeTiming();
         memory.drawn = state.range(0) != 0;
-        view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged());
+        view.update(replica.surface().data(), replica.takeChange());
+        view.setTool(replica.probe(), replica.engaged());
         pixels += static_cast<double>(view.drawIfChanged(camera, target, memory).area()) / (1024 * 768);
         target.finish();
     }

@@ -78,17 +78,17 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
 }
 
 /// Applies the `steps` steps of one frame. Each step has as many samples of the hand as a device gives.
-void dig(sand::Replica& terrain, std::int32_t level, int steps) {
+void dig(sand::Replica& replica, std::int32_t level, int steps) {
     constexpr int kSamples = 17;  // per step
     for (int i = 0; i < steps; ++i) {
-        sand::Step step{1, terrain.stepNumber() + 1, true, {}};
+        sand::Step step{1, replica.stepNumber() + 1, true, {}};
         for (int sample = 1; sample <= kSamples; ++sample) {
             const double at = static_cast<double>(step.number) + static_cast<double>(sample) / kSamples;
-            step.path.push_back(handAt(terrain.rules(), level, at / terrain.rules().stepsPerSecond));
+            step.path.push_back(handAt(replica.rules(), level, at / replica.rules().stepsPerSecond));
         }
-        terrain.apply(step);
+        replica.apply(step);
     }
-    (void)terrain.stateHash();
+    (void)replica.stateHash();
 }
 
 struct Measured {
@@ -98,25 +98,25 @@ struct Measured {
     std::vector<double> viewMs, viewTriangles, viewChunks;                     // per view
 };
 
-void takeOver(Tile& tile, const sand::Replica& terrain, const sand::SurfaceChange& change) {
+void takeOver(Tile& tile, const sand::Replica& replica, const sand::SurfaceChange& change) {
     render_node::ScenePainter& view = tile.view;
     std::vector<render_node::Camera> cameras;
     for (const auto& eye : tile.eyes) {
         cameras.push_back(eye->camera);
     }
-    view.update(terrain.surface().data(), change, cameras);
-    view.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
+    view.update(replica.surface().data(), change, cameras);
+    view.setTool(replica.probe(), replica.engaged(), replica.tool());
 }
 
 /// Updates the views with the changes since the last call, and draws them, tile by tile.
-void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& terrain, Measured& measured) {
+void show(const std::vector<std::unique_ptr<Tile>>& tiles, sand::Replica& replica, Measured& measured) {
     sand::SurfaceChange change;
-    const double listed = bench::secondsOf([&] { change = terrain.takeChange(); });  // each rank does this once
+    const double listed = bench::secondsOf([&] { change = replica.takeChange(); });  // each rank does this once
     double update = listed * static_cast<double>(tiles.size());
     double read = 0, draw = 0, busiest = 0, busiestUpdate = 0, drawn = 0, pixels = 0, all = 0;
     for (const auto& tile : tiles) {
         const std::int64_t readBefore = tile->view.placesRead();
-        const double taken = bench::secondsOf([&] { takeOver(*tile, terrain, change); });
+        const double taken = bench::secondsOf([&] { takeOver(*tile, replica, change); });
         read += static_cast<double>(tile->view.placesRead() - readBefore);
         double both = 0;
         for (const auto& eye : tile->eyes) {
@@ -155,8 +155,8 @@ int measure(const Options& options) {
     const walls::Wall wall = walls::loadWall(options.wall);
     const scene::Scene scene = scene::loadScene(options.scene);
     const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
-    sand::Replica terrain(scene);
-    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, terrain.surface().data());
+    sand::Replica replica(scene);
+    const std::vector<std::unique_ptr<Tile>> tiles = tilesOf(wall, scene, replica.surface().data());
     const std::int32_t level = scene.referenceHeight();
     Measured measured;
     constexpr int kWarmUp = 30;  // [frame]; shaders are compiled, buffers are filled, and the first bank is made
@@ -165,8 +165,8 @@ int measure(const Options& options) {
             measured = {};
         }
         const int steps = scene.rules.stepsPerSecond / options.rate;
-        measured.stepMs.push_back(1e3 * bench::secondsOf([&] { dig(terrain, level, steps); }));
-        show(tiles, terrain, measured);
+        measured.stepMs.push_back(1e3 * bench::secondsOf([&] { dig(replica, level, steps); }));
+        show(tiles, replica, measured);
     }
     if (options.json) {
         const auto median = [](const std::vector<double>& values) { return bench::quantile(values, 0.5); };

@@ -33,7 +33,7 @@ sand::ProbePoint middle(int side) { return {side / 2 * sand::kProbePerCell, side
 /// Returns a TIN with a vertex in the middle of every cell, and ripples on it.
 sand::tin::VertexSand tinRipples(int side) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
-    std::vector<sand::tin::Place> places;
+    std::vector<sand::tin::LatticePoint> places;
     places.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
     for (int cell = 0; cell < side * side; ++cell) {
         places.push_back(

@@ -109,16 +109,16 @@ struct Drag {
 
 private:
     void run(const sand::ForceConstants& constants, int side) {
-        sand::Replica terrain(sceneOf(side));
-        const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
+        sand::Replica replica(sceneOf(side));
+        const sand::HeightField& field = std::get<sand::GridData>(replica.surface().data()).field;
         const auto tool = sand::force::Contour::sphere(kRadius);
         sand::force::SurfacePatch patch;
         Vec3 last;
         for (int tick = 0; tick < kTicks; ++tick) {
             const Vec3 place = handAt(1e-3 * tick, side);
-            terrain.apply({1, terrain.stepNumber() + 1, true, {probeAt(place)}});
+            replica.apply({1, replica.stepNumber() + 1, true, {probeAt(place)}});
             patchSeconds.push_back(
-                secondsOf([&] { patch = sand::force::SurfacePatch(field, terrain.probe(), kRadius); }));
+                secondsOf([&] { patch = sand::force::SurfacePatch(field, replica.probe(), kRadius); }));
             const Vec3 truth = respond(constants, patch, tool, place).push;
             for (Follower& follower : followers) {
                 follower.tick(tick, patch, tool, place, truth);

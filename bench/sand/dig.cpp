@@ -33,20 +33,20 @@ scene::Scene sceneFor(const Stroke& stroke) {
     return scene;
 }
 
-sand::Step stepOf(const sand::Replica& terrain, const Stroke& stroke, int number) {
+sand::Step stepOf(const sand::Replica& replica, const Stroke& stroke, int number) {
     // The stroke is along the diagonal, because 480 cells and their banks then fit into a field of 512.
     const double at = stroke.side / 2.0 + stroke.speed * (number - kSteps / 2.0) / std::numbers::sqrt2;
-    return {1, terrain.stepNumber() + 1, true, {sand::probePoint(at, at, 0)}};
+    return {1, replica.stepNumber() + 1, true, {sand::probePoint(at, at, 0)}};
 }
 
 /// Digs one stroke and leaves the tool in the sand. Adds the time of each step to `seconds` [s]. Returns the last hash.
-std::uint64_t digStroke(sand::Replica& terrain, const Stroke& stroke, std::vector<double>& seconds) {
+std::uint64_t digStroke(sand::Replica& replica, const Stroke& stroke, std::vector<double>& seconds) {
     std::uint64_t hash = 0;
     for (int i = 0; i <= kSteps; ++i) {
-        const sand::Step step = stepOf(terrain, stroke, i);
+        const sand::Step step = stepOf(replica, stroke, i);
         const double took = secondsOf([&] {
-            terrain.apply(step);
-            hash = terrain.stateHash();
+            replica.apply(step);
+            hash = replica.stateHash();
         });
         if (i > 0) {  // the first step presses the tool in, and touches every page for the first time
             seconds.push_back(took);
@@ -67,15 +67,15 @@ struct Lag {
 /// of |field - rest|, and of |rest|.
 double behind(const sand::HeightField& field, const sand::HeightField& rest) { return misplaced(field, rest); }
 
-Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
+Lag lagOf(sand::Replica& replica, const Stroke& stroke) {
     Lag lag;
-    const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
+    const sand::HeightField& field = std::get<sand::GridData>(replica.surface().data()).field;
     const sand::HeightField end = field;
-    const sand::grid::Obstacle tool = sand::grid::Displacement(terrain.tool()).obstacle(end, terrain.probe());
+    const sand::grid::Obstacle tool = sand::grid::Displacement(replica.tool()).obstacle(end, replica.probe());
     sand::HeightField held = end;
-    sand::grid::Erosion(held, terrain.rules()).sweep(held, kMostSweeps, &tool);
+    sand::grid::Erosion(held, replica.rules()).sweep(held, kMostSweeps, &tool);
     sand::HeightField lifted = end;
-    sweepToRest(lifted, terrain.rules());
+    sweepToRest(lifted, replica.rules());
     lag.held = behind(end, held);
     lag.lifted = behind(end, lifted);
     for (int y = 0; y < stroke.side; ++y) {
@@ -87,7 +87,7 @@ Lag lagOf(sand::Replica& terrain, const Stroke& stroke) {
         }
     }
     for (; lag.stepsAfter < kMostAfter && behind(field, lifted) > 0.01; ++lag.stepsAfter) {
-        terrain.apply({1, terrain.stepNumber() + 1, false, {}});
+        replica.apply({1, replica.stepNumber() + 1, false, {}});
     }
     return lag;
 }
@@ -99,10 +99,10 @@ void measure(const Stroke& stroke, int runs, Csv& csv) {
     std::uint64_t hash = 0;
     Lag lag;
     for (int run = 0; run < runs; ++run) {
-        sand::Replica terrain(sceneFor(stroke));
-        hash = digStroke(terrain, stroke, seconds);
+        sand::Replica replica(sceneFor(stroke));
+        hash = digStroke(replica, stroke, seconds);
         if (run == 0) {
-            lag = lagOf(terrain, stroke);
+            lag = lagOf(replica, stroke);
         }
     }
     std::uint64_t idleHash = 0;

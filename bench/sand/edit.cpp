@@ -19,7 +19,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
     const sand::HeightField level(side, side, 1.0);
     const sand::Rules rules = rulesFor(level, kTalus);
     const sand::grid::Displacement tool({.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell)});
-    const sand::ProbePoint at = sand::probePoint(side / 2.0, side / 2.0, 0);
+    const sand::ProbePoint probe = sand::probePoint(side / 2.0, side / 2.0, 0);
     sand::grid::Erosion::Options options;
     options.skipSettled = skipSettled;
     Costs costs;
@@ -28,7 +28,7 @@ Costs measure(int side, double radius, bool skipSettled, int runs) {
         sand::grid::Erosion erosion(field, rules, options);
         erosion.sweep(field, 2);
         const double before = cpuSeconds();
-        erosion.touch(tool.drag(field, rules.rim, nullptr, at, at).cells);
+        erosion.touch(tool.drag(field, rules.rim, nullptr, probe, probe).cells);
         erosion.sweep(field, kStepSweeps);
         costs.step.push_back(cpuSeconds() - before);
         if (skipSettled) {

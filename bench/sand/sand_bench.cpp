@@ -76,15 +76,15 @@ scene::Scene level(double toolCells, int sweeps, std::int32_t band = 0) {
 
 /// Measures a step of digging in circles, 1.5 cells long, with its hash.
 void dig(benchmark::State& state, double toolCells, int sweeps, std::int32_t band = 0) {
-    sand::Replica terrain(level(toolCells, sweeps, band));
+    sand::Replica replica(level(toolCells, sweeps, band));
     for (auto _ : state) {
-        const double angle = static_cast<double>(terrain.stepNumber()) * 1.5 / 120;
+        const double angle = static_cast<double>(replica.stepNumber()) * 1.5 / 120;
         const auto at = [](double cell) { return static_cast<std::int32_t>(cell * sand::kProbePerCell); };
-        terrain.apply({1,
-                       terrain.stepNumber() + 1,
+        replica.apply({1,
+                       replica.stepNumber() + 1,
                        true,
                        {{at(256 + 120 * std::cos(angle)), at(256 + 120 * std::sin(angle)), 0}}});
-        benchmark::DoNotOptimize(terrain.stateHash());
+        benchmark::DoNotOptimize(replica.stateHash());
     }
 }
 BENCHMARK_CAPTURE(dig, paper_tool, 2.56, 4)->Unit(benchmark::kMillisecond);
@@ -99,11 +99,11 @@ void touchDown(benchmark::State& state) {
     scene.terrain = sand::HeightField(side, side, 1.0);
     sand::grid::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     for (auto _ : state) {
         for (const bool engaged : {true, false}) {
             const auto place = static_cast<std::int32_t>(side / 2 * sand::kProbePerCell);
-            terrain.apply({1, terrain.stepNumber() + 1, engaged, {{place, place, 0}}});
+            replica.apply({1, replica.stepNumber() + 1, engaged, {{place, place, 0}}});
         }
     }
 }
@@ -116,19 +116,19 @@ void compressed(benchmark::State& state) {
     scene.terrain = sand::HeightField(side, side, 1.0);
     sand::grid::makeDunes({}, scene.terrain);
     scene.rules.columns = scene.rules.rows = side;
-    const sand::Replica terrain(scene);
+    const sand::Replica replica(scene);
     for (auto _ : state) {
-        benchmark::DoNotOptimize(terrain.copySand()->encode());
+        benchmark::DoNotOptimize(replica.copySand()->encode());
     }
 }
 BENCHMARK(compressed)->Arg(512)->Arg(2048)->Unit(benchmark::kMillisecond);
 
 /// Measures a step with settled sand and a hovering hand.
 void idle(benchmark::State& state) {
-    sand::Replica terrain(level(12, 24));
+    sand::Replica replica(level(12, 24));
     for (auto _ : state) {
-        terrain.apply({1, terrain.stepNumber() + 1, false, {}});
-        benchmark::DoNotOptimize(terrain.stateHash());
+        replica.apply({1, replica.stepNumber() + 1, false, {}});
+        benchmark::DoNotOptimize(replica.stateHash());
     }
 }
 BENCHMARK(idle)->Unit(benchmark::kMicrosecond);

@@ -61,9 +61,9 @@ private:
 };
 
 void explainTinMemory(const scene::Scene& scene, Explanation& rows) {
-    const sand::Replica terrain(scene);
-    const sand::tin::Triangles& mesh = std::get<sand::TinData>(terrain.surface().data()).view.triangles;
-    const std::size_t perVertex = sizeof(sand::tin::Place) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
+    const sand::Replica replica(scene);
+    const sand::tin::Triangles& mesh = std::get<sand::TinData>(replica.surface().data()).view.triangles;
+    const std::size_t perVertex = sizeof(sand::tin::LatticePoint) + 2 * sizeof(std::int32_t) + 4 * sizeof(std::int64_t);
     rows.memory("vertices", mesh.places.size() * perVertex,
                 fmt::format("{} of them: place, volume, share of the ground, height, hash", mesh.places.size()));
     rows.memory("triangles", mesh.triangles.size() * sizeof(sand::tin::Triangle),
@@ -105,14 +105,14 @@ void explainRules(const scene::Scene& scene, Explanation& rows) {
     rows.rule("tool as an obstacle", rules.tuning.tool.radius > 0, "only in patches that the engaged tool reaches");
 }
 
-std::vector<double> timeSteps(sand::Replica& terrain, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
+std::vector<double> timeSteps(sand::Replica& replica, const std::vector<sand::Step>& steps, std::uint64_t& hash) {
     std::vector<double> seconds;
     for (sand::Step step : steps) {
         step.epoch = 1;
-        step.number = terrain.stepNumber() + 1;
+        step.number = replica.stepNumber() + 1;
         seconds.push_back(secondsOf([&] {
-            terrain.apply(step);
-            hash ^= terrain.stateHash();
+            replica.apply(step);
+            hash ^= replica.stateHash();
         }));
     }
     return seconds;
@@ -153,29 +153,29 @@ void explainSteps(const scene::Scene& scene, const Settings& settings, Explanati
 
     progress("the scene comes to rest");
     constexpr std::uint64_t kMostSteps = 100000;
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     std::vector<double> toRest;
-    while (!terrain.settled() && terrain.stepNumber() < kMostSteps) {
-        toRest.push_back(timeSteps(terrain, {sand::Step{}}, hash).front());
+    while (!replica.settled() && replica.stepNumber() < kMostSteps) {
+        toRest.push_back(timeSteps(replica, {sand::Step{}}, hash).front());
     }
     rows.step("while the scene comes to rest", toRest, fmt::format("{} steps of {}", toRest.size(), sweepsPerStep));
-    rows.step("settled; hovering", timeSteps(terrain, std::vector<sand::Step>(runs), hash), "no block is visited");
+    rows.step("settled; hovering", timeSteps(replica, std::vector<sand::Step>(runs), hash), "no block is visited");
 
     progress("small edits and digging");
     const std::int32_t z = static_cast<std::int32_t>(
-        terrain.surface().height(scene.rules.columns * 128.0, scene.rules.rows * 128.0) / 256);
+        replica.surface().height(scene.rules.columns * 128.0, scene.rules.rows * 128.0) / 256);
     const auto at = [&](double share) {
         return sand::ProbePoint{static_cast<std::int32_t>(scene.rules.columns * share * kProbePerCell),
                                 scene.rules.rows * kProbePerCell / 2, z};
     };
     std::vector<sand::Step> stroke{{1, 0, true, {at(0.3)}}};
-    const auto press = timeSteps(terrain, stroke, hash);
+    const auto press = timeSteps(replica, stroke, hash);
     rows.step("one small edit", press, "the tool presses half of itself in; " + sweepsPerStep);
     stroke.clear();
     for (std::size_t i = 0; i < runs; ++i) {
         stroke.push_back({1, 0, true, {at(0.3 + 0.4 * static_cast<double>(i + 1) / static_cast<double>(runs))}});
     }
-    rows.step("digging", timeSteps(terrain, stroke, hash), fmt::format("two fifths of the field in {} steps", runs));
+    rows.step("digging", timeSteps(replica, stroke, hash), fmt::format("two fifths of the field in {} steps", runs));
 
     progress("everything moving");
     constexpr std::size_t kMoving = 10;  // before much of it rests

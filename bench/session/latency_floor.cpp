@@ -50,14 +50,14 @@ int echo() {
     std::fflush(stdout);
     host::emitEvent("listening", {{"address", fmt::format("127.0.0.1:{}", acceptor.local_endpoint().port())}});
     for (;;) {
-        tcp::socket guest = acceptor.accept();
-        guest.set_option(tcp::no_delay(true));
+        tcp::socket client = acceptor.accept();
+        client.set_option(tcp::no_delay(true));
         std::vector<std::uint8_t> chunk(64 * 1024);
         boost::system::error_code error;
         while (!error) {
-            const std::size_t count = guest.read_some(boost::asio::buffer(chunk), error);
+            const std::size_t count = client.read_some(boost::asio::buffer(chunk), error);
             if (!error) {
-                boost::asio::write(guest, boost::asio::buffer(chunk, count), error);
+                boost::asio::write(client, boost::asio::buffer(chunk, count), error);
             }
         }
     }

@@ -11,7 +11,7 @@
 namespace bench {
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::VertexSand;
 
 constexpr double kToolRadius = 16.8;  // [cell]; about 1000 cells are below a round tool and in the ring beside it
@@ -23,7 +23,7 @@ constexpr int kEach = 10;             // imprints per run, and steps of its drag
 /// Returns level sand with one vertex per cell, at a random place in the middle half of the cell.
 VertexSand jittered(int side, std::mt19937& random) {
     sand::tin::Mesh mesh(side * sand::kProbePerCell, side * sand::kProbePerCell);
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     for (std::int32_t y = 0; y < side; ++y) {
         for (std::int32_t x = 0; x < side; ++x) {
             const auto within = [&](std::int32_t cell) {
@@ -42,11 +42,11 @@ sand::ProbePoint handAt(double x, double y, double z /* [cell] */) {
     return {probe(x), probe(y), probe(z)};
 }
 
-/// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `at`.
-int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& at) {
+/// Returns the number of vertices from which the tool takes sand, or to which it gives sand, at the place `probe`.
+int verticesNear(const VertexSand& layer, const sand::TurnedShape& shape, const sand::ProbePoint& probe) {
     int count = 0;
-    for (const Place& place : layer.triangles().places) {
-        const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+    for (const LatticePoint& place : layer.triangles().places) {
+        const sand::Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
         count += shape.covers(offset) || shape.takes(offset) ? 1 : 0;
     }
     return count;
@@ -70,12 +70,12 @@ void measure(int side, sand::ToolKind kind, bool refines, const Settings& settin
         };
         for (int i = 0; i < kEach; ++i) {
             const double x = somewhere();
-            const sand::ProbePoint at = handAt(x, somewhere(), kToolRadius - kDepth);
-            near = verticesNear(layer, sand::TurnedShape(tool), at);
+            const sand::ProbePoint probe = handAt(x, somewhere(), kToolRadius - kDepth);
+            near = verticesNear(layer, sand::TurnedShape(tool), probe);
             sand::tin::Imprint imprint;
             imprints.push_back(secondsOf([&] {
                 sand::tin::Displacement displacement(tool, rules);
-                displacement.drag(layer, imprint, sand::Rim::closed, std::array{at});
+                displacement.drag(layer, imprint, sand::Rim::closed, std::array{probe});
             }));
             sand::tin::Displacement(tool, rules).leave(layer, imprint);
             static_cast<void>(layer.takeChange());

@@ -58,7 +58,7 @@ sand::tin::Simplified regularGrid(const Terrain& terrain, double share) {
     const double aspect = static_cast<double>(terrain.width()) / terrain.depth();
     const int columns = std::clamp(static_cast<int>(std::sqrt(most * aspect)), 2, terrain.columns);
     const int rows = std::clamp(most / columns, 2, terrain.rows);
-    std::vector<sand::tin::Place> places;
+    std::vector<sand::tin::LatticePoint> places;
     std::vector<double> heights;
     const auto sampleOf = [](int i, int count, int samples) {
         return static_cast<std::size_t>((i * (samples - 1) + (count - 1) / 2) / (count - 1));

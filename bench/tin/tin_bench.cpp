@@ -10,17 +10,17 @@
 
 namespace {
 
+using sand::tin::LatticePoint;
 using sand::tin::Mesh;
-using sand::tin::Place;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
 constexpr std::int32_t kSide = 512 * 256;  // side of 512 cells [probe unit]
 constexpr int kVertices = 250'000;
 
-std::vector<Place> randomPlaces(int count) {
+std::vector<LatticePoint> randomPlaces(int count) {
     std::mt19937 random(1);
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     for (int i = 0; i < count; ++i) {
         const auto x = static_cast<std::int32_t>(random() % (kSide + 1));
         places.push_back({x, static_cast<std::int32_t>(random() % (kSide + 1))});
@@ -29,8 +29,8 @@ std::vector<Place> randomPlaces(int count) {
 }
 
 /// Returns the points of a square lattice. The four corners of each square are on one circle.
-std::vector<Place> latticePlaces() {
-    std::vector<Place> places;
+std::vector<LatticePoint> latticePlaces() {
+    std::vector<LatticePoint> places;
     for (std::int32_t y = 0; y <= kSide; y += 264) {
         for (std::int32_t x = 0; x <= kSide; x += 264) {
             places.push_back({x, y});
@@ -39,13 +39,13 @@ std::vector<Place> latticePlaces() {
     return places;
 }
 
-Mesh meshOf(const std::vector<Place>& places) {
+Mesh meshOf(const std::vector<LatticePoint>& places) {
     Mesh mesh(kSide, kSide);
     mesh.insert(places);
     return mesh;
 }
 
-void insertAll(benchmark::State& state, const std::vector<Place>& places) {
+void insertAll(benchmark::State& state, const std::vector<LatticePoint>& places) {
     for (auto _ : state) {
         const Mesh mesh = meshOf(places);
         benchmark::DoNotOptimize(mesh.vertexCount());
@@ -54,19 +54,19 @@ void insertAll(benchmark::State& state, const std::vector<Place>& places) {
 }
 
 void insertOneByOne(benchmark::State& state) {
-    const std::vector<Place> places = randomPlaces(kVertices);
+    const std::vector<LatticePoint> places = randomPlaces(kVertices);
     Mesh mesh = meshOf(places);
     std::mt19937 random(2);
     for (auto _ : state) {
         const auto x = static_cast<std::int32_t>(random() % kSide);
-        benchmark::DoNotOptimize(mesh.insert(Place{x, static_cast<std::int32_t>(random() % kSide)}));
+        benchmark::DoNotOptimize(mesh.insert(LatticePoint{x, static_cast<std::int32_t>(random() % kSide)}));
     }
 }
 
 /// Inserts an ellipse of 32 points with a radius of 16 cells by 8, and makes its edges constraints. Returns its
 /// vertices. About 380 vertices of the mesh are inside.
 template <class Surface>
-std::vector<Vertex> imprint(Surface& surface, const Place& centre) {
+std::vector<Vertex> imprint(Surface& surface, const LatticePoint& centre) {
     constexpr std::array<std::array<int, 2>, 32> kUnit{
         {{4096, 0},      {4017, 399},    {3784, 784},   {3406, 1138},  {2896, 1448},  {2276, 1703},   {1567, 1892},
          {799, 2009},    {0, 2048},      {-799, 2009},  {-1567, 1892}, {-2276, 1703}, {-2896, 1448},  {-3406, 1138},
@@ -76,7 +76,7 @@ std::vector<Vertex> imprint(Surface& surface, const Place& centre) {
     std::vector<Vertex> ring;
     ring.reserve(kUnit.size());
     for (const auto& [x, y] : kUnit) {
-        ring.push_back(surface.insert(Place{centre.x + x, centre.y + y}));
+        ring.push_back(surface.insert(LatticePoint{centre.x + x, centre.y + y}));
     }
     for (std::size_t i = 0; i < ring.size(); ++i) {
         surface.constrain(ring[i], ring[(i + 1) % ring.size()]);
@@ -84,7 +84,7 @@ std::vector<Vertex> imprint(Surface& surface, const Place& centre) {
     return ring;
 }
 
-Place somewhere(std::mt19937& random) {
+LatticePoint somewhere(std::mt19937& random) {
     const auto x = static_cast<std::int32_t>(5000 + random() % (kSide - 10'000));
     return {x, static_cast<std::int32_t>(5000 + random() % (kSide - 10'000))};
 }
@@ -146,7 +146,7 @@ void locateAnywhere(benchmark::State& state) {
     std::mt19937 random(4);
     std::int32_t last = 0;
     const auto reach = static_cast<std::int32_t>(state.range(0));
-    Place place{kSide / 2, kSide / 2};
+    LatticePoint place{kSide / 2, kSide / 2};
     for (auto _ : state) {
         place.x += static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(2 * reach + 1)) - reach;
         place.y += static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(2 * reach + 1)) - reach;

@@ -70,7 +70,7 @@ void tinActive(const Settings& settings, Csv& csv) {
             const double x = side * (0.2 + 0.6 * run / settings.runs);
             std::vector<sand::tin::Vertex> raised;
             for (sand::tin::Vertex v = 0; v < static_cast<sand::tin::Vertex>(layer.heights().size()); ++v) {
-                const sand::tin::Place& at = layer.triangles().places[static_cast<std::size_t>(v)];
+                const sand::tin::LatticePoint& at = layer.triangles().places[static_cast<std::size_t>(v)];
                 const double away = std::hypot(at.x / 256.0 - x, at.y / 256.0 - side / 2.0);
                 if (away < 18) {
                     raised.push_back(v);

@@ -87,16 +87,16 @@ std::vector<Action> actionsOf(int side, std::uint32_t seed) {
 
 /// Measures whole steps as on a rank: the step, its hash, and the list of changes for drawing.
 void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
-    sand::Replica terrain(scene);
-    terrain.apply({1, 1, false, {}});  // all sand moves in the first step
-    static_cast<void>(terrain.stateHash());
-    static_cast<void>(terrain.takeChange());
+    sand::Replica replica(scene);
+    replica.apply({1, 1, false, {}});  // all sand moves in the first step
+    static_cast<void>(replica.stateHash());
+    static_cast<void>(replica.takeChange());
     for (Action action : actions) {
         ++action.step.number;
         times[{action.kind, "step"}].push_back(secondsOf([&] {
-            terrain.apply(action.step);
-            static_cast<void>(terrain.stateHash());
-            static_cast<void>(terrain.takeChange());
+            replica.apply(action.step);
+            static_cast<void>(replica.stateHash());
+            static_cast<void>(replica.takeChange());
         }));
     }
 }
@@ -105,8 +105,8 @@ void measureWhole(const scene::Scene& scene, const std::vector<Action>& actions,
 void measureParts(const scene::Scene& scene, const std::vector<Action>& actions, Times& times) {
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::Tool& tool = scene.rules.tuning.tool;
-    sand::ProbePoint at;
-    surface.sweep(kSweepsPerStep, nullptr, at);
+    sand::ProbePoint probe;
+    surface.sweep(kSweepsPerStep, nullptr, probe);
     bool touched = false;
     for (const auto& [kind, step] : actions) {
         const auto part = [&, &to = kind](const char* name, const auto& work) {
@@ -116,19 +116,19 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
             part("keep", [&] { surface.keep(); });
         }
         if (step.engaged) {
-            std::vector<sand::ProbePoint> path{touched ? at : step.path.front()};
+            std::vector<sand::ProbePoint> path{touched ? probe : step.path.front()};
             path.insert(path.end(), step.path.begin(), step.path.end());
             part("tool", [&] { surface.drag(tool, path); });
         }
         if (touched) {
-            part("release", [&] { surface.release(tool, at); });
+            part("release", [&] { surface.release(tool, probe); });
         }
         if (touched && !step.engaged) {
             part("leave", [&] { surface.leave(tool); });
         }
-        at = step.path.empty() ? at : step.path.back();
+        probe = step.path.empty() ? probe : step.path.back();
         touched = step.engaged;
-        part("sweeps", [&] { surface.sweep(kSweepsPerStep, touched ? &tool : nullptr, at); });
+        part("sweeps", [&] { surface.sweep(kSweepsPerStep, touched ? &tool : nullptr, probe); });
         part("hash", [&] { static_cast<void>(surface.hash()); });
         part("change", [&] { static_cast<void>(surface.takeChange()); });
     }
@@ -157,11 +157,11 @@ void measureImprints(const scene::Scene& scene, const std::vector<Action>& actio
     }
 }
 
-int verticesBelowAndBeside(const scene::Scene& scene, const sand::ProbePoint& at) {
+int verticesBelowAndBeside(const scene::Scene& scene, const sand::ProbePoint& probe) {
     const sand::TurnedShape tool(scene.rules.tuning.tool);
     const auto& places = scene.tin->places;
-    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::Place& place) {
-        const sand::Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+    return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const sand::tin::LatticePoint& place) {
+        const sand::Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
         return tool.covers(offset) || tool.takes(offset);
     }));
 }

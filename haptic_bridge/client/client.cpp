@@ -93,8 +93,8 @@ void Client::Session::take(Link link, const PositionGreeting& greeting) {
     countLink();
     shelf.dropPositions();
     retryPause_.linked(host::monotonicNs());
-    shelf.tell(Link::streaming, fmt::format("{}: connected, '{}' streams positions; the master numbers the steps",
-                                            peer(), greeting.name));
+    shelf.setStatus(Link::streaming, fmt::format("{}: connected, '{}' streams positions; the master numbers the steps",
+                                                 peer(), greeting.name));
 }
 
 void Client::Session::take(Link link, const Position& position) {

@@ -34,8 +34,8 @@ void Client::Session::connected(Connection::Socket socket) {
 
 void Client::Session::failed(const std::string& why) {
     shelf.fail(fmt::format("no answer ({})", why));
-    shelf.tell(shelf.counters().links > 0 ? Link::lost : Link::connecting,
-               fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
+    shelf.setStatus(shelf.counters().links > 0 ? Link::lost : Link::connecting,
+                    fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
     retry();
 }
 
@@ -49,7 +49,7 @@ void Client::Session::closed(const std::string& why) {
         if (before == Link::linked || before == Link::streaming) {
             retryPause_.lost(host::monotonicNs());
         }
-        shelf.tell(Link::lost, fmt::format("{}: link lost, {}; trying again", peer(), why));
+        shelf.setStatus(Link::lost, fmt::format("{}: link lost, {}; trying again", peer(), why));
     } else if (before != Link::refused) {
         failed(why);
         return;
@@ -66,7 +66,7 @@ void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
     if (fault) {
         countRefusal(*fault);
     }
-    shelf.tell(Link::refused, fmt::format("{}: {}", peer(), why));
+    shelf.setStatus(Link::refused, fmt::format("{}: {}", peer(), why));
     retryPause_.lengthen();
     if (stopping_) {
         io_.stop();

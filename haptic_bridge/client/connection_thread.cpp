@@ -32,7 +32,7 @@ Client::Session::Session(Address address, Offer offer, LinkSecurity security, Li
     : address_(std::move(address)),
       greeter_(std::move(offer), std::move(security)),
       silence_(io_, clock ? std::move(clock) : host::monotonicNs) {
-    shelf.tell(Link::connecting, peer() + ": connecting");
+    shelf.setStatus(Link::connecting, peer() + ": connecting");
     asio::post(io_, [this] { connect(); });
     thread_ = std::thread([this] { run(); });
 }
@@ -75,7 +75,7 @@ void Client::Session::stop() {
         goodbyeTimer_.async_wait([this](error_code) { io_.stop(); });
     });
     thread_.join();
-    shelf.tell(Link::stopped, peer() + ": link closed");
+    shelf.setStatus(Link::stopped, peer() + ": link closed");
 }
 
 void Client::Session::greet() {
@@ -105,7 +105,7 @@ void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
         }
         grant_ = std::move(grant);
         start.force = force_;
-        shelf.tell(Link::granting, fmt::format("{}: handing over at step {}", peer(), start.stepNumber));
+        shelf.setStatus(Link::granting, fmt::format("{}: handing over at step {}", peer(), start.stepNumber));
         connection_->send(start);
     });
 }
@@ -179,7 +179,7 @@ void Client::Session::take(Link link, const Welcome& greeting) {
     connection_->limit(kMaxMessage);
     countLink();
     shelf.setStepsPerSecond(greeting.stepsPerSecond);
-    shelf.tell(Link::offered, fmt::format("{}: connected, {} steps per second", peer(), greeting.stepsPerSecond));
+    shelf.setStatus(Link::offered, fmt::format("{}: connected, {} steps per second", peer(), greeting.stepsPerSecond));
     pings_.start([this] {
         if (!drill_.active()) {
             connection_->send(Ping{host::monotonicNs()});
@@ -221,8 +221,8 @@ void Client::Session::take(Link link, const Ready&) {
     grant_->begun();
     retryPause_.linked(host::monotonicNs());
     const Start& start = grant_->start();
-    shelf.tell(Link::linked,
-               fmt::format("{}: linked, epoch {} from step {}", peer(), start.epoch, start.stepNumber + 1));
+    shelf.setStatus(Link::linked,
+                    fmt::format("{}: linked, epoch {} from step {}", peer(), start.epoch, start.stepNumber + 1));
 }
 
 }  // namespace haptic_bridge

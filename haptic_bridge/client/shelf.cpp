@@ -13,7 +13,7 @@ constexpr std::size_t kPieceBytes = 64;  // [byte], overhead of a piece
 
 }  // namespace
 
-void Shelf::tell(Link link, const std::string& message) {
+void Shelf::setStatus(Link link, const std::string& message) {
     const std::lock_guard lock(mutex_);
     if (status_.changes == 0 || status_.link != link || status_.message != message) {
         status_ = {link, message, status_.changes + 1};

@@ -20,7 +20,7 @@ namespace haptic_bridge {
 class Shelf {
 public:
     /// Sets the state of the link and its message. A change of either counts as a new message to print.
-    void tell(Link link, const std::string& message);
+    void setStatus(Link link, const std::string& message);
     [[nodiscard]] LinkStatus status() const;
     [[nodiscard]] Link link() const { return status().link; }
     /// Changes the link from offered to granting at once, so that a caller that polls again does not see an offer.

@@ -32,24 +32,24 @@ std::string lineOf(const std::string& name, Trouble trouble, std::uint64_t times
 
 }  // namespace
 
-std::vector<std::string> TroubleTeller::lines(const TroubleCounts& counts, double time) {
+std::vector<std::string> TroubleReporter::lines(const TroubleCounts& counts, double time) {
     std::vector<std::string> result;
     for (std::size_t i = 0; i < kTroubles; ++i) {
         const auto trouble = static_cast<Trouble>(i);
         const std::uint64_t now = counts.of(trouble);
-        Told& told = told_[i];
-        if (now == told.seen) {
-            if (trouble == Trouble::absent && away_ && time - told.grew >= kOver) {
+        Reported& reported = reported_[i];
+        if (now == reported.seen) {
+            if (trouble == Trouble::absent && away_ && time - reported.grew >= kOver) {
                 away_ = false;
-                told.told = -kQuiet;
+                reported.lastLine = -kQuiet;
                 result.push_back(fmt::format("{} answers again", name_));
             }
             continue;
         }
-        told.seen = now;
-        told.grew = time;
-        if (time - told.told >= kQuiet && !(trouble == Trouble::absent && away_)) {
-            told.told = time;
+        reported.seen = now;
+        reported.grew = time;
+        if (time - reported.lastLine >= kQuiet && !(trouble == Trouble::absent && away_)) {
+            reported.lastLine = time;
             away_ = away_ || trouble == Trouble::absent;
             result.push_back(lineOf(name_, trouble, now));
         }

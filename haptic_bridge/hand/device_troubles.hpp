@@ -41,22 +41,22 @@ private:
 ///
 /// A trouble gives a line when it first happens, and then at most one line every kQuiet seconds. A device that does not
 /// answer gives one line, and one more when it answers again.
-class TroubleTeller {
+class TroubleReporter {
 public:
     static constexpr double kQuiet = 10;  // [s] between two lines about the same trouble
     static constexpr double kOver = 1;    // [s] since the last absent reading: the device answers again
 
-    explicit TroubleTeller(std::string name) : name_(std::move(name)) {}
+    explicit TroubleReporter(std::string name) : name_(std::move(name)) {}
     /// Returns the lines that the user should read now. `time` [s] comes from any clock that never runs backwards.
     [[nodiscard]] std::vector<std::string> lines(const TroubleCounts& counts, double time);
 
 private:
-    struct Told {
+    struct Reported {
         std::uint64_t seen = 0;
-        double grew = 0, told = -kQuiet;
+        double grew = 0, lastLine = -kQuiet;
     };
     std::string name_;
-    std::array<Told, kTroubles> told_{};
+    std::array<Reported, kTroubles> reported_{};
     bool away_ = false;
 };
 

@@ -114,9 +114,9 @@ std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
     try {
         tls_->receive(bytes, plain, reply);
         // Only once, because a handshake message that arrives in pieces makes the handshake look unfinished again.
-        first = !told_ && tls_->established();
+        first = !readyCalled_ && tls_->established();
         if (first) {
-            told_ = true;
+            readyCalled_ = true;
             binding_ = tls_->binding();
         }
     } catch (const std::runtime_error& error) {
@@ -133,7 +133,7 @@ std::optional<base::Bytes> Connection::unseal(ByteSpan bytes) {
         const auto ready = handlers_.ready;
         ready();
     }
-    if (told_ && plain.size() < bytes.size()) {  // records without a message also cost time
+    if (readyCalled_ && plain.size() < bytes.size()) {  // records without a message also cost time
         rate_.use(static_cast<double>(bytes.size() - plain.size()) / kRecordBytes);
     }
     return plain;

@@ -99,7 +99,7 @@ private:
     Socket socket_;
     std::unique_ptr<TlsSession> tls_;
     base::Bytes binding_;
-    bool told_ = false;  // whether `ready` was called after the TLS handshake
+    bool readyCalled_ = false;  // whether `ready` was called after the TLS handshake
     boost::asio::steady_timer linger_, throttle_;
     Handlers handlers_;
     MessageReader reader_;

@@ -91,7 +91,7 @@ struct Report {
         visit("faulted_ticks", it.faultedTicks);
         visit("steps_withheld_by", base::byName<Withheld>(it.stepsWithheld));
         visit("guarded_ticks", base::byName<Guard>(it.guards));
-        visit("refused/guests", base::byName<RefusalCode>(it.refused));
+        visit("refused/connections", base::byName<RefusalCode>(it.refused));
         visit("literal", it.literal);
         visit("audited", it.audited);
     }

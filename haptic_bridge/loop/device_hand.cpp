@@ -14,9 +14,9 @@ constexpr std::int64_t kMillisecond = 1'000'000;  // [ns]
 ChannelHand::ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond)
     : ChannelHand(hand, channel, stepsPerSecond, host::monotonicNs) {}
 
-void ChannelHand::begin(const sand::Replica& terrain) {
-    DeviceHand::begin(terrain);
-    publish(terrain, false);
+void ChannelHand::begin(const sand::Replica& replica) {
+    DeviceHand::begin(replica);
+    publish(replica, false);
     ++channel_.sitting;
     channel_.moving = true;
 }
@@ -30,35 +30,35 @@ void ChannelHand::drain() {
     channel_.samples.consume_all([this](const HandSample& sample) { add(sample); });
 }
 
-void ChannelHand::publish(const sand::Replica& terrain, bool edited) {
+void ChannelHand::publish(const sand::Replica& replica, bool edited) {
     edits_ += edited ? 1 : 0;
     stepNs_ = now_();
-    copy(terrain);
+    copy(replica);
 }
 
-void ChannelHand::refresh(const sand::Replica& terrain) {
+void ChannelHand::refresh(const sand::Replica& replica) {
     if (now_() - copiedNs_ >= kRefreshNs) {
-        copy(terrain);
+        copy(replica);
     }
 }
 
 /// The patch is around the hand and not around the tool. Before a link's first step the tool is at a place where no
 /// hand has been. Later the hand may be ahead of its tool.
-void ChannelHand::copy(const sand::Replica& terrain) {
+void ChannelHand::copy(const sand::Replica& replica) {
     FeltSand& next = channel_.surface.next();
-    takeSurface(terrain, hand_.probe(), next);
+    takeSurface(replica, hand_.probe(), next);
     next.edits = edits_;
     next.timeNs = copiedNs_ = now_();
     next.stepNs = stepNs_;
     channel_.surface.publish();
 }
 
-void VirtualHand::begin(const sand::Replica& terrain) {
-    DeviceHand::begin(terrain);
+void VirtualHand::begin(const sand::Replica& replica) {
+    DeviceHand::begin(replica);
     // In real time the force loop reads a hand that rests. In the fast pace no thread does, so it is read here.
     const std::uint64_t millisecond = steps_ * 1000 / stepsPerSecond_;
     hand_.rest(static_cast<double>(millisecond) * HapticTick::kTick);
-    publish(terrain, false);
+    publish(replica, false);
     channel_.beginSitting(hand_);
 }
 
@@ -74,8 +74,8 @@ void VirtualHand::collect() {
     }
 }
 
-void VirtualHand::publish(const sand::Replica& terrain, bool edited) {
-    takeSurface(terrain, hand_.probe(), surface_);
+void VirtualHand::publish(const sand::Replica& replica, bool edited) {
+    takeSurface(replica, hand_.probe(), surface_);
     surface_.edits += edited ? 1 : 0;
     surface_.stepNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
 }

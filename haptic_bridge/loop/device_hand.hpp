@@ -22,10 +22,10 @@ public:
     /// Takes the samples that have arrived since the last call. Call it often, also while the hand is not present.
     virtual void drain() {}
     /// Makes the hand feel this sand from now on. `edited` says that its last step held an operator's edit.
-    virtual void publish(const sand::Replica& terrain, bool edited) = 0;
+    virtual void publish(const sand::Replica& replica, bool edited) = 0;
     /// Copies the same sand again if the last copy is kRefreshNs old, so that the hand can tell sand without steps from
     /// a thread that hangs.
-    virtual void refresh(const sand::Replica& /* terrain */) {}
+    virtual void refresh(const sand::Replica& /* replica */) {}
     /// Returns when refresh() is due [ns, the host's clock].
     [[nodiscard]] virtual std::int64_t refreshDue() const { return std::numeric_limits<std::int64_t>::max(); }
     static constexpr std::int64_t kRefreshNs = 10'000'000;  // [ns]
@@ -42,18 +42,18 @@ public:
     ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond);
     ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond, Clock clock)
         : DeviceHand(stepsPerSecond), hand_(hand), channel_(channel), now_(std::move(clock)) {}
-    void begin(const sand::Replica& terrain) override;
+    void begin(const sand::Replica& replica) override;
     void end() override;
     void drain() override;
-    void publish(const sand::Replica& terrain, bool edited) override;
-    void refresh(const sand::Replica& terrain) override;
+    void publish(const sand::Replica& replica, bool edited) override;
+    void refresh(const sand::Replica& replica) override;
     [[nodiscard]] std::int64_t refreshDue() const override { return copiedNs_ + kRefreshNs; }
     [[nodiscard]] bool onHostClock() const override { return true; }
     /// Counts samples that were lost because the queue was full, too.
     [[nodiscard]] std::uint64_t dropped() const override { return Hand::dropped() + channel_.overflow; }
 
 private:
-    void copy(const sand::Replica& terrain);
+    void copy(const sand::Replica& replica);
 
     const HapticTick& hand_;
     HandChannel& channel_;
@@ -72,8 +72,8 @@ public:
           hand_(hand),
           channel_(channel),
           stepsPerSecond_(static_cast<std::uint64_t>(stepsPerSecond)) {}
-    void begin(const sand::Replica& terrain) override;
-    void publish(const sand::Replica& terrain, bool edited) override;
+    void begin(const sand::Replica& replica) override;
+    void publish(const sand::Replica& replica, bool edited) override;
     [[nodiscard]] bool onHostClock() const override { return false; }
 
 private:

@@ -7,14 +7,14 @@
 
 namespace haptic_bridge {
 
-/// Fills `surface` with the sand that a hand at `probe` feels after the last step of `terrain`. Sets neither its times
+/// Fills `surface` with the sand that a hand at `probe` feels after the last step of `replica`. Sets neither its times
 /// nor its number of edits. Both the thread that makes steps and a replay call this function.
-inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& probe, FeltSand& surface) {
-    surface.patch.take(terrain, probe);
+inline void takeSurface(const sand::Replica& replica, const sand::ProbePoint& probe, FeltSand& surface) {
+    surface.patch.take(replica, probe);
     surface.probe = {probe.x, probe.y, 0};
-    surface.tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
-    surface.talus = static_cast<double>(terrain.rules().tuning.threshold) / sand::kUnitsPerCell;
-    surface.step = terrain.stepNumber();
+    surface.tool = sand::force::contourOf(replica.tool(), replica.cellSize());
+    surface.talus = static_cast<double>(replica.rules().tuning.threshold) / sand::kUnitsPerCell;
+    surface.step = replica.stepNumber();
 }
 
 }  // namespace haptic_bridge

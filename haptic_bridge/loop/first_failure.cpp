@@ -20,7 +20,7 @@ std::string reasonOf(const std::exception_ptr& error) {
 
 }  // namespace
 
-void FirstFailure::keep(const std::string& who, const std::exception_ptr& error) noexcept {
+void FirstFailure::keep(const std::string& name, const std::exception_ptr& error) noexcept {
     {
         const std::lock_guard lock(mutex_);
         if (failed_) {
@@ -28,7 +28,7 @@ void FirstFailure::keep(const std::string& who, const std::exception_ptr& error)
         }
         failed_ = true;
         try {
-            line_ = base::InputError::oneLine(who + " has failed: " + reasonOf(error));
+            line_ = base::InputError::oneLine(name + " has failed: " + reasonOf(error));
         } catch (const std::exception&) {
             line_ = "no memory left";  // short enough to need none
         }

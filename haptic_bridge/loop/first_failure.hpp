@@ -19,15 +19,15 @@ public:
     /// not throw. Call this before threads begin.
     void onFailure(std::function<void()> wake) { wake_ = std::move(wake); }
 
-    /// Calls work(). Returns whether it returned, and keeps its exception otherwise. `who` names the device or the
-    /// thread for the user.
+    /// Calls work(). Returns whether it returned, and keeps its exception otherwise. `name` is that of the device or
+    /// the thread for the user.
     template <class Work>
-    bool run(const std::string& who, const Work& work) noexcept {
+    bool run(const std::string& name, const Work& work) noexcept {
         try {
             work();
             return true;
         } catch (...) {
-            keep(who, std::current_exception());
+            keep(name, std::current_exception());
             return false;
         }
     }
@@ -35,7 +35,7 @@ public:
     void rethrow() const;
 
 private:
-    void keep(const std::string& who, const std::exception_ptr& error) noexcept;
+    void keep(const std::string& name, const std::exception_ptr& error) noexcept;
 
     std::function<void()> wake_;
     mutable std::mutex mutex_;

@@ -38,8 +38,8 @@ private:
 
 ForceLoop::ForceLoop(HapticTick& hand, HandChannel& channel, const std::string& device, const std::atomic<bool>& over)
     : hand_(hand), channel_(channel), over_(over) {
-    thread_ = std::thread([this, who = "the force loop of device " + device] {
-        channel_.failure.run(who, [this] {
+    thread_ = std::thread([this, name = "the force loop of device " + device] {
+        channel_.failure.run(name, [this] {
             const LetGo atTheEnd(hand_);
             run();
         });

@@ -62,10 +62,10 @@ void TickRecorder::run() {
         endPiece();
         file_.write();
         done_.fetch_add(taken, std::memory_order_release);
-        if (const std::uint64_t lost = lost_; lost != toldLost_ && (toldLost_ == 0 || last)) {
+        if (const std::uint64_t lost = lost_; lost != printedLost_ && (printedLost_ == 0 || last)) {
             options_.log(
                 fmt::format("--record {}: {} ticks could not be written in time and are missing", options_.file, lost));
-            toldLost_ = lost;
+            printedLost_ = lost;
         }
         if (!last) {
             std::this_thread::sleep_for(kPoll);

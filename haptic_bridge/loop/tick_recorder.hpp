@@ -73,7 +73,7 @@ private:
     // For the recorder's own thread.
     TickFile file_;
     TrackPiece piece_;
-    std::uint64_t toldLost_ = 0;
+    std::uint64_t printedLost_ = 0;
     std::thread thread_;
 };
 

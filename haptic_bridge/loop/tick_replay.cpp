@@ -44,9 +44,9 @@ void TickReplay::begin(const TrackPiece& piece) {
                                          piece.header.literal ? Guards::Mode::literal : Guards::Mode::on);
 }
 
-void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std::string& rows) {
-    if (surface_.patch.empty() || surface_.step != terrain.stepNumber() || surface_.probe != input.surfaceProbe) {
-        takeSurface(terrain, input.surfaceProbe, surface_);
+void TickReplay::tick(const TickInput& input, const sand::Replica& replica, std::string& rows) {
+    if (surface_.patch.empty() || surface_.step != replica.stepNumber() || surface_.probe != input.surfaceProbe) {
+        takeSurface(replica, input.surfaceProbe, surface_);
     }
     surface_.timeNs = input.nowNs - input.surfaceAgeNs;
     surface_.stepNs = input.nowNs - input.stepAgeNs;
@@ -58,17 +58,17 @@ void TickReplay::tick(const TickInput& input, const sand::Replica& terrain, std:
     appendRow(hand_->lastTick(), rows);
 }
 
-void TickReplay::feel(const sand::Replica& terrain, std::string& rows) {
+void TickReplay::feel(const sand::Replica& replica, std::string& rows) {
     while (!pieces_.empty()) {
         const TrackPiece& piece = pieces_.front();
         if (piece.begins) {
             begin(piece);
         }
         while (next_ < piece.ticks.size()) {
-            if (piece.ticks[next_].surfaceStep > terrain.stepNumber()) {
+            if (piece.ticks[next_].surfaceStep > replica.stepNumber()) {
                 return;
             }
-            tick(piece.ticks[next_++], terrain, rows);
+            tick(piece.ticks[next_++], replica, rows);
         }
         next_ = 0;
         pieces_.pop_front();

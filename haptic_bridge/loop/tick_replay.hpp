@@ -23,14 +23,14 @@ public:
     [[nodiscard]] bool empty() const { return pieces_.empty(); }
     /// Runs the ticks that felt the sand as it is now, and appends their rows to `rows`. Call it at the start and after
     /// every step.
-    void feel(const sand::Replica& terrain, std::string& rows);
+    void feel(const sand::Replica& replica, std::string& rows);
     /// Returns how many ticks are left at the end, because they felt steps that the session did not keep.
     [[nodiscard]] std::size_t left() const;
 
 private:
     class Player;
     void begin(const TrackPiece& piece);
-    void tick(const TickInput& input, const sand::Replica& terrain, std::string& rows);
+    void tick(const TickInput& input, const sand::Replica& replica, std::string& rows);
 
     const scene::Scene* scene_;
     std::deque<TrackPiece> pieces_;

@@ -12,12 +12,12 @@ namespace haptic_bridge {
 ///
 /// @param ceiling  Share that the server's own --force and --force-scale allow. Only an operator of the linked session
 ///                 may go beyond it.
-/// @param told     The share that the linked master has told; nullopt without a master.
-[[nodiscard]] inline double feltShare(double ceiling, const std::optional<ForceShare>& told) {
-    if (!told) {
+/// @param sent     The share that the linked master has sent; nullopt without a master.
+[[nodiscard]] inline double feltShare(double ceiling, const std::optional<ForceShare>& sent) {
+    if (!sent) {
         return 0;
     }
-    return told->byOperator ? told->share : std::min(told->share, ceiling);
+    return sent->byOperator ? sent->share : std::min(sent->share, ceiling);
 }
 
 }  // namespace haptic_bridge

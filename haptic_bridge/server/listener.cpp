@@ -86,9 +86,9 @@ void Listener::admit(Connection::Socket socket) {
         gate_->refused(RefusalCode::limit, address,
                        "is one of too many unauthenticated connections, and is not answered", now);
     } else {
-        const auto guest = std::make_shared<Peer>(service_, *gate_, *roster_, std::move(socket));
-        roster_->add(guest);
-        guest->start();
+        const auto connection = std::make_shared<Peer>(service_, *gate_, *roster_, std::move(socket));
+        roster_->add(connection);
+        connection->start();
     }
 }
 
@@ -97,15 +97,15 @@ void Listener::shut(const std::string& reason) {
     error_code ignored;
     acceptor_.close(ignored);
     std::weak_ptr<Connection> last;
-    for (const auto& guest : roster_->guests()) {
-        guest->makeRoom();
+    for (const auto& connection : roster_->unauthenticated()) {
+        connection->makeRoom();
     }
     for (const auto& watcher : roster_->watchers()) {
-        watcher->sayGoodbye(reason);
+        watcher->sendGoodbye(reason);
     }
     if (const auto master = roster_->master()) {
         last = master->connection();
-        master->sayGoodbye(reason);
+        master->sendGoodbye(reason);
     }
     stopWhenGone(last, 60);
 }

@@ -40,7 +40,7 @@ struct Options {
     Guards::Mode guards = Guards::Mode::on;
     int sandThreads = 1;
     TimingTests tests;
-    bool dieWithParent = false;
+    bool endWithParent = false;
     std::string record;
     bool force = true;
     double forceScale = 1;
@@ -78,7 +78,7 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
 class DeviceWatch {
 public:
     DeviceWatch(asio::io_context& io, const std::string& device, const Device& watched)
-        : timer_(io), teller_("device " + device), device_(watched) {
+        : timer_(io), reporter_("device " + device), device_(watched) {
         if (device_.troubles() != nullptr) {
             look();
         }
@@ -90,7 +90,7 @@ private:
         timer_.async_wait([this](error_code error) {
             if (!error) {
                 for (const std::string& line :
-                     teller_.lines(*device_.troubles(), static_cast<double>(host::monotonicNs()) * 1e-9)) {
+                     reporter_.lines(*device_.troubles(), static_cast<double>(host::monotonicNs()) * 1e-9)) {
                     print(line);
                 }
                 look();
@@ -99,7 +99,7 @@ private:
     }
 
     asio::steady_timer timer_;
-    TroubleTeller teller_;
+    TroubleReporter reporter_;
     const Device& device_;
 };
 
@@ -141,8 +141,8 @@ Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_co
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
     service.log = print;
-    service.shareForce = [&hand, ceiling = options.force ? options.forceScale : 0](const auto& told) {
-        hand.shareForce(feltShare(ceiling, told));
+    service.shareForce = [&hand, ceiling = options.force ? options.forceScale : 0](const auto& sent) {
+        hand.shareForce(feltShare(ceiling, sent));
     };
     service.tests = options.tests;
     return service;
@@ -171,7 +171,7 @@ void runLinks(asio::io_context& io) {
     }
 }
 
-void tellAtTheEnd(const Options& options, const HapticTick& hand, const ForceLoop* loop) {
+void printEnd(const Options& options, const HapticTick& hand, const ForceLoop* loop) {
     if (loop != nullptr) {
         print(loop->summary());
     }
@@ -248,7 +248,7 @@ void serve(const Options& options) {
         loop->stop();  // pushes 0 before anything that may take long
     }
     channel.failure.rethrow();
-    tellAtTheEnd(options, hand, loop.get());
+    printEnd(options, hand, loop.get());
 }
 
 void describe(host::CommandLine& line, Options& options) {
@@ -294,7 +294,7 @@ void describe(host::CommandLine& line, Options& options) {
     line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
     options.link.addTo(line, true);
     host::addSandThreads(line, options.sandThreads).offeredBy({"run"});
-    line.flag("--die-with-parent", options.dieWithParent, "end in order when the program that started this one ends");
+    line.flag("--die-with-parent", options.endWithParent, "end in order when the program that started this one ends");
 }
 
 }  // namespace
@@ -315,7 +315,7 @@ int main(int count, char** words) {
         return *status;
     }
     try {
-        if (options.dieWithParent) {
+        if (options.endWithParent) {
             endWithParent(parent);
         }
         serve(options);

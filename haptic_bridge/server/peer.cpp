@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // [ns], time in which an unauthenticated connection must greet
 constexpr std::int64_t kSilenceNs = 10'000'000'000;  // [ns]; a master sends a Ping four times a second
-constexpr std::uint64_t kMaxGuestBytes = 16 * 1024;  // [byte]; a greeting takes some hundreds, TLS some hundreds more
+constexpr std::uint64_t kGreetingBytes = 16 * 1024;  // [byte]; a greeting takes some hundreds, TLS some hundreds more
 constexpr double kWatcherRate = 50;                  // [message/s]; a watcher sends only four Pings per second
 constexpr std::size_t kWatcherUnsent = 256 * 1024;   // [byte], about half a minute of steps
 
@@ -43,7 +43,7 @@ Peer::Peer(const Service& service, Gate& gate, Roster<Peer>& roster, Connection:
 void Peer::start() {
     heardNs_ = host::monotonicNs();
     connection_->limit(kMaxGreeting);
-    connection_->setMaxIn(kMaxGuestBytes);
+    connection_->setMaxIn(kGreetingBytes);
     if (roster_.connections() > kMaxConnections / 2) {
         connection_->setLinger(milliseconds(0));  // a refused connection must not keep a place
     }
@@ -139,7 +139,7 @@ void Peer::take(const Bye&) {
     if (phase_ <= Phase::proving) {
         outOfTurn();
     } else {
-        sayGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
+        sendGoodbye(role_ == Role::move ? "the master has said goodbye" : "the watcher has said goodbye");
     }
 }
 
@@ -315,7 +315,7 @@ Report Peer::report() const {
     return report;
 }
 
-void Peer::sayGoodbye(const std::string& reason) {
+void Peer::sendGoodbye(const std::string& reason) {
     if (phase_ == Phase::over || phase_ == Phase::leaving) {
         return;
     }
@@ -357,14 +357,14 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
         return;
     }
     const auto kept = shared_from_this();
-    const bool guest = phase_ <= Phase::proving;
+    const bool unauthenticated = phase_ <= Phase::proving;
     // Masters come one at a time, so each end is logged. Unauthenticated connections and watchers may come in floods.
-    const bool master = !guest && role_ == Role::move;
+    const bool master = !unauthenticated && role_ == Role::move;
     if (master) {
         log(why);
     }
     if (fault) {
-        const std::string who = guest ? "an unauthenticated connection: " : "a watcher: ";
+        const std::string who = unauthenticated ? "an unauthenticated connection: " : "a watcher: ";
         gate_.refused(*fault, connection_->address(), master ? "" : who + why, host::monotonicNs());
     }
     phase_ = Phase::over;

@@ -29,7 +29,7 @@ public:
     void makeRoom();
     /// Sends the last report and a goodbye, then closes. The end of a master's link waits for the audit of the sand, at
     /// most kAuditPatience.
-    void sayGoodbye(const std::string& reason);
+    void sendGoodbye(const std::string& reason);
     void audited(Audited result);
 
     [[nodiscard]] std::uint32_t session() const { return session_; }

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "haptic_bridge/link/link_options.hpp"
-#include "haptic_bridge/server/guest_limits.hpp"
+#include "haptic_bridge/server/connection_limits.hpp"
 
 namespace haptic_bridge {
 
-inline constexpr std::size_t kMaxGuests = 16;  // unauthenticated connections
-inline constexpr int kMaxGuestsOfOne = 4;      // of these, from one address of another machine
+inline constexpr std::size_t kMaxUnauthenticated = 16;  // unauthenticated connections
+inline constexpr int kMaxUnauthenticatedOfOne = 4;      // of these, from one address of another machine
 inline constexpr std::size_t kMaxWatchers = 8;
 inline constexpr int kMaxConnections = 64;  // of all kinds, also connections that are being closed
 
@@ -28,34 +28,34 @@ public:
 
     /// Returns whether one more connection from this address has a place.
     [[nodiscard]] bool hasRoomFor(const boost::asio::ip::address& address) const {
-        const auto same = std::count_if(guests_.begin(), guests_.end(), [guest = guestOf(address)](const auto& one) {
-            return guestOf(one->address()) == guest;
-        });
-        return (same < kMaxGuestsOfOne || isLoopback(address)) && *connections_ < kMaxConnections;
+        const auto same = std::count_if(
+            unauthenticated_.begin(), unauthenticated_.end(),
+            [from = countedAddress(address)](const auto& one) { return countedAddress(one->address()) == from; });
+        return (same < kMaxUnauthenticatedOfOne || isLoopback(address)) && *connections_ < kMaxConnections;
     }
     /// Adds a connection, which is unauthenticated at first. If there are too many of these, closes the oldest.
-    void add(Pointer guest) {
-        if (guests_.size() >= kMaxGuests) {
+    void add(Pointer connection) {
+        if (unauthenticated_.size() >= kMaxUnauthenticated) {
             // The oldest is closed and not the newest, because sixteen silent connections would keep the master out. A
             // greeting takes milliseconds.
-            Pointer(guests_.front())->makeRoom();
+            Pointer(unauthenticated_.front())->makeRoom();
         }
-        guests_.push_back(std::move(guest));
+        unauthenticated_.push_back(std::move(connection));
     }
     /// Makes an unauthenticated connection the master. Returns the number of its session.
-    std::uint32_t promoteToMaster(const Pointer& guest) {
-        removeGuest(*guest);
-        master_ = guest;
+    std::uint32_t promoteToMaster(const Pointer& connection) {
+        removeUnauthenticated(*connection);
+        master_ = connection;
         return ++sessions_;
     }
     /// Makes an unauthenticated connection a watcher.
-    void promoteToWatcher(const Pointer& guest) {
-        removeGuest(*guest);
-        watchers_.insert(guest);
+    void promoteToWatcher(const Pointer& connection) {
+        removeUnauthenticated(*connection);
+        watchers_.insert(connection);
     }
     /// Removes a member that ends. Returns whether it was the master.
     bool remove(const Pointer& member) {
-        removeGuest(*member);
+        removeUnauthenticated(*member);
         watchers_.erase(member);
         const bool wasMaster = master_ == member;
         master_ = wasMaster ? nullptr : master_;
@@ -65,7 +65,9 @@ public:
     [[nodiscard]] const Pointer& master() const { return master_; }
     [[nodiscard]] bool watchersAreFull() const { return watchers_.size() >= kMaxWatchers; }
     // These return copies, because a member may leave while the caller uses it.
-    [[nodiscard]] std::vector<Pointer> guests() const { return {guests_.begin(), guests_.end()}; }
+    [[nodiscard]] std::vector<Pointer> unauthenticated() const {
+        return {unauthenticated_.begin(), unauthenticated_.end()};
+    }
     [[nodiscard]] std::vector<Pointer> watchers() const { return {watchers_.begin(), watchers_.end()}; }
 
     /// Counts `thing` among the connections for as long as it lives.
@@ -80,11 +82,11 @@ public:
     [[nodiscard]] int connections() const { return *connections_; }
 
 private:
-    void removeGuest(const Member& guest) {
-        std::erase_if(guests_, [&](const auto& one) { return one.get() == &guest; });
+    void removeUnauthenticated(const Member& connection) {
+        std::erase_if(unauthenticated_, [&](const auto& one) { return one.get() == &connection; });
     }
 
-    std::list<Pointer> guests_;  // unauthenticated connections, oldest first
+    std::list<Pointer> unauthenticated_;  // unauthenticated connections, oldest first
     Pointer master_;
     std::set<Pointer> watchers_;
     std::shared_ptr<int> connections_ = std::make_shared<int>(0);  // also connections that are being closed

@@ -6,7 +6,7 @@
 namespace haptic_bridge {
 namespace {
 
-HalfRoundTrip told(const base::LiveHistogram& halves) {
+HalfRoundTrip halfRoundTripOf(const base::LiveHistogram& halves) {
     return {halves.meanNs() * 1e-6, halves.stddevNs() * 1e-6, halves.percentileNs(0.50) * 1e-6,
             halves.percentileNs(0.99) * 1e-6, halves.count()};
 }
@@ -44,8 +44,8 @@ void RoundTrips::echoed(const TimingEcho& echo, std::int64_t nowNs) {
 }
 
 void RoundTrips::fill(Report& report) const {
-    report.toWall = told(toWall_);
-    report.toMaster = told(toMaster_);
+    report.toWall = halfRoundTripOf(toWall_);
+    report.toMaster = halfRoundTripOf(toMaster_);
 }
 
 }  // namespace haptic_bridge

@@ -9,17 +9,12 @@
 #include <thread>
 #include <utility>
 
-#include "base/names.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "haptic_bridge/loop/hand_channel.hpp"
 #include "haptic_bridge/server/commands.hpp"
 #include "haptic_bridge/server/step_maker.hpp"
 
 namespace haptic_bridge {
-
-enum class Pace : std::uint8_t { realtime, fast };
-constexpr auto valuesOf(Pace) {
-    return std::array{base::Named{Pace::realtime, "realtime"}, base::Named{Pace::fast, "fast"}};
-}
 
 /// The sand thread. Its StepMaker makes steps when they are due, and it carries out commands between them. It sleeps
 /// until a command comes or a step is due.

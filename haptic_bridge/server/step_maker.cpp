@@ -27,12 +27,12 @@ StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output,
                      Clock clock)
     : hand_(hand),
       output_(std::move(output)),
-      terrain_(scene, executor),
+      replica_(scene, executor),
       now_(std::move(clock)),
       clock_(scene.rules.stepsPerSecond) {}
 
 bool StepMaker::asGranted() {
-    return terrain_.stepNumber() == start_.stepNumber && terrain_.stateHash() == start_.stateHash;
+    return replica_.stepNumber() == start_.stepNumber && replica_.stateHash() == start_.stateHash;
 }
 
 void StepMaker::start(std::uint32_t session, const Start& start) {
@@ -43,7 +43,7 @@ void StepMaker::start(std::uint32_t session, const Start& start) {
     } else {
         phase_ = Phase::awaitingState;
         asksForSand_ = false;
-        output_.needState(session_, {terrain_.stepNumber(), terrain_.stateHash()});
+        output_.needState(session_, {replica_.stepNumber(), replica_.stateHash()});
     }
 }
 
@@ -52,7 +52,7 @@ void StepMaker::state(const base::Bytes& bytes) {
         return;
     }
     phase_ = Phase::idle;
-    if (const std::string why = whyNot([&] { terrain_.decodeState(bytes); }); !why.empty()) {
+    if (const std::string why = whyNot([&] { replica_.decodeState(bytes); }); !why.empty()) {
         output_.unusable(session_, "the state does not fit this scene: " + why);
         return;
     }
@@ -69,9 +69,9 @@ void StepMaker::catchUp(const CatchUp& steps) {
     }
     bool fits = true;
     for (const sand::Step& step : steps.steps) {
-        fits = fits && step.number == terrain_.stepNumber() + 1 && step.number <= start_.stepNumber;
+        fits = fits && step.number == replica_.stepNumber() + 1 && step.number <= start_.stepNumber;
         if (fits) {
-            terrain_.apply(step);
+            replica_.apply(step);
         }
     }
     if (fits && !steps.last) {
@@ -90,7 +90,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
         return;
     }
     // The master's number is not trusted: shown_ never falls, and never passes the last step that was sent.
-    shown_ = std::max(shown_, std::min(frame.stepNumber, terrain_.stepNumber()));
+    shown_ = std::max(shown_, std::min(frame.stepNumber, replica_.stepNumber()));
     held_ = frame.held;
     clock_.frameShown(nowNs, frame.frameIntervalNs);
 }
@@ -101,7 +101,7 @@ void StepMaker::edit(EditRequest request) {
     }
     if (const auto& sand = request.edit.sand; sand) {
         // Refuses the sand here, because a step that holds it can no longer be refused.
-        if (const std::string why = whyNot([&] { (void)terrain_.sandReader()(*sand); }); !why.empty()) {
+        if (const std::string why = whyNot([&] { (void)replica_.sandReader()(*sand); }); !why.empty()) {
             output_.unusable(session_, "the sand of a load does not fit this scene: " + why);
             return;
         }
@@ -113,9 +113,9 @@ void StepMaker::audit() {
     if (!running()) {
         return;
     }
-    const std::uint64_t sent = terrain_.stateHash();
-    terrain_.audit(terrain_.hashTiles().tileCount());
-    output_.audited(session_, terrain_.stateHash() == sent ? Audited::agreed : Audited::differed);
+    const std::uint64_t sent = replica_.stateHash();
+    replica_.audit(replica_.hashTiles().tileCount());
+    output_.audited(session_, replica_.stateHash() == sent ? Audited::agreed : Audited::differed);
 }
 
 void StepMaker::release() {
@@ -129,7 +129,7 @@ void StepMaker::begin() {
     shown_ = start_.stepNumber;
     held_.reset();
     clock_.start(now_());
-    hand_.begin(terrain_);
+    hand_.begin(replica_);
     output_.ready(session_);
 }
 
@@ -142,7 +142,7 @@ void StepMaker::collect() {
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
     const std::int64_t readNs = hand_.fill(step);
-    if (sand::isRound(terrain_.tool().kind) || step.heading == terrain_.heading()) {
+    if (sand::isRound(replica_.tool().kind) || step.heading == replica_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }
     return hand_.onHostClock() ? readNs : 0;
@@ -169,7 +169,7 @@ void StepMaker::makeStep() {
     }
     StepMessage message;
     message.step.epoch = start_.epoch;
-    message.step.number = terrain_.stepNumber() + 1;
+    message.step.number = replica_.stepNumber() + 1;
     message.serverTimeNs = now_();
     if (const std::int64_t readNs = fill(message.step); readNs != 0) {
         message.serverTimeNs = readNs;
@@ -177,17 +177,17 @@ void StepMaker::makeStep() {
     message.step.edit = std::exchange(edit_, {});
     const bool edited = message.step.edit.any();
     const std::uint64_t edit = message.step.edit.number;
-    terrain_.apply(message.step);
+    replica_.apply(message.step);
     message.step.edit.sand.reset();  // up to 192 MiB, which the master has
-    message.stateHash = terrain_.stateHash();
+    message.stateHash = replica_.stateHash();
     output_.step(session_, encode(std::move(message)), edit);
-    hand_.publish(terrain_, edited);
+    hand_.publish(replica_, edited);
     clock_.advance(now_());
 }
 
 void StepMaker::refresh() {
     if (running()) {
-        hand_.refresh(terrain_);
+        hand_.refresh(replica_);
     }
 }
 

@@ -75,11 +75,11 @@ public:
     /// often.
     void refresh();
 
-    [[nodiscard]] const sand::Replica& sand() const { return terrain_; }
+    [[nodiscard]] const sand::Replica& sand() const { return replica_; }
     /// Returns whether an epoch runs.
     [[nodiscard]] bool running() const { return phase_ == Phase::running; }
     /// Returns whether the wall is kWindow steps behind.
-    [[nodiscard]] bool blocked() const { return terrain_.stepNumber() >= shown_ + kWindow; }
+    [[nodiscard]] bool blocked() const { return replica_.stepNumber() >= shown_ + kWindow; }
     /// Returns when the next step is due in real time [ns].
     [[nodiscard]] std::int64_t due() const { return clock_.due(); }
     /// Returns how many steps were withheld since the program started, by cause. Any thread.
@@ -95,7 +95,7 @@ private:
 
     DeviceHand& hand_;
     Output output_;
-    sand::Replica terrain_;
+    sand::Replica replica_;
     Clock now_;
     StepClock clock_;
     std::uint32_t session_ = 0;

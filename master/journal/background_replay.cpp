@@ -13,7 +13,7 @@ namespace {
 /// Returns the state hash, computed again from all memory. Throws std::runtime_error if the memory of the replay itself
 /// is corrupt, because such a replay must not outvote a majority.
 std::uint64_t provenHash(RestoredSand& restored) {
-    sand::Replica& sand = restored.terrain;
+    sand::Replica& sand = restored.replica;
     const std::uint64_t hash = sand.stateHash();
     sand.audit(sand.hashTiles().tileCount());
     if (sand.stateHash() != hash || sand.volume() + sand.outflow() != restored.volume) {
@@ -63,7 +63,7 @@ std::unique_ptr<sand::Replica> BackgroundReplay::take() {
 
 std::uint64_t BackgroundReplay::awaitNext(RestoredSand& restored) {
     const std::uint64_t hash = provenHash(restored);
-    const std::uint64_t step = restored.terrain.stepNumber();
+    const std::uint64_t step = restored.replica.stepNumber();
     std::unique_lock lock(mutex_);
     progress_.step = step;
     if (wanted_ == step) {
@@ -90,10 +90,10 @@ void BackgroundReplay::run() {
             step = wanted_;
         }
         RestoredSand restored = restoreSand(journal_, step, how);
-        while ((step = awaitNext(restored)) != restored.terrain.stepNumber()) {
+        while ((step = awaitNext(restored)) != restored.replica.stepNumber()) {
             replayFurther(journal_, step, restored, how);
         }
-        sand_ = std::make_unique<sand::Replica>(std::move(restored.terrain));
+        sand_ = std::make_unique<sand::Replica>(std::move(restored.replica));
     } catch (const Stopped&) {
         return;
     } catch (const std::exception& error) {  // caught, because the session can continue without the replay

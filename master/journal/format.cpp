@@ -104,9 +104,9 @@ bool isWhole(std::span<const std::uint8_t> record, std::uint64_t chain) {
         return false;
     }
     const auto body = record.subspan(sizeof length, std::size_t{length} + 1);
-    std::uint64_t said = 0;
-    std::memcpy(&said, body.data() + body.size(), sizeof said);
-    return said == chainedSum(body, chain);
+    std::uint64_t stored = 0;
+    std::memcpy(&stored, body.data() + body.size(), sizeof stored);
+    return stored == chainedSum(body, chain);
 }
 
 }  // namespace

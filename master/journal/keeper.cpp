@@ -110,7 +110,7 @@ void JournalKeeper::setAside(std::uint64_t step) {
 }
 
 std::string_view JournalKeeper::state() const {
-    return standing_ ? "no_room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
+    return stopped_ ? "no_room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
 }
 
 bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
@@ -121,14 +121,14 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
     if (options_.policy != JournalPolicy::required) {
         return true;  // if the disk then refuses the steps, the journal ends
     }
-    if (!standing_) {
+    if (!stopped_) {
         host::printLine(
             "the disk has no room for the journal ({}); the sand is stopped after step {} until there is room", why,
             sand.step);
         host::emitEvent("journal", {{"state", "no_room"}, {"step", sand.step}, {"error", why}});
-        standing_ = true;
-        stoodSince_ = now();
-        ++stands_;
+        stopped_ = true;
+        stoppedSince_ = now();
+        ++stops_;
     }
     return false;
 }
@@ -137,17 +137,17 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
     if (!writer_) {
         return true;
     }
-    if (standing_ && now() - lastTry_ < kRetrySeconds) {
+    if (stopped_ && now() - lastTry_ < kRetrySeconds) {
         return false;
     }
     lastTry_ = now();
-    const bool room = hasRoom(bytes + (standing_ ? kResumeBytes : 0), sand);
-    if (room && standing_) {
-        const double seconds = now() - stoodSince_;
+    const bool room = hasRoom(bytes + (stopped_ ? kResumeBytes : 0), sand);
+    if (room && stopped_) {
+        const double seconds = now() - stoppedSince_;
         host::printLine("the disk has room for the journal again; the sand continues after {:.0f} s", seconds);
         host::emitEvent("journal", {{"state", "room"}, {"seconds", seconds}});
-        stoodSeconds_ += seconds;
-        standing_ = false;
+        stoppedSeconds_ += seconds;
+        stopped_ = false;
     }
     return room;
 }
@@ -157,7 +157,7 @@ bool JournalKeeper::hasRoomFor(std::int64_t bytes, const JournalEnd& sand) {
         return true;
     }
     std::string why;
-    return !standing_ && writer_->makeRoom(bytes, sand, why) != JournalWriter::Room::none;
+    return !stopped_ && writer_->makeRoom(bytes, sand, why) != JournalWriter::Room::none;
 }
 
 void JournalKeeper::giveUp(const std::string& why) {
@@ -239,15 +239,15 @@ void JournalKeeper::endCheckpoint(bool wait) {
     complaint_ = complaint;
 }
 
-void JournalKeeper::shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
+void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash) {
     endCheckpoint(false);
     const bool due = options_.checkpointSeconds > 0 && now() - lastCheckpoint_ >= options_.checkpointSeconds;
-    if (!writer_ || !due || doubted_ || checkpoint_.valid() || terrain.stepNumber() == checkpointStep_) {
+    if (!writer_ || !due || doubted_ || checkpoint_.valid() || replica.stepNumber() == checkpointStep_) {
         return;
     }
     lastCheckpoint_ = now();
-    checkpointStep_ = terrain.stepNumber();
-    auto copy = std::make_shared<const sand::StateCopy>(terrain.copyState());
+    checkpointStep_ = replica.stepNumber();
+    auto copy = std::make_shared<const sand::StateCopy>(replica.copyState());
     copyMs_.push_back(1e3 * (now() - lastCheckpoint_));
     Checkpoint checkpoint{writer_->session(), buildId_, sceneDigest_, checkpointStep_, frame, epoch, hash, {}};
     checkpoint_ = std::async(std::launch::async, [copy = std::move(copy), checkpoint, journal = journal_]() mutable {
@@ -262,7 +262,7 @@ void JournalKeeper::shown(const sand::Replica& terrain, std::uint64_t frame, std
     });
 }
 
-double JournalKeeper::stoodSeconds() const { return stoodSeconds_ + (standing_ ? now() - stoodSince_ : 0); }
+double JournalKeeper::stoppedSeconds() const { return stoppedSeconds_ + (stopped_ ? now() - stoppedSince_ : 0); }
 
 void JournalKeeper::finish(const JournalEnd& end) {
     endCheckpoint(true);

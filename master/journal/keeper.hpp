@@ -77,8 +77,8 @@ public:
     /// Writes the share of the force that an operator has set. It is on disk when the function returns, or with later
     /// steps if the disk is full.
     void force(const JournalForce& force);
-    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `terrain` are in the journal.
-    void shown(const sand::Replica& terrain, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
+    /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
+    void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     /// Writes the end of the session. Between doubt() and checked() the journal gets no end.
     void finish(const JournalEnd& end);
 
@@ -91,8 +91,8 @@ public:
     [[nodiscard]] const std::vector<double>& copyMs() const { return copyMs_; }
     [[nodiscard]] std::uint64_t checkpointsFailed() const { return checkpointsFailed_; }
     /// Return how often, and for how long in total [s], the sand was stopped because the disk was full.
-    [[nodiscard]] std::uint64_t stands() const { return stands_; }
-    [[nodiscard]] double stoodSeconds() const;
+    [[nodiscard]] std::uint64_t stops() const { return stops_; }
+    [[nodiscard]] double stoppedSeconds() const;
     /// Returns how many checkpoints were set aside at a resume. They are of later steps than the end of the journal,
     /// which has lost steps.
     [[nodiscard]] std::uint64_t checkpointsBeyond() const { return checkpointsBeyond_; }
@@ -112,11 +112,11 @@ private:
     std::filesystem::path journal_;
     std::string buildId_;
     std::uint64_t sceneDigest_;
-    std::optional<JournalWriter> writer_;  // nullopt if off or failed
-    bool standing_ = false;                // the sand is stopped because the disk is full
-    double stoodSince_ = 0, lastTry_ = 0;  // [s]
-    std::uint64_t stands_ = 0;
-    double stoodSeconds_ = 0;
+    std::optional<JournalWriter> writer_;    // nullopt if off or failed
+    bool stopped_ = false;                   // the sand is stopped because the disk is full
+    double stoppedSince_ = 0, lastTry_ = 0;  // [s]
+    std::uint64_t stops_ = 0;
+    double stoppedSeconds_ = 0;
     double lastCheckpoint_ = 0;  // [s]
     std::uint64_t checkpointStep_ = 0;
     std::future<std::string> checkpoint_;  // result of the one that is being written: its error message

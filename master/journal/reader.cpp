@@ -112,7 +112,7 @@ void JournalReader::fail(const std::string& why) const {
     throw base::InputError(fmt::format("{}: {}", partOf(place_.journal, place_.part).string(), why));
 }
 
-bool JournalReader::goesOn() const {
+bool JournalReader::continues() const {
     const fs::path file = partOf(place_.journal, place_.part + 1);
     std::error_code none;
     std::ifstream next;
@@ -144,20 +144,20 @@ bool JournalReader::readRecord(base::Bytes& body) {
     if (length > size_ - place_.offset - static_cast<std::int64_t>(kAroundPayload)) {
         return false;
     }
-    std::uint64_t said = 0;
-    const std::size_t wanted = std::size_t{length} + 1 + sizeof said;
+    std::uint64_t stored = 0;
+    const std::size_t wanted = std::size_t{length} + 1 + sizeof stored;
     if (readInto(stream_, body, static_cast<std::int64_t>(wanted)).size() != wanted) {
         return false;
     }
-    std::memcpy(&said, body.data() + body.size() - sizeof said, sizeof said);
-    body.resize(body.size() - sizeof said);
-    if (recordChecksum(body, place_.chain) != said) {
+    std::memcpy(&stored, body.data() + body.size() - sizeof stored, sizeof stored);
+    body.resize(body.size() - sizeof stored);
+    if (recordChecksum(body, place_.chain) != stored) {
         return false;
     }
     if (const auto mark = markOf(body); mark && *mark != static_cast<std::uint64_t>(place_.offset)) {
         return false;
     }
-    place_.chain = said;
+    place_.chain = stored;
     return true;
 }
 
@@ -172,7 +172,7 @@ void JournalReader::endHere(const std::string& why) {
             fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_, why));
         }
     }
-    if (goesOn()) {
+    if (continues()) {
         fail(fmt::format(
             "cut off at byte {}, but {} continues the session after missing records; everything before is intact",
             place_.offset, partOf(place_.journal, place_.part + 1).filename().string()));

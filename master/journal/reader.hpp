@@ -58,7 +58,7 @@ private:
     /// Sets JournalFrame::doubted of a record that has been read.
     void followDoubt(JournalRecord& record);
     /// Returns whether there is a next part of this session with a record.
-    [[nodiscard]] bool goesOn() const;
+    [[nodiscard]] bool continues() const;
 
     JournalHeader header_;
     JournalPlace place_;

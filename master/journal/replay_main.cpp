@@ -74,11 +74,11 @@ public:
         file_.emplace(options.forces);
         rows_ = haptic_bridge::tickTitles();
     }
-    void feel(const sand::Replica& terrain) {
+    void feel(const sand::Replica& replica) {
         if (options_.forces.empty()) {
             return;
         }
-        replay_.feel(terrain, rows_);
+        replay_.feel(replica, rows_);
         file_->stream() << rows_;
         rows_.clear();
     }
@@ -101,21 +101,21 @@ private:
 };
 
 /// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
-int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& terrain, Forces& forces) {
+int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& replica, Forces& forces) {
     int differing = 0;
-    forces.feel(terrain);
+    forces.feel(replica);
     for (const master::JournalFrame& frame : journal.frames) {
-        if (frame.steps.empty() || terrain.stepNumber() >= until) {
+        if (frame.steps.empty() || replica.stepNumber() >= until) {
             continue;
         }
-        if (!frame.doubted && terrain.stateHash() != frame.hashBefore && differing++ == 0) {
+        if (!frame.doubted && replica.stateHash() != frame.hashBefore && differing++ == 0) {
             host::printLine("before frame {}, after step {}: the session had {:016x}, the replay has {:016x}",
-                            frame.frame, terrain.stepNumber(), frame.hashBefore, terrain.stateHash());
+                            frame.frame, replica.stepNumber(), frame.hashBefore, replica.stateHash());
         }
         for (const sand::Step& step : frame.steps) {
             if (step.number <= until) {
-                terrain.apply(step);
-                forces.feel(terrain);
+                replica.apply(step);
+                forces.feel(replica);
             }
         }
     }
@@ -175,12 +175,12 @@ void writeRasters(const sand::HeightField& field, const scene::Scene& scene, con
     }
 }
 
-void writeOutputs(const sand::Replica& terrain, const scene::Scene& scene, const Options& options) {
+void writeOutputs(const sand::Replica& replica, const scene::Scene& scene, const Options& options) {
     if (!options.mesh.empty()) {
-        scene::writeMesh(scene::meshOf(terrain, scene), options.mesh);
+        scene::writeMesh(scene::meshOf(replica, scene), options.mesh);
     }
     if (!options.heights.empty() || !options.difference.empty() || options.volumes) {
-        scene::withCells(terrain, scene, [&](const sand::HeightField& field, const scene::Scene& began) {
+        scene::withCells(replica, scene, [&](const sand::HeightField& field, const scene::Scene& began) {
             writeRasters(field, began, options);
         });
     }
@@ -208,27 +208,27 @@ int run(const Options& options) {
     }
     const master::Journal journal = master::readJournal(options.file);
     if (options.steps.empty()) {  // the export has printed it
-        master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+        master::printMissing(options.file, journal.tornBytes, journal.end.has_value());
     }
-    sand::Replica terrain(journal.scene);
+    sand::Replica replica(journal.scene);
     Forces forces(journal, options);
-    int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
+    int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), replica, forces);
     forces.finish();
-    master::requireStep(options.file, terrain.stepNumber(), options.until);
-    const bool whole = journal.end && journal.end->step == terrain.stepNumber();
-    if (whole && journal.end->hash != terrain.stateHash()) {
-        host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", terrain.stepNumber(),
-                        journal.end->hash, terrain.stateHash());
+    master::requireStep(options.file, replica.stepNumber(), options.until);
+    const bool whole = journal.end && journal.end->step == replica.stepNumber();
+    if (whole && journal.end->hash != replica.stateHash()) {
+        host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", replica.stepNumber(),
+                        journal.end->hash, replica.stateHash());
         ++differing;
     }
     if (options.hash) {
-        fmt::print("{:016x}\n", terrain.stateHash());
+        fmt::print("{:016x}\n", replica.stateHash());
     }
     if (options.plain()) {
-        fmt::print("{}: {} steps replayed, state hash {:016x}; {}\n", options.file, terrain.stepNumber(),
-                   terrain.stateHash(), differing == 0 ? "no hash differs from the session's" : "hashes differ");
+        fmt::print("{}: {} steps replayed, state hash {:016x}; {}\n", options.file, replica.stepNumber(),
+                   replica.stateHash(), differing == 0 ? "no hash differs from the session's" : "hashes differ");
     }
-    writeOutputs(terrain, journal.scene, options);
+    writeOutputs(replica, journal.scene, options);
     return differing == 0 ? 0 : 1;
 }
 

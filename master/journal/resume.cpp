@@ -29,11 +29,11 @@ public:
     using base::InputError::InputError;
 };
 
-void requireHash(sand::Replica& terrain, const JournalEnd& said, const fs::path& journal) {
-    if (terrain.stepNumber() == said.step && terrain.stateHash() != said.hash) {
+void requireHash(sand::Replica& replica, const JournalEnd& recorded, const fs::path& journal) {
+    if (replica.stepNumber() == recorded.step && replica.stateHash() != recorded.hash) {
         throw OtherSand(fmt::format(
             "{}: after step {} the session had {:016x}, the replay has {:016x}; it is of another version or damaged",
-            journal.string(), said.step, said.hash, terrain.stateHash()));
+            journal.string(), recorded.step, recorded.hash, replica.stateHash()));
     }
 }
 
@@ -41,41 +41,41 @@ void requireHash(sand::Replica& terrain, const JournalEnd& said, const fs::path&
 class Replay {
 public:
     Replay(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how)
-        : journal_(journal), step_(step), terrain_(restored.terrain), outvoted_(restored.outvoted), how_(how) {}
+        : journal_(journal), step_(step), replica_(restored.replica), outvoted_(restored.outvoted), how_(how) {}
 
     void run() {
         JournalReader reader(journal_);
-        while (!(how_.beingWritten && terrain_.stepNumber() >= step_) && !beyond_) {
+        while (!(how_.beingWritten && replica_.stepNumber() >= step_) && !beyond_) {
             const auto record = reader.next();
             if (!record) {
                 break;
             }
             std::visit(*this, *record);
             if (how_.each) {
-                how_.each(terrain_.stepNumber());
+                how_.each(replica_.stepNumber());
             }
         }
-        if (terrain_.stepNumber() < step_) {
+        if (replica_.stepNumber() < step_) {
             throw base::InputError(
-                fmt::format("{}: ends at step {}, before step {}", journal_.string(), terrain_.stepNumber(), step_));
+                fmt::format("{}: ends at step {}, before step {}", journal_.string(), replica_.stepNumber(), step_));
         }
     }
 
     void operator()(const JournalFrame& frame) {
-        if (frame.steps.empty() || frame.steps.back().number <= terrain_.stepNumber()) {
+        if (frame.steps.empty() || frame.steps.back().number <= replica_.stepNumber()) {
             return;
         }
         const std::uint64_t next = frame.steps.front().number;
-        if (next > terrain_.stepNumber() + 1) {
+        if (next > replica_.stepNumber() + 1) {
             throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                               journal_.string(), next, terrain_.stepNumber()));
+                                               journal_.string(), next, replica_.stepNumber()));
         }
         if (!frame.doubted) {
-            requireHash(terrain_, {next - 1, frame.hashBefore}, journal_);
+            requireHash(replica_, {next - 1, frame.hashBefore}, journal_);
         }
         for (const sand::Step& one : frame.steps) {
-            if (one.number == terrain_.stepNumber() + 1 && one.number <= step_) {
-                terrain_.apply(one);
+            if (one.number == replica_.stepNumber() + 1 && one.number <= step_) {
+                replica_.apply(one);
                 if (how_.each) {
                     how_.each(one.number);
                 }
@@ -83,10 +83,10 @@ public:
         }
         beyond_ = frame.steps.back().number > step_;
     }
-    void operator()(const JournalEnd& end) { requireHash(terrain_, end, journal_); }
+    void operator()(const JournalEnd& end) { requireHash(replica_, end, journal_); }
     void operator()(const JournalDoubt& doubt) {
-        if (doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() && !outvoted_) {
-            outvoted_ = Outvoted{doubt, terrain_.stateHash()};
+        if (doubt.sand.step == replica_.stepNumber() && doubt.sand.hash != replica_.stateHash() && !outvoted_) {
+            outvoted_ = Outvoted{doubt, replica_.stateHash()};
         }
     }
     void operator()(const JournalChecked& checked) { endDoubt(checked.sand); }
@@ -98,13 +98,13 @@ public:
 
 private:
     void endDoubt(const JournalEnd& sand) {
-        requireHash(terrain_, sand, journal_);
+        requireHash(replica_, sand, journal_);
         outvoted_.reset();
     }
 
     const fs::path& journal_;
     const std::uint64_t step_;
-    sand::Replica& terrain_;
+    sand::Replica& replica_;
     std::optional<Outvoted>& outvoted_;
     const Restoring& how_;
     bool beyond_ = false;  // a record behind the step has been read, with the hash after it
@@ -188,17 +188,17 @@ sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header
     if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
         throw base::FormatError("is of another session");
     }
-    sand::Replica terrain = start;
-    terrain.decodeState(checkpoint.state);
-    if (terrain.stepNumber() != checkpoint.step || terrain.stateHash() != checkpoint.stateHash) {
+    sand::Replica replica = start;
+    replica.decodeState(checkpoint.state);
+    if (replica.stepNumber() != checkpoint.step || replica.stateHash() != checkpoint.stateHash) {
         throw base::FormatError("its sand differs from its hash");
     }
-    return terrain;
+    return replica;
 }
 
 void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& restored, const Restoring& how) {
     Replay(journal, step, restored, how).run();
-    restored.replayedSteps = restored.terrain.stepNumber() - restored.checkpointStep;
+    restored.replayedSteps = restored.replica.stepNumber() - restored.checkpointStep;
 }
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
@@ -210,12 +210,12 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
             continue;
         }
         const fs::path file = checkpointFile(journal, at);
-        std::optional<sand::Replica> terrain = usableCheckpoint(file, head.header(), start);
-        if (!terrain) {
+        std::optional<sand::Replica> replica = usableCheckpoint(file, head.header(), start);
+        if (!replica) {
             continue;
         }
         try {
-            RestoredSand restored{std::move(*terrain), at, 0, volume, {}};
+            RestoredSand restored{std::move(*replica), at, 0, volume, {}};
             replayFurther(journal, step, restored, how);
             return restored;
         } catch (const OtherSand& error) {
@@ -252,8 +252,8 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     session.cutBytes = reader.tornBytes();
     RestoredSand restored = restoreSand(journal, session.step, {.newestCheckpoint = newestCheckpointFor(walk.doubted)});
     session.outvoted = restored.outvoted;
-    session.hash = restored.terrain.stateHash();
-    session.state = restored.terrain.encodeState();
+    session.hash = restored.replica.stateHash();
+    session.state = restored.replica.encodeState();
     session.checkpointStep = restored.checkpointStep;
     session.replayedSteps = restored.replayedSteps;
     return session;

@@ -23,7 +23,7 @@ struct Outvoted {
 
 /// The sand of a session after one of its steps, computed from its journal.
 struct RestoredSand {
-    sand::Replica terrain;
+    sand::Replica replica;
     std::uint64_t checkpointStep = 0;  // step of the checkpoint that was used; 0 for the scene itself
     std::uint64_t replayedSteps = 0;   // steps that were replayed after it
     std::int64_t volume = 0;           // with outflow, of the scene's start; every later volume is the same

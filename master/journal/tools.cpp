@@ -79,7 +79,7 @@ void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::in
     }
 }
 
-void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
+void printMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
     if (tornBytes > 0) {
         host::printLine("{}: the last {} bytes are an incomplete write and were left out", journal.string(), tornBytes);
     }
@@ -123,7 +123,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
     }
     requireStep(journal, last, until);
     out.keep();
-    sayWhatIsMissing(journal, reader.tornBytes(), orderlyEnd);
+    printMissing(journal, reader.tornBytes(), orderlyEnd);
 }
 
 void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {

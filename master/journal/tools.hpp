@@ -21,7 +21,7 @@ enum class DecodedFor : std::uint8_t { scene, replica };
 void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes);
 
 /// Prints on standard error if a journal that was read to its end lacks an orderly end or has torn bytes.
-void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd);
+void printMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd);
 
 /// Writes every step up to `until` as a row of a CSV file (docs/journal.md). Prints on standard error what the journal
 /// lacks. If the journal ends before `until`, throws base::InputError and leaves the file unchanged.

@@ -20,7 +20,7 @@ namespace {
 class Verification {
 public:
     explicit Verification(const std::filesystem::path& journal)
-        : journal_(journal), reader_(journal), start_(sceneOf(reader_)), terrain_(start_) {
+        : journal_(journal), reader_(journal), start_(sceneOf(reader_)), replica_(start_) {
         for (const std::uint64_t step : checkpointsOf(journal)) {
             checkpoints_.emplace(step, std::string());
         }
@@ -32,7 +32,7 @@ public:
             ++records_;
             std::visit(*this, *record);
         }
-        say();
+        print();
         return differing_ == 0 && badCheckpoints_ == 0 ? 0 : 1;
     }
 
@@ -44,14 +44,14 @@ public:
             compare({frame.steps.front().number - 1, frame.hashBefore});
         }
         for (const sand::Step& step : frame.steps) {
-            if (step.number != terrain_.stepNumber() + 1) {
+            if (step.number != replica_.stepNumber() + 1) {
                 throw base::InputError(fmt::format("{}: step {} follows step {}; a part of the session is missing",
-                                                   journal_.string(), step.number, terrain_.stepNumber()));
+                                                   journal_.string(), step.number, replica_.stepNumber()));
             }
             lastEpoch_ = std::max(lastEpoch_, step.epoch);
-            terrain_.apply(step);
-            if (!terrain_.leftOut().empty() && leftOut_++ == 0) {
-                firstLeftOut_ = fmt::format(", the first is step {}: {}", step.number, terrain_.leftOut());
+            replica_.apply(step);
+            if (!replica_.leftOut().empty() && leftOut_++ == 0) {
+                firstLeftOut_ = fmt::format(", the first is step {}: {}", step.number, replica_.leftOut());
             }
             compareCheckpoint();
         }
@@ -72,37 +72,37 @@ public:
     void operator()(const JournalDoubt& doubt) {
         ++doubts_;
         // Later steps of the majority's sand are not in the journal, so only this hash can be compared.
-        outvoted_ += doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() ? 1 : 0;
+        outvoted_ += doubt.sand.step == replica_.stepNumber() && doubt.sand.hash != replica_.stateHash() ? 1 : 0;
     }
     void operator()(const JournalChecked& checked) { compare(checked.sand); }
     void operator()(const JournalForce&) {}
 
 private:
-    void compare(const JournalEnd& said) {
+    void compare(const JournalEnd& recorded) {
         ++hashes_;
-        if (said.step == terrain_.stepNumber() && said.hash == terrain_.stateHash()) {
+        if (recorded.step == replica_.stepNumber() && recorded.hash == replica_.stateHash()) {
             return;
         }
         if (differing_++ == 0) {
-            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", said.step, said.hash,
-                            terrain_.stateHash());
+            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", recorded.step,
+                            recorded.hash, replica_.stateHash());
         }
     }
     void compareCheckpoint() {
-        const auto found = checkpoints_.find(terrain_.stepNumber());
+        const auto found = checkpoints_.find(replica_.stepNumber());
         if (found == checkpoints_.end()) {
             return;
         }
         try {
             sand::Replica sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
             found->second =
-                sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "differs from the replay's sand";
+                sand.stateHash() == replica_.stateHash() ? "the replay's sand" : "differs from the replay's sand";
         } catch (const base::FormatError& error) {
             found->second = error.what();
         }
         badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;
     }
-    void say() {
+    void print() {
         const FileOrigin& origin = reader_.header().origin;
         fmt::print("origin       sandwall {}, journal format {}, algorithm {}\n", origin.release, origin.format,
                    origin.algorithm);
@@ -113,7 +113,7 @@ private:
                                             ? std::string("whole")
                                             : fmt::format("{} bytes of an incomplete write", reader_.tornBytes()));
         fmt::print("steps        {} without a gap, in frames {} to {}, epochs to {}, {} pieces of ticks\n",
-                   terrain_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
+                   replica_.stepNumber(), firstFrame_, lastFrame_, lastEpoch_, ticks_);
         fmt::print("left out     {} steps{}\n", leftOut_, firstLeftOut_);
         fmt::print("hashes       {} of {} equal to the replay's\n", hashes_ - differing_, hashes_);
         fmt::print("majorities   {} decided which sand is right, {} of them against the journal\n", doubts_, outvoted_);
@@ -122,12 +122,12 @@ private:
         }
         fmt::print("resumed      {} times, {} bytes were cut off\n", resumes_, cutBytes_);
         fmt::print("end          {}, at step {}, state hash {:016x}\n", end_ ? "orderly" : "cut off",
-                   terrain_.stepNumber(), terrain_.stateHash());
+                   replica_.stepNumber(), replica_.stateHash());
     }
 
     std::filesystem::path journal_;
     JournalReader reader_;
-    sand::Replica start_, terrain_;
+    sand::Replica start_, replica_;
     std::map<std::uint64_t, std::string> checkpoints_;  // by step: the result for each
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
     std::uint64_t doubts_ = 0, outvoted_ = 0;

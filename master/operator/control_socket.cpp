@@ -98,8 +98,8 @@ ControlSocket::~ControlSocket() {
         thread_.join();
         close(wake_[0]);
     }
-    for (const auto& [client, guest] : guests_) {
-        close(guest.descriptor);
+    for (const auto& [client, connection] : connections_) {
+        close(connection.descriptor);
     }
     if (listener_ >= 0) {
         close(listener_);
@@ -131,48 +131,49 @@ void ControlSocket::admit() {
     ucred peer{};
     socklen_t size = sizeof peer;
     const bool known = getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
-    Guest guest;
-    guest.descriptor = descriptor;
-    guest.until = Clock::now() + std::chrono::seconds(kPatience);
+    Connection connection;
+    connection.descriptor = descriptor;
+    connection.until = Clock::now() + std::chrono::seconds(kPatience);
     if (!known || !mayCommand(peer.uid, geteuid())) {
-        guest.out = std::string(kRefusal) + "\n";
-    } else if (guests_.size() >= kMostClients) {
-        guest.out = std::string(kTooMany) + "\n";
+        connection.out = std::string(kRefusal) + "\n";
+    } else if (connections_.size() >= kMostClients) {
+        connection.out = std::string(kTooMany) + "\n";
     }
-    if (!guest.out.empty()) {
-        (void)write(guest);
+    if (!connection.out.empty()) {
+        (void)write(connection);
         close(descriptor);
         return;
     }
-    guests_.emplace(++lastClient_, std::move(guest));
+    connections_.emplace(++lastClient_, std::move(connection));
 }
 
-void ControlSocket::read(Client client, Guest& guest) {
+void ControlSocket::read(Client client, Connection& connection) {
     std::array<char, 512> piece{};
-    const ssize_t count = recv(guest.descriptor, piece.data(), piece.size(), 0);
+    const ssize_t count = recv(connection.descriptor, piece.data(), piece.size(), 0);
     if (count <= 0) {
-        guest.until = Clock::time_point::min();  // the client closed the connection before a whole line
+        connection.until = Clock::time_point::min();  // the client closed the connection before a whole line
         return;
     }
-    guest.in.append(piece.data(), static_cast<std::size_t>(count));
-    const std::size_t end = guest.in.find('\n');
-    if (std::min(end, guest.in.size()) > kLongestCommand) {
-        guest.out = std::string(kTooLong) + "\n";
-        guest.waiting = true;
+    connection.in.append(piece.data(), static_cast<std::size_t>(count));
+    const std::size_t end = connection.in.find('\n');
+    if (std::min(end, connection.in.size()) > kLongestCommand) {
+        connection.out = std::string(kTooLong) + "\n";
+        connection.waiting = true;
     } else if (end != std::string::npos) {
-        guest.waiting = true;
+        connection.waiting = true;
         const std::lock_guard lock(mutex_);
-        asked_.push_back({client, guest.in.substr(0, end)});
+        asked_.push_back({client, connection.in.substr(0, end)});
     }
 }
 
-bool ControlSocket::write(Guest& guest) {
-    const ssize_t count = send(guest.descriptor, guest.out.data(), guest.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+bool ControlSocket::write(Connection& connection) {
+    const ssize_t count =
+        send(connection.descriptor, connection.out.data(), connection.out.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     if (count < 0) {
         return errno == EAGAIN || errno == EINTR;
     }
-    guest.out.erase(0, static_cast<std::size_t>(count));
-    return !guest.out.empty();
+    connection.out.erase(0, static_cast<std::size_t>(count));
+    return !connection.out.empty();
 }
 
 void ControlSocket::collectAnswers() {
@@ -182,7 +183,7 @@ void ControlSocket::collectAnswers() {
         answers.swap(answers_);
     }
     for (Asked& answer : answers) {
-        if (const auto found = guests_.find(answer.client); found != guests_.end()) {
+        if (const auto found = connections_.find(answer.client); found != connections_.end()) {
             found->second.out = std::move(answer.line) + "\n";
             found->second.until = Clock::now() + std::chrono::seconds(kPatience);
         }
@@ -191,8 +192,8 @@ void ControlSocket::collectAnswers() {
 
 void ControlSocket::sendAway(const std::vector<Client>& clients) {
     for (const Client client : clients) {
-        close(guests_.at(client).descriptor);
-        guests_.erase(client);
+        close(connections_.at(client).descriptor);
+        connections_.erase(client);
     }
 }
 
@@ -201,12 +202,12 @@ void ControlSocket::serve() {
     while (true) {
         std::vector<pollfd> watched{{wake_[0], POLLIN, 0}, {listener_, POLLIN, 0}};
         std::vector<Client> clients;
-        for (const auto& [client, guest] : guests_) {
-            const int wanted = !guest.out.empty() ? POLLOUT : guest.waiting ? 0 : POLLIN;
-            watched.push_back({guest.descriptor, static_cast<short>(wanted), 0});
+        for (const auto& [client, connection] : connections_) {
+            const int wanted = !connection.out.empty() ? POLLOUT : connection.waiting ? 0 : POLLIN;
+            watched.push_back({connection.descriptor, static_cast<short>(wanted), 0});
             clients.push_back(client);
         }
-        poll(watched.data(), watched.size(), guests_.empty() ? -1 : kLook);
+        poll(watched.data(), watched.size(), connections_.empty() ? -1 : kLook);
         std::array<char, 64> any{};
         while (::read(wake_[0], any.data(), any.size()) > 0) {
         }
@@ -217,21 +218,21 @@ void ControlSocket::serve() {
         }
         collectAnswers();
         if (ending) {  // sends the last answers, such as to the client that asked for the end
-            for (auto& [client, guest] : guests_) {
-                (void)(guest.out.empty() || write(guest));
+            for (auto& [client, connection] : connections_) {
+                (void)(connection.out.empty() || write(connection));
             }
             return;
         }
         std::vector<Client> leaving;
         for (std::size_t i = 0; i < clients.size(); ++i) {
-            Guest& guest = guests_.at(clients[i]);
+            Connection& connection = connections_.at(clients[i]);
             const int seen = watched[i + 2].revents;
             if ((seen & POLLIN) != 0) {
-                read(clients[i], guest);
+                read(clients[i], connection);
             }
-            const bool inTime = (guest.waiting && guest.out.empty()) || Clock::now() < guest.until;
+            const bool inTime = (connection.waiting && connection.out.empty()) || Clock::now() < connection.until;
             const bool gone = (seen & (POLLHUP | POLLERR)) != 0 && (seen & POLLIN) == 0;
-            if (!inTime || gone || (!guest.out.empty() && !write(guest))) {
+            if (!inTime || gone || (!connection.out.empty() && !write(connection))) {
                 leaving.push_back(clients[i]);
             }
         }

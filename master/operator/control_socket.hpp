@@ -50,7 +50,7 @@ public:
     void answer(Client client, std::string json);
 
 private:
-    struct Guest {
+    struct Connection {
         int descriptor = -1;
         std::chrono::steady_clock::time_point until;  // the connection is closed then, unless it waits for an answer
         std::string in, out;
@@ -60,17 +60,17 @@ private:
     [[nodiscard]] std::string open();
     void serve();
     void admit();
-    void read(Client client, Guest& guest);
+    void read(Client client, Connection& connection);
     void collectAnswers();
     /// Sends as much of the answer as possible. Returns false if all is sent or the connection is broken.
-    [[nodiscard]] static bool write(Guest& guest);
+    [[nodiscard]] static bool write(Connection& connection);
     void sendAway(const std::vector<Client>& clients);
 
     std::filesystem::path folder_;
     int folderDescriptor_ = -1;
     int listener_ = -1;
-    int wake_[2] = {-1, -1};          // a pipe that ends the poll of the thread
-    std::map<Client, Guest> guests_;  // the thread's own
+    int wake_[2] = {-1, -1};                    // a pipe that ends the poll of the thread
+    std::map<Client, Connection> connections_;  // the thread's own
     Client lastClient_ = 0;
     std::mutex mutex_;
     bool ending_ = false;

@@ -22,11 +22,11 @@ constexpr const char* kOtherSand = "the hand felt other sand than the wall has s
 
 }  // namespace
 
-LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
+LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
                      std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock)
     : now_(clock ? std::move(clock) : host::monotonicNs),
       link_(std::move(server), {scene.rules.digest(), scene.name}, std::move(security), now_,
-            pace == Pace::fast ? scene.rules.stepsPerSecond : 0),
+            pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace),
       pace_(pace),
       source_(link_.hasServer() ? Source::starting : Source::own),
@@ -53,14 +53,14 @@ void LiveSteps::takeOver(const std::string& reason, const std::string& why) {
     own_.begin(now_());
 }
 
-void LiveSteps::grant(const sand::Replica& terrain, std::uint64_t stateHash) {
+void LiveSteps::grant(const sand::Replica& replica, std::uint64_t stateHash) {
     ++epoch_;
-    link_.client()->grant(epoch_, terrain.stepNumber(), stateHash, terrain.encodeState(), recent_);
+    link_.client()->grant(epoch_, replica.stepNumber(), stateHash, replica.encodeState(), recent_);
     source_ = Source::granting;
     waitingSinceNs_ = now_();
 }
 
-void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash) {
+void LiveSteps::followLink(const sand::Replica& replica, std::uint64_t stateHash) {
     if (link_.client() == nullptr && link_.hasServer() && secondsSince(waitingSinceNs_) > kRetryWait) {
         link_.connect();
     }
@@ -68,7 +68,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
         return;
     }
     const Link link = link_.follow(epoch_).link;
-    own_.followPositions(*link_.client(), link, terrain, now_());
+    own_.followPositions(*link_.client(), link, replica, now_());
     if (link == Link::linked) {
         source_ = Source::server;
         link_.forgetRefusal();
@@ -78,7 +78,7 @@ void LiveSteps::followLink(const sand::Replica& terrain, std::uint64_t stateHash
             takeOver();
         }
     } else if (link == Link::offered) {
-        grant(terrain, stateHash);
+        grant(replica, stateHash);
     } else {
         waitForLink(link);
     }
@@ -115,11 +115,11 @@ void LiveSteps::noteLastReport() {
     linksNoted_ = link;
 }
 
-std::vector<TimedStep> LiveSteps::next(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> LiveSteps::next(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
     if (link_.hasServer()) {
-        recent_.reached(terrain.stepNumber(), stateHash);
+        recent_.reached(replica.stepNumber(), stateHash);
     }
-    std::vector<TimedStep> steps = stepsDue(terrain, stateHash, most);
+    std::vector<TimedStep> steps = stepsDue(replica, stateHash, most);
     edits_.removeThoseIn(steps);
     if (const sand::Edit* edit = linked() ? edits_.nextToAsk(epoch_) : nullptr) {
         link_.client()->request(*edit);
@@ -139,7 +139,7 @@ std::vector<TimedStep> LiveSteps::next(const sand::Replica& terrain, std::uint64
     return steps;
 }
 
-std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::uint64_t stateHash, std::size_t most) {
+std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
     const bool fromServer = linked();
     if (fromServer) {
         std::vector<TimedStep> steps = link_.client()->drain(most);
@@ -147,7 +147,7 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::ui
             return steps;
         }
     }
-    followLink(terrain, stateHash);
+    followLink(replica, stateHash);
     if (fromServer && source_ == Source::own && link_.client() != nullptr) {
         // Steps that arrived between the first look and the loss of the link count, too.
         std::vector<TimedStep> steps = link_.client()->drain(most);
@@ -157,15 +157,15 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& terrain, std::ui
             return steps;
         }
     }
-    return source_ == Source::own ? ownSteps(terrain, most) : std::vector<TimedStep>();
+    return source_ == Source::own ? ownSteps(replica, most) : std::vector<TimedStep>();
 }
 
-std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& terrain, std::size_t most) {
+std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
     // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
     std::vector<TimedStep> steps(std::min(own_.due(now_()), most));
     for (std::size_t i = 0; i < steps.size(); ++i) {
         steps[i].step.epoch = epoch_;
-        steps[i].step.number = terrain.stepNumber() + 1 + i;
+        steps[i].step.number = replica.stepNumber() + 1 + i;
         own_.fill(steps[i]);
         steps[i].step.edit = edits_.at(i);
     }

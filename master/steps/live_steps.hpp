@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "lockstep/fault.hpp"
 #include "master/steps/own_steps.hpp"
 #include "master/steps/server_link.hpp"
@@ -35,14 +36,14 @@ public:
 
     /// `epoch` is the last epoch of a resumed session; new epochs have higher numbers. All timeouts use `clock`, also
     /// those of the link.
-    LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Pace pace,
+    LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
               std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& replica, std::uint64_t stateHash,
                                                              std::size_t most) override;
-    [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == Pace::fast ? 4 : 8; }
+    [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == haptic_bridge::Pace::fast ? 4 : 8; }
     /// Returns how long a frame waits for a step [s]. Only a fast session waits.
-    [[nodiscard]] double patience() const override { return pace_ == Pace::fast ? 0.1 : 0; }
+    [[nodiscard]] double patience() const override { return pace_ == haptic_bridge::Pace::fast ? 0.1 : 0; }
     [[nodiscard]] StepRequests* requests() override { return this; }
     void request(sand::Edit edit) override { edits_.add(std::move(edit)); }
     void shareForce(double share) override { link_.shareForce(share); }
@@ -77,13 +78,13 @@ public:
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& terrain, std::uint64_t stateHash,
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& replica, std::uint64_t stateHash,
                                                                  std::size_t most);
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& terrain, std::size_t most);
-    void followLink(const sand::Replica& terrain, std::uint64_t stateHash);
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& replica, std::size_t most);
+    void followLink(const sand::Replica& replica, std::uint64_t stateHash);
     /// Follows a link that is neither linked, streaming nor offered.
     void waitForLink(haptic_bridge::Link link);
-    void grant(const sand::Replica& terrain, std::uint64_t stateHash);
+    void grant(const sand::Replica& replica, std::uint64_t stateHash);
     /// Lets the master number the steps in a new epoch. `reason` is a name for programs, `why` a text for the user;
     /// both are empty if no link was lost.
     void takeOver(const std::string& reason = "", const std::string& why = "");
@@ -96,7 +97,7 @@ private:
     OwnSteps own_;
     WaitingEdits edits_;
     haptic_bridge::StepRing recent_;
-    Pace pace_;
+    haptic_bridge::Pace pace_;
     Source source_;
     std::uint32_t epoch_;
     std::int64_t waitingSinceNs_;   // [ns], since when the master waits for the server

@@ -8,7 +8,7 @@
 namespace master {
 
 std::size_t OwnSteps::due(std::int64_t nowNs) {
-    if (pace_ == Pace::fast) {
+    if (pace_ == haptic_bridge::Pace::fast) {
         return 1;
     }
     owed_ += static_cast<double>(nowNs - lastNs_) * 1e-9 * stepsPerSecond_;

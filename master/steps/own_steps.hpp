@@ -6,6 +6,7 @@
 #include <span>
 
 #include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pace.hpp"
 #include "lockstep/pointer.hpp"
 #include "master/steps/pointer_hand.hpp"
 #include "master/steps/position_source.hpp"
@@ -21,7 +22,7 @@ namespace master {
 /// hand the tool hovers. Used by one thread. The scene must outlive this object.
 class OwnSteps {
 public:
-    OwnSteps(const scene::Scene& scene, Pace pace)
+    OwnSteps(const scene::Scene& scene, haptic_bridge::Pace pace)
         : stepsPerSecond_(scene.rules.stepsPerSecond), pace_(pace), positions_(scene) {}
 
     /// Call it when the master begins to number the steps.
@@ -49,7 +50,7 @@ public:
 
 private:
     int stepsPerSecond_;
-    Pace pace_;
+    haptic_bridge::Pace pace_;
     PositionSource positions_;
     std::optional<PointerHand> pointer_;  // nullopt before pointed()
     std::int64_t pointedNs_ = 0;          // [ns], when the last reports arrived

@@ -40,7 +40,7 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
          .read = false});
 }
 
-void PointerHand::lift(std::int64_t at) { add({at, last().probe, false}); }
+void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
 void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
     for (const lockstep::PointerReport& report : reports) {

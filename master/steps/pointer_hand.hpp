@@ -35,7 +35,7 @@ public:
 
 private:
     void point(const lockstep::PointerSample& sample, const sand::Replica& sand);
-    void lift(std::int64_t at /* [ns] */);
+    void lift(std::int64_t readNs /* [ns] */);
     void hoverAt(const sand::Replica& sand);
 
     PointerArbiter arbiter_;

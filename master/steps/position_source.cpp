@@ -42,7 +42,7 @@ std::vector<std::string> PositionSource::troubles(std::uint64_t floods, std::int
     for (; floods_ < floods; ++floods_) {
         counts_.count(Trouble::flood);
     }
-    return teller_.lines(counts_, static_cast<double>(nowNs) * 1e-9);
+    return reporter_.lines(counts_, static_cast<double>(nowNs) * 1e-9);
 }
 
 }  // namespace master

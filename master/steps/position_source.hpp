@@ -38,7 +38,7 @@ public:
 private:
     haptic_bridge::HandMapping mapping_;
     haptic_bridge::TroubleCounts counts_;
-    haptic_bridge::TroubleTeller teller_{"haptic link: the server"};
+    haptic_bridge::TroubleReporter reporter_{"haptic link: the server"};
     std::optional<haptic_bridge::ReadingCheck> check_;
     std::int64_t heardNs_ = 0;
     std::uint64_t floods_ = 0;

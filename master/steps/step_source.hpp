@@ -9,22 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "base/names.hpp"
 #include "haptic_bridge/client/client.hpp"
 #include "lockstep/fault.hpp"
 #include "lockstep/pointer.hpp"
 #include "sand/replica.hpp"
 
 namespace master {
-
-/// Pace of a session's frames.
-enum class Pace : std::uint8_t {
-    realtime,  // frames follow the wall's refresh rate
-    fast       // frames follow each other without a pause, and the session's time is counted in frames
-};
-constexpr auto valuesOf(Pace) {
-    return std::array{base::Named{Pace::realtime, "realtime"}, base::Named{Pace::fast, "fast"}};
-}
 
 /// Takes an operator's requests that change the next steps.
 class StepRequests {

@@ -95,7 +95,7 @@ void GlContext::finishFrame() {
 
 PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
     PlatformRequest request;
-    request.who = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
+    request.processName = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
     request.display = tile.place.display;
     request.device = tile.place.device;
     request.software = isSoftware(backend, tile);

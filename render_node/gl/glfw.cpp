@@ -26,7 +26,7 @@ namespace {
 class Glfw final : public GlPlatform {
 public:
     explicit Glfw(const PlatformRequest& request)
-        : watch_(request.display, request.who, request.pointer),
+        : watch_(request.display, request.processName, request.pointer),
           eyesInTurn_(request.eyesInTurn),
           pointer_(request.pointer) {
         if (request.windows.empty()) {

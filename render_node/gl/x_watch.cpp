@@ -52,7 +52,7 @@ std::string chosenDisplay(const std::string& display, const char* other) {
 
 }  // namespace
 
-XWatch::XWatch(const std::string& display, const std::string& who, bool needsWindows)
+XWatch::XWatch(const std::string& display, const std::string& processName, bool needsWindows)
     : name_(chosenDisplay(display, needsWindows ? "choose another --device" : "draw off screen with --gl osmesa")),
       display_(XOpenDisplay(name_.c_str())) {
     if (display_ == nullptr) {
@@ -61,7 +61,7 @@ XWatch::XWatch(const std::string& display, const std::string& who, bool needsWin
     }
     std::array<char, 256> host{};
     (void)gethostname(host.data(), host.size() - 1);
-    lastWords = who + " on " + host.data() + ": the X server of " + name_ + " is gone\n";
+    lastWords = processName + " on " + host.data() + ": the X server of " + name_ + " is gone\n";
     XSetIOErrorHandler(endWithoutServer);
 }
 

@@ -19,9 +19,9 @@ public:
     /// $DISPLAY. Throws base::InputError if there is no display or if it cannot be opened. With
     /// `needsWindows`, the error does not advise to draw off screen.
     ///
-    /// From then on, a lost X server ends the process with status 1 and one line that begins with `who` and the host.
-    /// The process must end because Xlib cannot continue and other ranks wait for this rank.
-    XWatch(const std::string& display, const std::string& who, bool needsWindows);
+    /// From then on, a lost X server ends the process with status 1 and one line that begins with `processName` and the
+    /// host. The process must end because Xlib cannot continue and other ranks wait for this rank.
+    XWatch(const std::string& display, const std::string& processName, bool needsWindows);
     ~XWatch();
     XWatch(const XWatch&) = delete;
     XWatch& operator=(const XWatch&) = delete;

@@ -110,7 +110,7 @@ bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
         const HeightRange heights = heightsAround(vertices, overwritten);
-        damage_.add(revision_, {vertices, heights});
+        changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
         markChanged(chunksAround(vertices), vertices);
         rim |= surface_.touchesRim(cells);
@@ -173,7 +173,7 @@ void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visi
 int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
     Chunk& asked = chunk(x, y);
     if (asked.chosenFor != choice_) {
-        if (!asked.measured && !rule.wantsEveryCell()) {
+        if (!asked.measured && !rule.needsEveryCell()) {
             asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
             asked.measured = true;
         }
@@ -249,7 +249,7 @@ Box SandMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heigh
 
 std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
     std::vector<Box> changed;
-    for (const auto& [since, part] : damage_.since(revision)) {
+    for (const auto& [since, part] : changes_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
     }
     updateLevels(levels, revision, rule, changed);

@@ -12,7 +12,7 @@
 #include "render_node/grid/chunk_geometry.hpp"
 #include "render_node/grid/levels.hpp"
 #include "render_node/grid/vertices.hpp"
-#include "render_node/surface/damage_history.hpp"
+#include "render_node/surface/change_history.hpp"
 #include "render_node/surface/drawn_surface.hpp"
 #include "render_node/surface/frustum.hpp"
 
@@ -117,7 +117,7 @@ private:
     std::size_t bytes_ = 0;
     std::uint64_t revision_ = 0;
     std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
-    DamageHistory<ChangedVertices> damage_;
+    ChangeHistory<ChangedVertices> changes_;
     TrianglePace pace_;
     HeightRange ever_;
 };

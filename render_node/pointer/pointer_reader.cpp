@@ -94,7 +94,7 @@ void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
     readings_.push_back({event.ns, last_, pressed_});
 }
 
-PointerReport PointerReader::read(std::span<const PointerEvent> events, const sand::Replica& terrain,
+PointerReport PointerReader::read(std::span<const PointerEvent> events, const sand::Replica& replica,
                                   const lockstep::ViewState& view, HeightRange heights, std::int64_t clockAhead) {
     PointerReport report;
     readings_.clear();
@@ -113,11 +113,11 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         readings_.erase(readings_.begin());
     }
     for (const Reading& reading : readings_) {
-        if (reading.pressed && touched_ == nullptr && !terrain.surface().readsKept()) {
-            touched_ = terrain.surface().clone();
+        if (reading.pressed && touched_ == nullptr && !replica.surface().readsKept()) {
+            touched_ = replica.surface().clone();
         }
         lockstep::PointerSample& sample = report.samples[report.count++] =
-            this->sample(reading, terrain, view, heights);
+            this->sample(reading, replica, view, heights);
         sample.readNs = reading.ns - clockAhead;
     }
     report.pressed = pressed_ ? 1 : 0;
@@ -128,17 +128,17 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
     return report;
 }
 
-lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& terrain,
+lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& replica,
                                               const lockstep::ViewState& view, HeightRange heights) {
     const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
     const Ray units = sightRay(eye, roomPoint(wall_, tile(), reading.place), glm::make_mat4(view.sceneToRoom.data()));
-    const double cell = terrain.cellSize();
+    const double cell = replica.cellSize();
     const Ray cells{units.from / cell, units.along / cell};
-    const sand::Rules& rules = terrain.rules();
-    const double margin = 2 * terrain.toolRadius() / cell;  // sand that this tile has not drawn yet may be higher
+    const sand::Rules& rules = replica.rules();
+    const double margin = 2 * replica.toolRadius() / cell;  // sand that this tile has not drawn yet may be higher
     const bool pressed = reading.pressed;
     constexpr double kProbe = sand::kProbePerCell;
-    const auto heightAt = [&](double x, double y) { return heightOf(terrain, pressed, x, y); };
+    const auto heightAt = [&](double x, double y) { return heightOf(replica, pressed, x, y); };
     const SandBody sand{static_cast<double>(rules.columns),
                         static_cast<double>(rules.rows),
                         heights.lowest / cell - margin,
@@ -159,12 +159,12 @@ lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand
     return sample;
 }
 
-double PointerReader::heightOf(const sand::Replica& terrain, bool pressed, double x, double y) const {
-    const sand::Surface& now = terrain.surface();
+double PointerReader::heightOf(const sand::Replica& replica, bool pressed, double x, double y) const {
+    const sand::Surface& now = replica.surface();
     if (pressed && touched_ != nullptr) {
         return touched_->height(x, y);
     }
-    if (pressed && terrain.engaged()) {
+    if (pressed && replica.engaged()) {
         if (const std::optional<double> before = now.keptHeight(x, y)) {
             return *before;
         }

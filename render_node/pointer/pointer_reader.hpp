@@ -26,12 +26,12 @@ public:
     /// `wall` is the wall as it is shown. It must outlive the reader, and may change to another stereo mode.
     PointerReader(const walls::Wall& wall, int rank) : wall_(wall), rank_(rank) {}
 
-    /// Returns the report of `events`. All places are computed with `view` and with the sand of `terrain`, which are
+    /// Returns the report of `events`. All places are computed with `view` and with the sand of `replica`, which are
     /// those of the frame that is drawn.
     ///
     /// @param heights  No height of the sand is outside of these [scene unit].
     /// @param clockAhead  This rank's clock − master's clock [ns].
-    [[nodiscard]] lockstep::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& terrain,
+    [[nodiscard]] lockstep::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& replica,
                                                const lockstep::ViewState& view, HeightRange heights,
                                                std::int64_t clockAhead);
 
@@ -44,10 +44,10 @@ private:
     };
     void follow(const PointerEvent& event, lockstep::PointerReport& report);
     [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
-    [[nodiscard]] lockstep::PointerSample sample(const Reading& reading, const sand::Replica& terrain,
+    [[nodiscard]] lockstep::PointerSample sample(const Reading& reading, const sand::Replica& replica,
                                                  const lockstep::ViewState& view, HeightRange heights);
     /// Returns a height [unit] of the current sand, or of the sand from before the stroke if `pressed`.
-    [[nodiscard]] double heightOf(const sand::Replica& terrain, bool pressed, double x,
+    [[nodiscard]] double heightOf(const sand::Replica& replica, bool pressed, double x,
                                   double y /* [probe unit] */) const;
 
     const walls::Wall& wall_;

@@ -26,7 +26,7 @@ double LevelRule::pixelsPerUnit(const Box& box) const {
 }
 
 int LevelRule::level(const Box& box, const LevelErrors& errors, int coarsest) const {
-    if (wantsEveryCell() || coarsest == 0) {
+    if (needsEveryCell() || coarsest == 0) {
         return 0;
     }
     const double height = bound_ / pixelsPerUnit(box);

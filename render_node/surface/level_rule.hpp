@@ -30,7 +30,7 @@ public:
     /// With `bound` 0 the rule chooses level 0 everywhere.
     LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size /* [pixel] */, double bound /* [pixel] */);
     /// Returns whether the rule chooses level 0 whatever the errors are.
-    [[nodiscard]] bool wantsEveryCell() const { return bound_ <= 0; }
+    [[nodiscard]] bool needsEveryCell() const { return bound_ <= 0; }
     /// Returns whether a box may reach into the picture.
     [[nodiscard]] bool sees(const Box& box) const { return inFrustum(box, sceneToClip_); }
     /// Returns the level for the sand within `box`, at most `coarsest`.

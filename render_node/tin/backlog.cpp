@@ -5,9 +5,9 @@
 
 namespace render_node {
 
-void TinBacklog::add(const sand::TinChange& damage, const Box& box) {
-    triangles_.add(damage.triangles);
-    vertices_.add(damage.vertices);
+void TinBacklog::add(const sand::TinChange& change, const Box& box) {
+    triangles_.add(change.triangles);
+    vertices_.add(change.vertices);
     if (boxes_.size() < kMostBoxes) {
         boxes_.push_back(box);
     } else {

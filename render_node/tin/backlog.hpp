@@ -13,18 +13,18 @@
 
 namespace render_node {
 
-/// Damage of a TIN that no camera has seen yet.
+/// Changes of a TIN that no camera has seen yet.
 ///
 /// Most tiles of a wall never show the place where sand is dug, and lighting a TIN takes as long as drawing it. Not
 /// thread-safe.
 class TinBacklog {
 public:
-    /// Adds damage that lies within `box`.
-    void add(const sand::TinChange& damage, const Box& box);
-    /// Returns whether a camera sees some of the damage. `cameras` are matrices from the scene to clip coordinates. If
-    /// the list is empty, returns whether there is any damage.
+    /// Adds changes that lie within `box`.
+    void add(const sand::TinChange& change, const Box& box);
+    /// Returns whether a camera sees some of the changes. `cameras` are matrices from the scene to clip coordinates. If
+    /// the list is empty, returns whether there is any change.
     [[nodiscard]] bool isSeen(std::span<const glm::dmat4> cameras) const;
-    /// Returns all damage since the last call and removes it. It includes triangles and vertices that have since
+    /// Returns all changes since the last call and removes them. They include triangles and vertices that have since
     /// returned to their drawn state.
     [[nodiscard]] sand::TinChange take();
     void clear();

@@ -12,7 +12,7 @@
 namespace render_node {
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangle;
 using sand::tin::Triangles;
@@ -52,7 +52,7 @@ bool overlapOnGround(const Box& a, const Box& b) {
 glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& around) {
     const Triangles& mesh = tin.triangles;
     const auto at = [&](Vertex corner) {
-        const Place& place = mesh.places[static_cast<std::size_t>(corner)];
+        const LatticePoint& place = mesh.places[static_cast<std::size_t>(corner)];
         return glm::dvec3(kUnitsPerProbe * place.x, kUnitsPerProbe * place.y,
                           tin.heights[static_cast<std::size_t>(corner)]);
     };
@@ -90,7 +90,7 @@ std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
 }
 
 /// Returns the vertices whose light has changed because of these triangles. Adds the triangles around them to the
-/// damage.
+/// changes.
 std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
     lit_.clear();
     for (const std::int32_t slot : reshaped) {
@@ -118,7 +118,7 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
     }
     for (const std::int32_t slot : shaded_.all()) {
         if (triangle(slot).alive()) {  // triangles in holes are not drawn
-            damaged_.add(boxOf(triangle(slot)));
+            changedBoxes_.add(boxOf(triangle(slot)));
         }
     }
     return others;
@@ -134,7 +134,7 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
     }
 }
 
-std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinChange& damage) {
+std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
     const Triangles& mesh = tin.triangles;
     Reach changed;
     const auto addVertex = [&](Vertex vertex) {
@@ -147,7 +147,7 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
             changed.add(vertex(number).x, vertex(number).y, vertex(number).height);
         }
     };
-    for (const std::int32_t slot : damage.triangles) {
+    for (const std::int32_t slot : sandChange.triangles) {
         const Triangle& now = mesh.triangles[static_cast<std::size_t>(slot)];
         if (now.isGround()) {
             std::ranges::for_each(now.corner, addVertex);
@@ -156,9 +156,9 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
             std::ranges::for_each(triangle(slot).corner, addDrawn);
         }
     }
-    // The drawn triangles in a star's slots need no box here. They either belong to that star, or were damaged earlier,
-    // and the box of that damage contains them.
-    for (const Vertex number : damage.vertices) {
+    // The drawn triangles in a star's slots need no box here. They either belong to that star, or have changed earlier,
+    // and the box of that change contains them.
+    for (const Vertex number : sandChange.vertices) {
         addDrawn(number);
         if (mesh.alive(number)) {
             addVertex(number);
@@ -224,7 +224,7 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 void TinSurface::addVerticesAround(const std::vector<sand::CellRect>& cells) {
     for (const sand::CellRect& rect : cells) {
         const sand::CellRect reach = rect.grownBy(kLightReach);
-        const Place southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
+        const LatticePoint southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};
         squares_.visitNear(southWest, northEast, [&](Vertex number) {
             const TinVertex& drawn = vertex(number);
             if (drawn.x >= southWest.x && drawn.x <= northEast.x && drawn.y >= southWest.y && drawn.y <= northEast.y) {

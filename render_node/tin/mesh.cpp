@@ -115,7 +115,7 @@ bool TinMesh::takeOver(const TinSurface::Change& change) {
     }
     ++revision_;
     for (const Box& box : change.boxes) {
-        damage_.add(revision_, box);
+        changes_.add(revision_, box);
     }
     if (change.whole) {
         buffers_.clear();
@@ -255,7 +255,7 @@ void TinMesh::sendMarks(std::size_t i) {
 
 std::vector<Box> TinMesh::changesSince(std::uint64_t revision, DrawnLevels&, const LevelRule&) {
     std::vector<Box> boxes;
-    for (const auto& part : damage_.since(revision)) {
+    for (const auto& part : changes_.since(revision)) {
         boxes.push_back(part.where);
     }
     return boxes;

@@ -5,7 +5,7 @@
 
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/gl/triangle_pace.hpp"
-#include "render_node/surface/damage_history.hpp"
+#include "render_node/surface/change_history.hpp"
 #include "render_node/surface/drawn_surface.hpp"
 #include "render_node/tin/backlog.hpp"
 #include "render_node/tin/vertices.hpp"
@@ -67,7 +67,7 @@ private:
     std::size_t bytes_ = 0;
     std::int64_t placesRead_ = 0;
     std::uint64_t revision_ = 0;
-    DamageHistory<Box> damage_;
+    ChangeHistory<Box> changes_;
     TrianglePace pace_;
 };
 

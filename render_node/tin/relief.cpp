@@ -10,7 +10,7 @@ namespace render_node {
 namespace {
 
 using sand::tin::doubledArea;
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 
 constexpr std::int64_t kCellSide = sand::kProbePerCell;
 
@@ -22,7 +22,7 @@ std::int64_t floorOf(std::int64_t dividend, std::int64_t divisor /* positive */)
     return dividend >= 0 ? dividend / divisor : -((-dividend + divisor - 1) / divisor);
 }
 
-Place middleOf(std::int64_t column, std::int64_t row) {
+LatticePoint middleOf(std::int64_t column, std::int64_t row) {
     return {static_cast<std::int32_t>(column * kCellSide + kCellSide / 2),
             static_cast<std::int32_t>(row * kCellSide + kCellSide / 2)};
 }
@@ -33,7 +33,7 @@ struct Columns {
 
 /// Keeps the columns of a row whose middles are left of the edge. Keeps a middle on the edge only if the edge leads
 /// south or west. So exactly one of the two triangles beside the edge has it.
-void clip(Columns& columns, std::int64_t row, const Place& from, const Place& to) {
+void clip(Columns& columns, std::int64_t row, const LatticePoint& from, const LatticePoint& to) {
     const std::int64_t south = std::int64_t{from.y} - to.y;
     const bool within = south > 0 || (south == 0 && to.x < from.x);
     // A middle is kept if its doubled area is at least 0, or at least 1 if a middle on the edge is not kept. The test
@@ -70,7 +70,7 @@ void TinRelief::put(const std::array<ReliefCorner, 3>& corners) {
         clip(columns, row, b.place, c.place);
         clip(columns, row, c.place, a.place);
         for (std::int64_t column = columns.first; column < columns.end; ++column) {
-            const Place middle = middleOf(column, row);
+            const LatticePoint middle = middleOf(column, row);
             const double sum = static_cast<double>(doubledArea(b.place, c.place, middle)) * a.height +
                                static_cast<double>(doubledArea(c.place, a.place, middle)) * b.height +
                                static_cast<double>(doubledArea(a.place, b.place, middle)) * c.height;

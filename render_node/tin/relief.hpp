@@ -13,7 +13,7 @@ namespace render_node {
 
 /// Corner of a triangle. All replicas give the corners in the same order.
 struct ReliefCorner {
-    sand::tin::Place place;
+    sand::tin::LatticePoint place;
     double height = 0;  // [unit]
 };
 

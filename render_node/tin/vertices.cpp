@@ -10,8 +10,8 @@
 namespace render_node {
 namespace {
 
-using sand::tin::kNobody;
-using sand::tin::Place;
+using sand::tin::kNoNumber;
+using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
@@ -30,7 +30,7 @@ TinTriangle TinSurface::drawnOf(const sand::tin::Triangle& triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t from = (static_cast<std::size_t>(least) + i) % 3;
         drawn.corner[i] = triangle.corner[from];
-        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != kNobody;
+        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != kNoNumber;
     }
     return drawn;
 }
@@ -51,7 +51,7 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
       chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth_ / chunkSide + 1)),
       squares_(width_, depth_, chunkSide),
       relief_(width_, depth_),
-      damaged_(width_ * probe_, depth_ * probe_) {
+      changedBoxes_(width_ * probe_, depth_ * probe_) {
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<Vertex> all;
@@ -92,17 +92,17 @@ TinSurface::Change TinSurface::replaceWhole(const SurfaceView& tin) {
     return change;
 }
 
-TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& damage) {
+TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& sandChange) {
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<std::int32_t> replaced;
-    for (const std::int32_t slot : damage.triangles) {
+    for (const std::int32_t slot : sandChange.triangles) {
         if (triangle(slot) != drawnOf(mesh.triangles[static_cast<std::size_t>(slot)])) {
             replaced.push_back(slot);
         }
     }
-    std::vector<Vertex> others = moved(tin, damage.vertices);
+    std::vector<Vertex> others = moved(tin, sandChange.vertices);
     reshaped_.clear();
     reshaped_.add(replaced);
     for (const Vertex number : others) {
@@ -110,14 +110,14 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinCha
             aroundVertex(mesh, number, [this](std::int32_t slot, int) { reshaped_.add(slot); });
         }
     }
-    const auto damageAll = [&] {
+    const auto addBoxes = [&] {
         for (const std::int32_t slot : reshaped_.all()) {
             if (triangle(slot).alive()) {
-                damaged_.add(boxOf(triangle(slot)));
+                changedBoxes_.add(boxOf(triangle(slot)));
             }
         }
     };
-    damageAll();
+    addBoxes();
     change.rim = move(tin, others);
     for (const std::int32_t slot : replaced) {
         replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
@@ -129,12 +129,12 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinCha
             }
         });
     }
-    damageAll();
+    addBoxes();
     const std::vector<Vertex> lit = relight(tin, reshaped_.all());
     others.insert(others.end(), lit.begin(), lit.end());
     sortOnce(others);
     change.vertices = std::move(others);
-    change.boxes = damaged_.take();
+    change.boxes = changedBoxes_.take();
     return change;
 }
 
@@ -145,7 +145,7 @@ TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
         now.x = now.y = -1;
         return now;
     }
-    const Place& place = tin.triangles.places[static_cast<std::size_t>(number)];
+    const LatticePoint& place = tin.triangles.places[static_cast<std::size_t>(number)];
     now.x = place.x;
     now.y = place.y;
     now.height = static_cast<float>(tin.heights[static_cast<std::size_t>(number)] * unit_);
@@ -179,7 +179,7 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
         TinVertex& drawn = vertex(number);
         const TinVertex before = std::exchange(drawn, placed(tin, number));
         if (before.x != drawn.x || before.y != drawn.y) {
-            standElsewhere(number, before);
+            moveSquare(number, before);
         }
         if (drawn.x >= 0) {
             drawn.mottling = mottlingOf(drawn.x, drawn.y);
@@ -190,7 +190,7 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
     return rim;
 }
 
-void TinSurface::standElsewhere(Vertex number, const TinVertex& before) {
+void TinSurface::moveSquare(Vertex number, const TinVertex& before) {
     const TinVertex& drawn = vertex(number);
     if (before.x >= 0) {
         squares_.remove(number, {before.x, before.y});

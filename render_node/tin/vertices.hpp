@@ -35,9 +35,9 @@ static_assert(sizeof(TinVertex) == 20);
 /// Triangle of a TIN, as it is drawn. Its corners are counter-clockwise and begin with the smallest number. So all
 /// replicas compute it alike, although their meshes may have other slots and begin with other corners.
 struct TinTriangle {
-    std::array<sand::tin::Vertex, 3> corner{sand::tin::kNobody, sand::tin::kNobody, sand::tin::kNobody};
+    std::array<sand::tin::Vertex, 3> corner{sand::tin::kNoNumber, sand::tin::kNoNumber, sand::tin::kNoNumber};
     std::array<bool, 3> marked{};  // whether the edge opposite the corner is a constraint inside the field
-    [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNobody; }
+    [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNoNumber; }
     friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
 };
 
@@ -78,14 +78,15 @@ public:
         std::vector<sand::tin::Vertex> vertices;  // changed vertices, in ascending order
         std::vector<Box> boxes;                   // around everything that looks different, before and after
     };
-    [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
+    [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& sandChange);
     /// Replaces the whole surface, as an update of everything would.
     [[nodiscard]] Change replaceWhole(const sand::tin::SurfaceView& tin);
-    /// Returns a box around everything that an update with `damage` may change, before and after. Returns nullopt if
-    /// the rim may change. Uses the current state of this surface and of `tin`.
+    /// Returns a box around everything that an update with `sandChange` may change, before and after. Returns nullopt
+    /// if the rim may change. Uses the current state of this surface and of `tin`.
     ///
-    /// The boxes of all damage since the last update together bound the changes of one update with all of that damage.
-    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& damage);
+    /// The boxes of all changes of the sand since the last update together bound the result of one update with all of
+    /// them.
+    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& sandChange);
 
     [[nodiscard]] const std::vector<TinVertex>& vertices() const { return vertices_; }
     [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return triangles_; }  // by slot
@@ -115,7 +116,7 @@ private:
     [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex vertex) const;
     [[nodiscard]] std::vector<Vertex> moved(const sand::tin::SurfaceView& tin, std::span<const Vertex> asked) const;
     [[nodiscard]] bool move(const sand::tin::SurfaceView& tin, std::span<const Vertex> vertices);
-    void standElsewhere(Vertex vertex, const TinVertex& before);
+    void moveSquare(Vertex vertex, const TinVertex& before);
     [[nodiscard]] bool keepRim(Vertex vertex, bool present);
     void replace(std::int32_t slot, const TinTriangle& triangle);
     void leaveChunk(std::int32_t slot);
@@ -145,7 +146,7 @@ private:
     std::vector<TinChunk> chunks_;        // row by row from the south-west
     VertexSquares squares_;
     TinRelief relief_;
-    BoxBins damaged_;
+    BoxBins changedBoxes_;
     HeightRange ever_{};
     std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
     std::vector<Vertex> elsewhere_;                      // scratch: vertices that have moved to another place

@@ -8,23 +8,23 @@ namespace render_node {
 
 using sand::force::Vec3;
 
-std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
-    const double unit = sand::probeUnit(terrain.cellSize());
-    const double radius = unit * terrain.rules().tuning.tool.radius;
-    const Vec3 place = sand::force::placeOf(terrain.probe(), unit);
-    if (!last_ || terrain.stepNumber() < lastStep_) {
+std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& replica) {
+    const double unit = sand::probeUnit(replica.cellSize());
+    const double radius = unit * replica.rules().tuning.tool.radius;
+    const Vec3 place = sand::force::placeOf(replica.probe(), unit);
+    if (!last_ || replica.stepNumber() < lastStep_) {
         velocity_ = {};
-    } else if (terrain.stepNumber() > lastStep_) {  // a frame without a step keeps the velocity
-        const auto steps = static_cast<double>(terrain.stepNumber() - lastStep_);
-        velocity_ = (terrain.rules().stepsPerSecond / (60.0 * steps)) * (place - *last_);
+    } else if (replica.stepNumber() > lastStep_) {  // a frame without a step keeps the velocity
+        const auto steps = static_cast<double>(replica.stepNumber() - lastStep_);
+        velocity_ = (replica.rules().stepsPerSecond / (60.0 * steps)) * (place - *last_);
     }
     last_ = place;
-    lastStep_ = terrain.stepNumber();
-    if (!terrain.engaged() || !(radius > 0)) {
+    lastStep_ = replica.stepNumber();
+    if (!replica.engaged() || !(radius > 0)) {
         return std::nullopt;
     }
-    const sand::force::SurfacePatch patch(terrain);
-    const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
+    const sand::force::SurfacePatch patch(replica);
+    const auto tool = sand::force::contourOf(replica.tool(), replica.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, place);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);
     const Vec3 force = sand::force::guarded(whole, 0, kMostNewtons);

@@ -24,7 +24,7 @@ public:
 
     /// Returns the arrow of this frame. Must be called once per frame. Returns nullopt if the tool hovers or feels no
     /// force.
-    [[nodiscard]] std::optional<ForceArrow> arrow(const sand::Replica& terrain);
+    [[nodiscard]] std::optional<ForceArrow> arrow(const sand::Replica& replica);
 
 private:
     sand::ForceConstants constants_;

@@ -25,7 +25,7 @@ bool owns(std::int64_t acrossX, std::int64_t acrossY) { return acrossY < 0 || (a
 
 /// Returns whether a triangle and a square have a place in common. The test is exact, because otherwise a walk could
 /// end in a triangle that only nearly reaches into the square.
-bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int32_t, 4>& square) {
+bool overlap(const std::array<tin::LatticePoint, 3>& corner, const std::array<std::int32_t, 4>& square) {
     const auto& [a, b, c] = corner;
     const auto [west, south, east, north] = square;
     if (std::min({a.x, b.x, c.x}) > east || std::max({a.x, b.x, c.x}) < west || std::min({a.y, b.y, c.y}) > north ||
@@ -35,10 +35,11 @@ bool overlap(const std::array<tin::Place, 3>& corner, const std::array<std::int3
     if (a.x >= west && a.x <= east && a.y >= south && a.y <= north) {
         return true;  // true for nearly all triangles
     }
-    const std::array<tin::Place, 4> ends{{{west, south}, {east, south}, {east, north}, {west, north}}};
+    const std::array<tin::LatticePoint, 4> ends{{{west, south}, {east, south}, {east, north}, {west, north}}};
     for (std::size_t k = 0; k < 3; ++k) {
-        if (std::ranges::all_of(
-                ends, [&](const tin::Place& end) { return doubledArea(corner[k], corner[(k + 1) % 3], end) < 0; })) {
+        if (std::ranges::all_of(ends, [&](const tin::LatticePoint& end) {
+                return doubledArea(corner[k], corner[(k + 1) % 3], end) < 0;
+            })) {
             return false;
         }
     }
@@ -93,7 +94,7 @@ std::int32_t Facets::Index::find(std::int32_t slot) const { return places_[place
 
 bool Facets::take(const tin::SurfaceView& tin, const ProbePoint& probe, std::int32_t reach, double unit) {
     const tin::Triangles& mesh = tin.triangles;
-    const tin::Place middle{std::clamp(probe.x, 0, mesh.width), std::clamp(probe.y, 0, mesh.depth)};
+    const tin::LatticePoint middle{std::clamp(probe.x, 0, mesh.width), std::clamp(probe.y, 0, mesh.depth)};
     square_ = {std::max(middle.x - reach, 0), std::max(middle.y - reach, 0), std::min(middle.x + reach, mesh.width),
                std::min(middle.y + reach, mesh.depth)};
     clear();
@@ -166,7 +167,7 @@ void Facets::levelHoles(const tin::SurfaceView& tin) {
 
 /// Searches from triangle to triangle across edges. The square is convex, so that all triangles that reach into it are
 /// connected by edges.
-bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
+bool Facets::findSlots(const tin::Triangles& mesh, const tin::LatticePoint& middle) {
     const auto reaches = [&](std::int32_t slot) {
         const auto& corner = mesh.triangles[at(slot)].corner;
         return overlap({mesh.places[at(corner[0])], mesh.places[at(corner[1])], mesh.places[at(corner[2])]}, square_);
@@ -179,10 +180,10 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
     };
     index_.clear();
     slots_.clear();
-    take(locate(mesh, middle, tin::kNobody).triangle);
+    take(locate(mesh, middle, tin::kNoNumber).triangle);
     for (std::size_t i = 0; i < slots_.size() && slots_.size() <= kMost; ++i) {
         for (const std::int32_t beyond : mesh.triangles[at(slots_[i])].neighbour) {
-            if (beyond != tin::kNobody) {
+            if (beyond != tin::kNoNumber) {
                 take(beyond);
             }
         }
@@ -190,7 +191,7 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::Place& middle) {
     return slots_.size() <= kMost;
 }
 
-void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle) {
+void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::LatticePoint& middle) {
     const tin::Triangle& triangle = tin.triangles.triangles[at(slot)];
     // Begins with the smallest vertex, so that the order of the corners in the mesh does not affect rounding.
     const auto first = static_cast<std::size_t>(std::ranges::min_element(triangle.corner) - triangle.corner.begin());
@@ -199,12 +200,12 @@ void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Plac
     Facet facet{};
     for (std::size_t k = 0; k < 3; ++k) {
         const std::size_t from = (first + k) % 3;
-        const tin::Place place = tin.triangles.places[at(triangle.corner[from])];
+        const tin::LatticePoint place = tin.triangles.places[at(triangle.corner[from])];
         x[k] = kParts * (place.x - middle.x);
         y[k] = kParts * (place.y - middle.y);
         height[k] = tin.heights[at(triangle.corner[from])] * unit_ * kProbePerCell / kUnitsPerCell;
         const std::int32_t beyond =
-            triangle.neighbour[from] == tin::kNobody ? -1 : index_.find(triangle.neighbour[from]);
+            triangle.neighbour[from] == tin::kNoNumber ? -1 : index_.find(triangle.neighbour[from]);
         facet.beyond[k] = static_cast<std::int16_t>(beyond);
     }
     for (std::size_t side = 0; side < 3; ++side) {

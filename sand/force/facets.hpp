@@ -75,8 +75,8 @@ private:
         std::size_t count_ = 0;
     };
 
-    bool findSlots(const tin::Triangles& mesh, const tin::Place& middle);
-    void add(const tin::SurfaceView& tin, std::int32_t slot, const tin::Place& middle);
+    bool findSlots(const tin::Triangles& mesh, const tin::LatticePoint& middle);
+    void add(const tin::SurfaceView& tin, std::int32_t slot, const tin::LatticePoint& middle);
     void levelHoles(const tin::SurfaceView& tin);
     void findStarts();
     [[nodiscard]] std::size_t startOf(double x, double y) const;

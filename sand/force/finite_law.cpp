@@ -18,13 +18,13 @@ constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr double kSmallest = std::numeric_limits<double>::min();
 constexpr double kSteepest = 2.0 * kMaxHeight / kUnitsPerCell;  // from the lowest to the highest height within a cell
 
-struct Place {
+struct LawPoint {
     double radius, depth;  // [scene unit]
 };
 
 /// Returns the places at which a law is checked. The deepest are first.
-std::vector<Place> placesIn(const LawRegion& region) {
-    std::vector<Place> places;
+std::vector<LawPoint> placesIn(const LawRegion& region) {
+    std::vector<LawPoint> places;
     const auto add = [&](double depth) {
         // While the depth is less than the radius, the force of Dorjgotov et al. 2007 turns with the depth.
         for (const double radius :
@@ -42,7 +42,7 @@ std::vector<Place> placesIn(const LawRegion& region) {
 }
 
 /// Returns what the law reads at `place`, on level sand or on the steepest.
-Gauges gaugesAt(const ForceConstants& constants, const Contour& tool, const Place& place, bool steep) {
+Gauges gaugesAt(const ForceConstants& constants, const Contour& tool, const LawPoint& place, bool steep) {
     const double slope = steep ? kSteepest : 0;
     if (constants.law == ForceLaw::repulse) {
         Contact contact;
@@ -62,8 +62,8 @@ Gauges gaugesAt(const ForceConstants& constants, const Contour& tool, const Plac
 }
 
 /// Returns the first place at which the law is not finite.
-std::optional<Place> placeNotFinite(const ForceConstants& constants, const LawRegion& region) {
-    for (const Place& place : placesIn(region)) {
+std::optional<LawPoint> placeNotFinite(const ForceConstants& constants, const LawRegion& region) {
+    for (const LawPoint& place : placesIn(region)) {
         const Contour tool = Contour::sphere(place.radius);
         for (const bool steep : {false, true}) {
             if (!isFinite(respond(constants, tool, gaugesAt(constants, tool, place, steep)), region)) {
@@ -124,7 +124,7 @@ double nearestFinite(ForceConstants constants, const Suspect& suspect, const Law
     return rounded(std::exp2(good), suspect.atMost);
 }
 
-LawFault faultAt(const ForceConstants& constants, const Suspect& suspect, const Place& place) {
+LawFault faultAt(const ForceConstants& constants, const Suspect& suspect, const LawPoint& place) {
     const auto key = std::find_if(forceKeys().begin(), forceKeys().end(),
                                   [&](const ForceKey& each) { return each.constant == suspect.constant; });
     return {&*key, constants.*suspect.constant, place.radius, place.depth, suspect.atMost, std::nullopt};
@@ -150,7 +150,7 @@ bool isFinite(const Response& felt, const LawRegion& region) {
 }
 
 std::optional<LawFault> faultOf(const ForceConstants& constants, const LawRegion& region) {
-    const std::optional<Place> place = placeNotFinite(constants, region);
+    const std::optional<LawPoint> place = placeNotFinite(constants, region);
     if (!place) {
         return std::nullopt;
     }

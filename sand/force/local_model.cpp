@@ -85,9 +85,9 @@ void LocalModel::learn(const Gauges& before, Vec3 step) {
     const Vec3 across{step.x, step.y, 0};
     for (std::size_t i = 0; i < tangent_.count; ++i) {
         const Dual was = before.dials[i], is = tangent_.dials[i];
-        const double foretold = 0.5 * dot(was.slope + is.slope, across);
+        const double predicted = 0.5 * dot(was.slope + is.slope, across);
         const double found = is.value - was.value - was.slope.z * step.z;
-        share_[i] = found * foretold > 0 ? std::min(found / foretold, 1.0) : 0;
+        share_[i] = found * predicted > 0 ? std::min(found / predicted, 1.0) : 0;
     }
 }
 

@@ -78,15 +78,15 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
     return true;
 }
 
-void SurfacePatch::take(const Replica& terrain, const ProbePoint& probe) {
-    const double cell = terrain.cellSize(), radius = terrain.toolRadius();
-    const SurfaceData data = terrain.surface().data();
+void SurfacePatch::take(const Replica& replica, const ProbePoint& probe) {
+    const double cell = replica.cellSize(), radius = replica.toolRadius();
+    const SurfaceData data = replica.surface().data();
     if (const auto* grid = std::get_if<GridData>(&data)) {
         takeCells(grid->field, probe, radius);
     } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cell, probe, radius)) {
-        const Rules& rules = terrain.rules();
+        const Rules& rules = replica.rules();
         sample({rules.columns, rules.rows, cell, kMostHeights}, probe, radius, [&](int column, int row) {
-            return terrain.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
+            return replica.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
         });
         cutBeyond_ = halfCut(tin, cell);
     }

@@ -33,9 +33,9 @@ public:
     /// Takes the triangles of a TIN with nominal cells of `cellSize`. The patch is empty if there are too many.
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius);
     /// Takes the sand around the replica's tool.
-    explicit SurfacePatch(const Replica& terrain) { take(terrain, terrain.probe()); }
+    explicit SurfacePatch(const Replica& replica) { take(replica, replica.probe()); }
     /// Takes the sand around `probe` that the replica's tool can reach. Reuses the memory of the patch.
-    void take(const Replica& terrain, const ProbePoint& probe);
+    void take(const Replica& replica, const ProbePoint& probe);
 
     /// Returns whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {

@@ -22,17 +22,17 @@ struct Receiver {
 /// Returns the cells around the tool that take sand. If `ahead` is not zero, these are the cells ahead of the tool. If
 /// it is zero, these are all cells around the tool, with equal weights. Wall cells and cells beyond a closed rim take
 /// no sand. Sand for cells beyond an open rim leaves the field.
-std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* ground, ProbePoint at,
+std::vector<Receiver> receivers(const CellRect& bounds, Rim rim, const Ground* ground, ProbePoint probe,
                                 const TurnedShape& shape, const Offset& ahead) {
     const bool everywhere = ahead.x == 0 && ahead.y == 0;
-    CellRect around = shape.cellsThatTake(at.x, at.y);
+    CellRect around = shape.cellsThatTake(probe.x, probe.y);
     if (rim == Rim::closed) {
         around = around.clippedTo(bounds);
     }
     std::vector<Receiver> ring;
     for (int y = around.y0; y < around.y1; ++y) {
         for (int x = around.x0; x < around.x1; ++x) {
-            const Offset offset = offsetOf(at, x, y);
+            const Offset offset = offsetOf(probe, x, y);
             if (offset.x < 0 && !shape.hasHeading() && shape.covers(offset)) {
                 // A round tool covers the row up to the same distance on the other side. The loop skips these cells,
                 // because the largest tool covers millions of cells.
@@ -71,7 +71,7 @@ std::int64_t scaled(std::int64_t amount, std::int64_t weight, std::int64_t total
 /// Gives `amount` to the receivers by weight. The remainder of the division is smaller than the number of receivers.
 /// The first receivers get one unit of it each. For a round tool, these are the first by rows. For a tool with a
 /// heading, they are the first in an order that turns with the tool.
-void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, const TurnedShape& shape) {
+void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint probe, const TurnedShape& shape) {
     std::int64_t total = 0;
     for (const Receiver& receiver : ring) {
         total += receiver.weight;
@@ -83,7 +83,7 @@ void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint at, c
     }
     if (shape.hasHeading()) {
         std::nth_element(ring.begin(), ring.begin() + rest, ring.end(), [&](const Receiver& a, const Receiver& b) {
-            return shape.before(offsetOf(at, a.column, a.row), offsetOf(at, b.column, b.row));
+            return shape.before(offsetOf(probe, a.column, a.row), offsetOf(probe, b.column, b.row));
         });
     }
     for (std::size_t i = 0; rest > 0; ++i, --rest) {
@@ -126,29 +126,29 @@ std::vector<std::vector<Receiver>> divided(const std::vector<Receiver>& ring, co
 
 }  // namespace
 
-CellRect Displacement::cells(const HeightField& field, ProbePoint at) const {
-    return shape_.cellsAround(at.x, at.y, 0).clippedTo(field.bounds());
+CellRect Displacement::cells(const HeightField& field, ProbePoint probe) const {
+    return shape_.cellsAround(probe.x, probe.y, 0).clippedTo(field.bounds());
 }
 
-void Displacement::findLowest(const Ground* ground, ProbePoint at, int column, int row,
+void Displacement::findLowest(const Ground* ground, ProbePoint probe, int column, int row,
                               std::span<std::int32_t> lowest) const {
-    shape_.undersides(at.z, offsetOf(at, column, row), lowest);
+    shape_.undersides(probe.z, offsetOf(probe, column, row), lowest);
     for (std::size_t i = 0; ground != nullptr && i < lowest.size(); ++i) {
         const int x = column + static_cast<int>(i);
         lowest[i] = ground->isWall(x, row) ? TurnedShape::kFree : std::max(lowest[i], ground->bedrock(x, row));
     }
 }
 
-Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbePoint at) const {
+Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbePoint probe) const {
     Cut cut;
-    cut.cells = cells(field, at);
+    cut.cells = cells(field, probe);
     const auto across = static_cast<std::size_t>(std::max(cut.cells.x1 - cut.cells.x0, 0));
     const auto above = path_ == base::CodePath::v3 ? v3::sandAbove : baseline::sandAbove;
     std::vector<std::int32_t>& lowest = cut.lowest;
     lowest.resize(across);  // room for one row more than the tool cuts
     for (int y = cut.cells.y0; y < cut.cells.y1; ++y) {
         const std::span<std::int32_t> ofRow = std::span(lowest).last(across);
-        findLowest(ground, at, cut.cells.x0, y, ofRow);
+        findLowest(ground, probe, cut.cells.x0, y, ofRow);
         const std::int64_t more = above(ofRow.data(), field.row(y) + cut.cells.x0, cut.cells.x1 - cut.cells.x0);
         if (more > 0) {
             cut.taken += more;
@@ -159,26 +159,26 @@ Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbeP
     return cut;
 }
 
-Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at,
+Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint probe,
                                        const Offset& ahead) const {
-    const Cut cut = findCut(field, ground, at);
+    const Cut cut = findCut(field, ground, probe);
     if (cut.taken == 0) {
         return {};
     }
     if (ground != nullptr) {
-        const Surroundings surroundings(field, *ground, shape_, at, cut);
+        const Surroundings surroundings(field, *ground, shape_, probe, cut);
         if (surroundings.barred()) {
-            return pressInParts(field, rim, *ground, at, ahead, cut, surroundings);
+            return pressInParts(field, rim, *ground, probe, ahead, cut, surroundings);
         }
     }
-    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, at, shape_, ahead);
+    std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, probe, shape_, ahead);
     if (ring.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
-        ring = receivers(field.bounds(), rim, ground, at, shape_, {0, 0});
+        ring = receivers(field.bounds(), rim, ground, probe, shape_, {0, 0});
     }
     if (ring.empty()) {  // the tool is larger than the field, so that no cell can take the sand
         return {};
     }
-    shareOut(ring, cut.taken, at, shape_);
+    shareOut(ring, cut.taken, probe, shape_);
     if (overflows(field, ring)) {
         return {};  // the sand stays, and the tool passes through it
     }
@@ -187,18 +187,18 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
         std::transform(cut.lowestOf(i), cut.lowestOf(i) + cut.across(), row, row,
                        [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
-    return {shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), raise(field, ring)};
+    return {shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds()), raise(field, ring)};
 }
 
-Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint at,
+Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint probe,
                                               const Offset& ahead, const Cut& cut,
                                               const Surroundings& surroundings) const {
     const auto ringsOf = [&](const Offset& way) {
-        return divided(receivers(field.bounds(), rim, &ground, at, shape_, way), surroundings);
+        return divided(receivers(field.bounds(), rim, &ground, probe, shape_, way), surroundings);
     };
     std::vector<std::vector<Receiver>> rings = ringsOf(ahead), around;
     std::vector<std::uint8_t> moves(rings.size());
-    Work result{shape_.cellsChanged(at.x, at.y).clippedTo(field.bounds()), 0};
+    Work result{shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds()), 0};
     for (std::int32_t part = 0; part < surroundings.count(); ++part) {
         std::vector<Receiver>& ring = rings[static_cast<std::size_t>(part)];
         if (surroundings.taken(part) == 0) {
@@ -213,7 +213,7 @@ Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const
         if (ring.empty()) {
             continue;  // the sand stays, and the tool passes through it
         }
-        shareOut(ring, surroundings.taken(part), at, shape_);
+        shareOut(ring, surroundings.taken(part), probe, shape_);
         if (!overflows(field, ring)) {
             moves[static_cast<std::size_t>(part)] = 1;
             result.outflow += raise(field, ring);
@@ -240,15 +240,15 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
     const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
     Work all{{field.columns(), field.rows(), 0, 0}, 0};
     for (std::int64_t i = 1; i <= steps; ++i) {
-        const ProbePoint at{static_cast<std::int32_t>(from.x + dx * i / steps),
-                            static_cast<std::int32_t>(from.y + dy * i / steps),
-                            static_cast<std::int32_t>(from.z + dz * i / steps)};
-        if (cells(field, at).empty()) {
+        const ProbePoint probe{static_cast<std::int32_t>(from.x + dx * i / steps),
+                               static_cast<std::int32_t>(from.y + dy * i / steps),
+                               static_cast<std::int32_t>(from.z + dz * i / steps)};
+        if (cells(field, probe).empty()) {
             continue;
         }
         // The direction of one sub-step, in whole probe units, would lose its angle if the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
-        const Work one = press(field, rim, ground, at, {dx / scale, dy / scale});
+        const Work one = press(field, rim, ground, probe, {dx / scale, dy / scale});
         if (!one.cells.empty()) {
             all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
                          std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};
@@ -258,14 +258,15 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
     return all;
 }
 
-Obstacle Displacement::obstacle(const HeightField& field, ProbePoint at) const {
+Obstacle Displacement::obstacle(const HeightField& field, ProbePoint probe) const {
     Obstacle result;
-    result.cells = cells(field, at);
+    result.cells = cells(field, probe);
     const auto across = static_cast<std::size_t>(std::max(result.cells.x1 - result.cells.x0, 0));
     result.underside.resize(across * static_cast<std::size_t>(std::max(result.cells.y1 - result.cells.y0, 0)));
     for (int y = result.cells.y0; y < result.cells.y1; ++y) {
         const std::size_t first = static_cast<std::size_t>(y - result.cells.y0) * across;
-        shape_.undersides(at.z, offsetOf(at, result.cells.x0, y), std::span(result.underside).subspan(first, across));
+        shape_.undersides(probe.z, offsetOf(probe, result.cells.x0, y),
+                          std::span(result.underside).subspan(first, across));
     }
     return result;
 }

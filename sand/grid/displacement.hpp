@@ -47,20 +47,20 @@ public:
     /// walls, and of rock that is higher than the sand that the tool takes.
     Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
 
-    /// Returns the obstacle of a tool whose centre is at `at`.
-    [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint at) const;
-    /// Returns the cells of the field that may be below the tool while its centre is at `at`.
-    [[nodiscard]] CellRect cells(const HeightField& field, ProbePoint at) const;
+    /// Returns the obstacle of a tool whose centre is at `probe`.
+    [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
+    /// Returns the cells of the field that may be below the tool while its centre is at `probe`.
+    [[nodiscard]] CellRect cells(const HeightField& field, ProbePoint probe) const;
 
 private:
-    Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint at, const Offset& ahead) const;
+    Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint probe, const Offset& ahead) const;
     /// Does the work of press() part by part of the surroundings, which must be barred.
-    Work pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint at, const Offset& ahead,
+    Work pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint probe, const Offset& ahead,
                       const Cut& cut, const Surroundings& surroundings) const;
-    [[nodiscard]] Cut findCut(const HeightField& field, const Ground* ground, ProbePoint at) const;
+    [[nodiscard]] Cut findCut(const HeightField& field, const Ground* ground, ProbePoint probe) const;
     /// Fills `lowest` with the heights to which the tool lowers the cells of a row: its underside, or the rock where
     /// that is higher [unit]. `column` is the first cell of the row.
-    void findLowest(const Ground* ground, ProbePoint at, int column, int row, std::span<std::int32_t> lowest) const;
+    void findLowest(const Ground* ground, ProbePoint probe, int column, int row, std::span<std::int32_t> lowest) const;
 
     TurnedShape shape_;
     base::CodePath path_;

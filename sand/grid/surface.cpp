@@ -77,12 +77,12 @@ void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     }
 }
 
-void GridSurface::release(const Tool& tool, const ProbePoint& at) {
-    erosion_.touch(Displacement(tool).cells(field_, at));
+void GridSurface::release(const Tool& tool, const ProbePoint& probe) {
+    erosion_.touch(Displacement(tool).cells(field_, probe));
 }
 
-void GridSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
-    const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, at);
+void GridSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
+    const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
     outflow_ += erosion_.sweep(field_, sweeps, tool == nullptr ? nullptr : &here);
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);

@@ -25,8 +25,8 @@ public:
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }
 
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
-    void release(const Tool& tool, const ProbePoint& at) override;
-    void sweep(int sweeps, const Tool* tool, const ProbePoint& at) override;
+    void release(const Tool& tool, const ProbePoint& probe) override;
+    void sweep(int sweeps, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }

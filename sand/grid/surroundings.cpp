@@ -14,9 +14,9 @@ std::int64_t squared(std::int64_t value) { return value * value; }
 
 }  // namespace
 
-Surroundings::Surroundings(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint at,
+Surroundings::Surroundings(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint probe,
                            const Cut& cut)
-    : box_(shape.cellsChanged(at.x, at.y).clippedTo(field.bounds())) {
+    : box_(shape.cellsChanged(probe.x, probe.y).clippedTo(field.bounds())) {
     std::int32_t highest = kNothing;
     for (std::size_t i = 0; i < cut.rows.size(); ++i) {
         const std::int32_t* const heights = field.row(cut.rows[i]) + cut.cells.x0;
@@ -33,17 +33,17 @@ Surroundings::Surroundings(const HeightField& field, const Ground& ground, const
             most = std::max(most, bed[x]);
         }
         for (int x = box_.x0; x < box_.x1 && most > highest && !barred_; ++x) {
-            const Offset offset = offsetOf(at, x, y);
+            const Offset offset = offsetOf(probe, x, y);
             barred_ = bed[x] > highest && (shape.takes(offset) || shape.covers(offset));
         }
     }
     if (barred_) {
-        findCells(field, ground, shape, at, cut);
+        findCells(field, ground, shape, probe, cut);
         divide(ground);
     }
 }
 
-void Surroundings::findCells(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint at,
+void Surroundings::findCells(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint probe,
                              const Cut& cut) {
     const std::size_t cells = static_cast<std::size_t>(box_.x1 - box_.x0) * static_cast<std::size_t>(box_.y1 - box_.y0);
     parts_.assign(cells, kNone);
@@ -51,7 +51,7 @@ void Surroundings::findCells(const HeightField& field, const Ground& ground, con
     over_.assign(cells, 0);
     for (int y = box_.y0; y < box_.y1; ++y) {
         for (int x = box_.x0; x < box_.x1; ++x) {
-            const Offset offset = offsetOf(at, x, y);
+            const Offset offset = offsetOf(probe, x, y);
             if (!ground.isWall(x, y) && (shape.takes(offset) || shape.covers(offset))) {
                 parts_[index(x, y)] = kWaiting;
             }

@@ -13,11 +13,11 @@
 
 namespace sand::grid {
 
-/// Returns the offset of a cell's centre from the tool's centre at `at`.
-inline Offset offsetOf(ProbePoint at, int column, int row) {
+/// Returns the offset of a cell's centre from the tool's centre at `probe`.
+inline Offset offsetOf(ProbePoint probe, int column, int row) {
     constexpr std::int32_t kHalfCell = kProbePerCell / 2;
-    return {std::int64_t{column} * kProbePerCell + kHalfCell - at.x,
-            std::int64_t{row} * kProbePerCell + kHalfCell - at.y};
+    return {std::int64_t{column} * kProbePerCell + kHalfCell - probe.x,
+            std::int64_t{row} * kProbePerCell + kHalfCell - probe.y};
 }
 
 /// Sand that a tool cuts off in one sub-step.
@@ -42,7 +42,7 @@ class Surroundings {
 public:
     static constexpr std::int32_t kNone = -1;  // part of a cell to which no sand may go
 
-    Surroundings(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint at,
+    Surroundings(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint probe,
                  const Cut& cut);
 
     /// Returns whether a wall, or rock higher than all sand of the cut, is among the cells. Otherwise the tool works as
@@ -61,7 +61,7 @@ private:
         return static_cast<std::size_t>(row - box_.y0) * static_cast<std::size_t>(box_.x1 - box_.x0) +
                static_cast<std::size_t>(column - box_.x0);
     }
-    void findCells(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint at,
+    void findCells(const HeightField& field, const Ground& ground, const TurnedShape& shape, ProbePoint probe,
                    const Cut& cut);
     /// Moves the cells that are joined to cell `first` from kWaiting to `part`. Returns them.
     std::vector<std::size_t> join(std::size_t first, std::int32_t part);

@@ -65,14 +65,14 @@ public:
     /// Moves the tool along `path`, which begins where the tool is and has at least two points, and displaces the sand.
     /// Two equal points press the sand without a direction.
     virtual void drag(const Tool& tool, std::span<const ProbePoint> path) = 0;
-    /// Wakes the sand that `tool` held back while its centre was at `at`.
-    virtual void release(const Tool& tool, const ProbePoint& at) = 0;
+    /// Wakes the sand that `tool` held back while its centre was at `probe`.
+    virtual void release(const Tool& tool, const ProbePoint& probe) = 0;
     /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,
     /// as tin::Settings::keepConstraints says.
     virtual void leave(const Tool&) {}
-    /// Lets the sand slide for at most `sweeps` sweeps. `tool` is an obstacle with its centre at `at`; null without
+    /// Lets the sand slide for at most `sweeps` sweeps. `tool` is an obstacle with its centre at `probe`; null without
     /// one.
-    virtual void sweep(int sweeps, const Tool* tool, const ProbePoint& at) = 0;
+    virtual void sweep(int sweeps, const Tool* tool, const ProbePoint& probe) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once. Ignores rock, walls and tools.

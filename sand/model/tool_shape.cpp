@@ -75,7 +75,7 @@ void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std:
     }
 }
 
-double TurnedShape::levelOf(const SolePiece& piece, const Place& place, double grown) const {
+double TurnedShape::levelOf(const SolePiece& piece, const ToolPoint& place, double grown) const {
     const double along = place.along - piece.along * length_, across = place.across - piece.across * width_;
     const double length = piece.halfLength * length_ + grown, width = piece.halfWidth * width_ + grown;
     if (std::abs(along) > length || std::abs(across) > width) {
@@ -88,7 +88,7 @@ std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) co
     if (tool_.halfWidth == 0) {
         return kFree;
     }
-    const Place place = placeOf(offset);
+    const ToolPoint place = placeOf(offset);
     if (tool_.kind == ToolKind::rectangle) {
         const bool below = std::abs(place.along) < length_ && std::abs(place.across) < width_;
         return below ? lowered(z, length_) : kFree;
@@ -109,7 +109,7 @@ std::int32_t TurnedShape::longUnderside(std::int32_t z, const Offset& offset) co
 }
 
 bool TurnedShape::longTakes(const Offset& offset) const {
-    const Place place = placeOf(offset);
+    const ToolPoint place = placeOf(offset);
     const auto ring = static_cast<double>(ring_);
     if (tool_.kind == ToolKind::rectangle) {
         return std::abs(place.along) <= length_ + ring && std::abs(place.across) <= width_ + ring;
@@ -124,13 +124,13 @@ bool TurnedShape::longTakes(const Offset& offset) const {
     return near >= 1 && beside <= 1;
 }
 
-TurnedShape::Place TurnedShape::normalAt(const Place& place) const {
+TurnedShape::ToolPoint TurnedShape::normalAt(const ToolPoint& place) const {
     if (tool_.kind == ToolKind::rectangle) {
         const bool end = std::abs(place.along) - length_ > std::abs(place.across) - width_;
-        return end ? Place{place.along, 0} : Place{0, place.across};
+        return end ? ToolPoint{place.along, 0} : ToolPoint{0, place.across};
     }
     const auto ring = static_cast<double>(ring_);
-    Place normal{};
+    ToolPoint normal{};
     double nearest = std::numeric_limits<double>::infinity();
     for (const SolePiece& piece : pieces()) {
         if (const double level = levelOf(piece, place, ring); level < nearest) {
@@ -144,19 +144,19 @@ TurnedShape::Place TurnedShape::normalAt(const Place& place) const {
 }
 
 std::int64_t TurnedShape::longShare(const Offset& offset, const Offset& ahead) const {
-    const Place normal = normalAt(placeOf(offset));
+    const ToolPoint normal = normalAt(placeOf(offset));
     const double length = std::sqrt(normal.along * normal.along + normal.across * normal.across);
     if (!(length > 0)) {
         return 0;
     }
     // The normal is in 1024ths, rounded towards zero, and the drag is below 2^24. The product stays below 2^36.
-    const WholePlace drag = turnedBack(ahead);
+    const WholeToolPoint drag = turnedBack(ahead);
     const auto part = [length](double side) { return static_cast<std::int64_t>(1024 * side / length); };
     return part(normal.along) * drag.along + part(normal.across) * drag.across;
 }
 
 bool TurnedShape::before(const Offset& a, const Offset& b) const {
-    const WholePlace first = turnedBack(a), second = turnedBack(b);
+    const WholeToolPoint first = turnedBack(a), second = turnedBack(b);
     return first.along != second.along ? first.along < second.along : first.across < second.across;
 }
 

@@ -107,19 +107,19 @@ private:
     static constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
 
     /// Place in the tool's own axes: along the heading and to the left of it. A mirrored tool's axes are mirrored.
-    struct Place {
+    struct ToolPoint {
         double along, across;  // [probe unit]
     };
     /// Place in the tool's own axes, as exact integers.
-    struct WholePlace {
+    struct WholeToolPoint {
         std::int64_t along, across;  // [probe unit / Heading::kLength]
     };
-    [[nodiscard]] WholePlace turnedBack(const Offset& offset) const {
+    [[nodiscard]] WholeToolPoint turnedBack(const Offset& offset) const {
         const std::int64_t across = offset.y * tool_.heading.x - offset.x * tool_.heading.y;
         return {offset.x * tool_.heading.x + offset.y * tool_.heading.y, tool_.heading.mirrored ? -across : across};
     }
-    [[nodiscard]] Place placeOf(const Offset& offset) const {
-        const WholePlace whole = turnedBack(offset);  // exact as doubles, because it stays below 2^53
+    [[nodiscard]] ToolPoint placeOf(const Offset& offset) const {
+        const WholeToolPoint whole = turnedBack(offset);  // exact as doubles, because it stays below 2^53
         return {scale_ * static_cast<double>(whole.along), scale_ * static_cast<double>(whole.across)};
     }
     /// Returns the height of a point that is `below` under height `z`, within ±kMaxHeight [unit].
@@ -132,10 +132,10 @@ private:
     [[nodiscard]] bool longTakes(const Offset& offset) const;
     [[nodiscard]] std::int64_t longShare(const Offset& offset, const Offset& ahead) const;
     /// Returns the normal of the outline beside `place`, with any length.
-    [[nodiscard]] Place normalAt(const Place& place) const;
+    [[nodiscard]] ToolPoint normalAt(const ToolPoint& place) const;
     /// Returns 1 on the outline of `piece` after growing it by `grown` [probe unit] on all sides, less inside, and more
     /// outside.
-    [[nodiscard]] double levelOf(const SolePiece& piece, const Place& place, double grown) const;
+    [[nodiscard]] double levelOf(const SolePiece& piece, const ToolPoint& place, double grown) const;
     [[nodiscard]] std::span<const SolePiece> pieces() const;
 
     Tool tool_;

@@ -147,7 +147,7 @@ void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
-    sawAll_ = state_.imprint.stand && state_.imprint.stand->at == path.back();
+    sawAll_ = state_.imprint.pose && state_.imprint.pose->probe == path.back();
 }
 
 void TinSurface::leave(const Tool& tool) {
@@ -155,9 +155,9 @@ void TinSurface::leave(const Tool& tool) {
     meshChanged();
 }
 
-void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
+void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
     if (detail_.removals > 0) {
-        const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(at);
+        const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(probe);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
             meshChanged();
         }
@@ -165,11 +165,11 @@ void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& at) {
     moved_.clear();
     if (tool != nullptr) {
         const Displacement& here = displacementOf(*tool);
-        const Underside under = here.underside(at);
-        const Imprint::Stand stand{at, *tool};
-        if (held_ != stand) {
-            held_ = stand;
-            wakeFull(under, here.reach(at));
+        const Underside under = here.underside(probe);
+        const Imprint::Pose pose{probe, *tool};
+        if (held_ != pose) {
+            held_ = pose;
+            wakeFull(under, here.reach(probe));
         }
         erosion_.sweep(layer_, sweeps, &under, moved_);
     } else {
@@ -241,7 +241,7 @@ void TinSurface::replace(const SurfaceCopy& copy) {
     sawAll_ = false;
     coarsening_.forget();
     changed_.reset();
-    lastFound_ = kNobody;
+    lastFound_ = kNoNumber;
 }
 
 void TinSurface::audit(int tiles) {
@@ -253,7 +253,7 @@ void TinSurface::audit(int tiles) {
 std::vector<std::int32_t> TinSurface::valuesOf(int tile) const { return TileHash::valuesOf(layer_, tile); }
 
 void TinSurface::corrupt(int column, int row, int bit) {
-    const Place place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
+    const LatticePoint place{(column * 2 + 1) * kLatticePerCell / 2, (row * 2 + 1) * kLatticePerCell / 2};
     const Located found = locate(layer_.triangles(), place, lastFound_);
     const Vertex vertex = layer_.triangles().triangles[static_cast<std::size_t>(found.triangle)].corner[0];
     const std::int64_t volume = layer_.volumes()[static_cast<std::size_t>(vertex)];

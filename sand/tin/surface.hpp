@@ -34,7 +34,7 @@ public:
     /// Does nothing, because Erosion itself finds the sand that the tool held back.
     void release(const Tool&, const ProbePoint&) override {}
     void leave(const Tool& tool) override;
-    void sweep(int sweeps, const Tool* tool, const ProbePoint& at) override;
+    void sweep(int sweeps, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] std::int64_t sweepCost() const override;
@@ -99,10 +99,10 @@ private:
     std::optional<TinChange> changed_;          // since takeChange(); nullopt: everything
     std::optional<Displacement> displacement_;  // for the tool of the last displacementOf()
     std::shared_ptr<Neighbourhood> neighbourhood_ = std::make_shared<Neighbourhood>();
-    bool sawAll_ = false;                       // neighbourhood_ shows the current mesh around the tool
-    std::optional<Imprint::Stand> held_;        // obstacle of the last sweeps; saves work only
-    std::vector<Vertex> moved_;                 // scratch memory of sweep() and settle()
-    mutable std::int32_t lastFound_ = kNobody;  // triangle found last; the next search begins there
+    bool sawAll_ = false;                         // neighbourhood_ shows the current mesh around the tool
+    std::optional<Imprint::Pose> held_;           // obstacle of the last sweeps; saves work only
+    std::vector<Vertex> moved_;                   // scratch memory of sweep() and settle()
+    mutable std::int32_t lastFound_ = kNoNumber;  // triangle found last; the next search begins there
 };
 
 }  // namespace sand::tin

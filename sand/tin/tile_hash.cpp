@@ -36,7 +36,7 @@ std::uint64_t TileHash::hashOf(const VertexSand& layer, Vertex vertex) {
         return 0;
     }
     const auto i = static_cast<std::size_t>(vertex);
-    const Place place = layer.triangles().places[i];
+    const LatticePoint place = layer.triangles().places[i];
     const std::uint64_t hash = mixed(mixed(mixed(1, static_cast<std::uint64_t>(vertex)), together(place.x, place.y)),
                                      static_cast<std::uint64_t>(layer.volumes()[i]));
     return layer.moving()[i] != 0 ? mixed(hash, 1) : hash;
@@ -58,7 +58,7 @@ std::uint64_t TileHash::constraintsOf(const VertexSand& layer, std::int32_t slot
     std::uint64_t sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
-        if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody) {
+        if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNoNumber) {
             sum += mixed(2, together(a, b));
         }
     }
@@ -127,7 +127,7 @@ std::vector<std::int32_t> TileHash::valuesOf(const VertexSand& layer, int tile) 
     forEachOf(layer, tile, [&](Vertex vertex) {
         const auto i = static_cast<std::size_t>(vertex);
         const bool alive = layer.triangles().alive(vertex);
-        const Place place = alive ? layer.triangles().places[i] : Place{-1, -1};
+        const LatticePoint place = alive ? layer.triangles().places[i] : LatticePoint{-1, -1};
         const auto volume = static_cast<std::uint64_t>(alive ? layer.volumes()[i] : 0);
         values.insert(values.end(), {place.x, place.y, static_cast<std::int32_t>(volume >> 32),
                                      static_cast<std::int32_t>(volume & 0xffffffffU), alive ? layer.moving()[i] : 0});

@@ -37,7 +37,7 @@ void Undo::followTriangle(const VertexSand& layer, std::int32_t slot) {
     std::vector<std::pair<Vertex, Vertex>> owned;
     for (std::size_t k = 0; k < 3; ++k) {
         const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
-        if (triangle.constrained[k] && triangle.neighbour[k] != kNobody && a < b) {
+        if (triangle.constrained[k] && triangle.neighbour[k] != kNoNumber && a < b) {
             owned.emplace_back(a, b);
         }
     }

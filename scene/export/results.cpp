@@ -6,18 +6,18 @@
 
 namespace scene {
 
-void withCells(const sand::Replica& terrain, const Scene& scene,
+void withCells(const sand::Replica& replica, const Scene& scene,
                const std::function<void(const sand::HeightField&, const Scene&)>& write) {
-    const sand::SurfaceData data = terrain.surface().data();
+    const sand::SurfaceData data = replica.surface().data();
     if (const auto* grid = std::get_if<sand::GridData>(&data)) {
         write(grid->field, scene);
     } else {
-        write(sampled(terrain, scene.tin->holes.get()), sampledScene(scene));
+        write(sampled(replica, scene.tin->holes.get()), sampledScene(scene));
     }
 }
 
-Mesh meshOf(const sand::Replica& terrain, const Scene& scene) {
-    const sand::SurfaceData data = terrain.surface().data();
+Mesh meshOf(const sand::Replica& replica, const Scene& scene) {
+    const sand::SurfaceData data = replica.surface().data();
     if (const auto* grid = std::get_if<sand::GridData>(&data)) {
         return meshOf(grid->field, scene);
     }

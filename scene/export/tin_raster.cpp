@@ -7,15 +7,15 @@
 
 namespace scene {
 
-sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes) {
-    sand::HeightField field(terrain.rules().columns, terrain.rules().rows, terrain.cellSize());
+sand::HeightField sampled(const sand::Replica& replica, const sand::tin::Holes* holes) {
+    sand::HeightField field(replica.rules().columns, replica.rules().rows, replica.cellSize());
     for (int row = 0; row < field.rows(); ++row) {
         for (int column = 0; column < field.columns(); ++column) {
             if (holes != nullptr && holes->isHole(column, row)) {
                 continue;
             }
             const double height =
-                terrain.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
+                replica.surface().height((column + 0.5) * sand::kProbePerCell, (row + 0.5) * sand::kProbePerCell);
             field.setHeight(column, row, static_cast<std::int32_t>(std::floor(height + 0.5)));
         }
     }
@@ -52,7 +52,7 @@ Mesh meshOf(const sand::tin::SurfaceView& tin, const Scene& scene) {
     for (std::size_t i = 0; i < tin.triangles.places.size(); ++i) {
         if (onGround[i]) {
             numbers[i] = static_cast<std::uint32_t>(mesh.vertices.size());
-            const sand::tin::Place place = tin.triangles.places[i];
+            const sand::tin::LatticePoint place = tin.triangles.places[i];
             mesh.vertices.push_back(
                 {reference.west + place.x * length, reference.south + place.y * length,
                  (tin.heights[i] * scene.terrain.unit() + reference.datum) * reference.heightPerUnit});

@@ -9,7 +9,7 @@ namespace scene {
 
 /// Returns a TIN's surface at the middles of its nominal cells, rounded to whole units. Heights in `holes` are 0.
 /// `holes` may be null.
-[[nodiscard]] sand::HeightField sampled(const sand::Replica& terrain, const sand::tin::Holes* holes);
+[[nodiscard]] sand::HeightField sampled(const sand::Replica& replica, const sand::tin::Holes* holes);
 
 /// Returns the scene of a TIN with its first heights as a field of nominal cells, for comparisons of rasters. Holes are
 /// walls of its ground.

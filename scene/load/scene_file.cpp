@@ -173,9 +173,9 @@ Scene loadScene(const std::filesystem::path& file, const SizeChecks& checks) {
     readLook(toml, scene);
     toml.finish();
     if (settle) {
-        sand::Replica terrain(scene);
-        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::settle});
-        sand::startFrom(terrain.surface(), scene);
+        sand::Replica replica(scene);
+        replica.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::settle});
+        sand::startFrom(replica.surface(), scene);
     }
     return scene;
 }

@@ -44,7 +44,7 @@ bool hasRock(const sand::Ground& ground) {
 /// Returns the number of places on the lattice: those of the points, and the corners of their field, which the TIN
 /// adds.
 std::size_t distinctPlaces(const sand::tin::TinStart& start) {
-    std::vector<sand::tin::Place> places = start.places;
+    std::vector<sand::tin::LatticePoint> places = start.places;
     places.insert(places.end(), {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}});
     std::sort(places.begin(), places.end());
     return static_cast<std::size_t>(std::unique(places.begin(), places.end()) - places.begin());
@@ -116,7 +116,7 @@ double putOnLattice(const Points& points, const Georeference& origin, const sand
 }
 
 /// Warns of points that share a place of the lattice. The TIN takes the first of them in the file.
-void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<sand::tin::Place>& places,
+void warnOfNearPoints(const std::string& file, const Points& points, const std::vector<sand::tin::LatticePoint>& places,
                       double step, Scene& scene) {
     std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

@@ -16,7 +16,7 @@ constexpr double kMostLatticeSide = 4194304;  // 2^22: largest side that a mesh 
 constexpr std::int32_t kLeastSpacing = 4, kMostSpacing = 4096;
 
 /// Returns the lattice steps on a cell's sides. The shorter side has a power of two.
-sand::tin::Place spacingOf(const EsriGrid& raster) {
+sand::tin::LatticePoint spacingOf(const EsriGrid& raster) {
     const double ratio = std::max(raster.aspect(), 1 / raster.aspect());
     if (!(ratio <= kMostOblongCell)) {
         throw base::InputError(fmt::format("{}: cells of {} x {} are too oblong; sides must be within 1 : {}",
@@ -34,7 +34,7 @@ sand::tin::Place spacingOf(const EsriGrid& raster) {
                                            raster.file, raster.columns, raster.rows));
     }
     const auto longer = static_cast<std::int32_t>(std::floor(shorter * ratio + 0.5));
-    return wide ? sand::tin::Place{longer, shorter} : sand::tin::Place{shorter, longer};
+    return wide ? sand::tin::LatticePoint{longer, shorter} : sand::tin::LatticePoint{shorter, longer};
 }
 
 }  // namespace
@@ -44,7 +44,7 @@ Thinned thin(const EsriGrid& raster, const sand::tin::SimplifyGoal& goal) {
         throw base::InputError(fmt::format("{}: {} x {} cells with data have no area between their middles",
                                            raster.file, raster.columns, raster.rows));
     }
-    const sand::tin::Place spacing = spacingOf(raster);
+    const sand::tin::LatticePoint spacing = spacingOf(raster);
     std::vector<double> heights;
     heights.reserve(raster.heights.size());
     for (int row = 0; row < raster.rows; ++row) {

@@ -8,14 +8,14 @@ namespace scene::relax {
 namespace {
 
 using sand::tin::index;
-using sand::tin::kNobody;
-using sand::tin::Place;
+using sand::tin::kNoNumber;
+using sand::tin::LatticePoint;
 using sand::tin::Triangle;
 using sand::tin::Triangles;
 
 constexpr double kLeastHeight = 1.0 / 64;  // [lattice step], least height of a triangle over its longest edge
 
-std::int64_t squaredLength(const Place& a, const Place& b) {
+std::int64_t squaredLength(const LatticePoint& a, const LatticePoint& b) {
     const std::int64_t x = std::int64_t{b.x} - a.x, y = std::int64_t{b.y} - a.y;
     return x * x + y * y;
 }
@@ -28,7 +28,7 @@ public:
           isOutside_(mesh.triangles.size()),
           isOnBoundary_(mesh.places.size()) {
         std::transform(mesh.places.begin(), mesh.places.end(), isOnBoundary_.begin(),
-                       [&mesh](const Place& place) { return isOnRim(mesh, place); });
+                       [&mesh](const LatticePoint& place) { return isOnRim(mesh, place); });
     }
 
     std::vector<std::int32_t> peel() {
@@ -38,7 +38,7 @@ public:
         // Triangles beyond a taken one are now at the boundary. The list grows during the loop.
         for (std::size_t next = 0; next < taken_.size(); ++next) {
             for (const std::int32_t beyond : mesh_.triangles[index(taken_[next])].neighbour) {
-                if (beyond != kNobody) {
+                if (beyond != kNoNumber) {
                     look(beyond);
                 }
             }
@@ -47,12 +47,12 @@ public:
     }
 
 private:
-    [[nodiscard]] Place placeOf(const Triangle& triangle, std::size_t corner) const {
+    [[nodiscard]] LatticePoint placeOf(const Triangle& triangle, std::size_t corner) const {
         return mesh_.places[index(triangle.corner.at(corner % 3))];
     }
     [[nodiscard]] bool looksOutwards(const Triangle& triangle, std::size_t side) const {
         const std::int32_t beyond = triangle.neighbour.at(side % 3);
-        return beyond == kNobody || isOutside_[index(beyond)];
+        return beyond == kNoNumber || isOutside_[index(beyond)];
     }
 
     /// Takes a triangle at the boundary if it is a sliver.
@@ -72,19 +72,19 @@ private:
     }
 
     [[nodiscard]] bool isSliver(const Triangle& triangle, std::size_t side) const {
-        const Place apex = placeOf(triangle, side);
-        const Place from = placeOf(triangle, side + 1), to = placeOf(triangle, side + 2);
+        const LatticePoint apex = placeOf(triangle, side);
+        const LatticePoint from = placeOf(triangle, side + 1), to = placeOf(triangle, side + 2);
         const std::int64_t squared = squaredLength(from, to);
         const bool isLongest = squared >= squaredLength(apex, from) && squared >= squaredLength(apex, to);
         return isLongest && kFlat * doubledArea(apex, from, to) < squared && isNearOneSide({apex, from, to});
     }
 
-    [[nodiscard]] bool isNearOneSide(const std::array<Place, 3>& places) const {
+    [[nodiscard]] bool isNearOneSide(const std::array<LatticePoint, 3>& places) const {
         const auto all = [&places](const auto& isNear) { return std::all_of(places.begin(), places.end(), isNear); };
-        return all([this](const Place& place) { return place.y <= nearRim_; }) ||
-               all([this](const Place& place) { return place.x <= nearRim_; }) ||
-               all([this](const Place& place) { return place.y >= mesh_.depth - nearRim_; }) ||
-               all([this](const Place& place) { return place.x >= mesh_.width - nearRim_; });
+        return all([this](const LatticePoint& place) { return place.y <= nearRim_; }) ||
+               all([this](const LatticePoint& place) { return place.x <= nearRim_; }) ||
+               all([this](const LatticePoint& place) { return place.y >= mesh_.depth - nearRim_; }) ||
+               all([this](const LatticePoint& place) { return place.x >= mesh_.width - nearRim_; });
     }
 
     const Triangles& mesh_;

@@ -25,7 +25,7 @@ inline constexpr std::int64_t kFlat = 64;            // ratio of a triangle's lo
 /// Lattice whose places are exact as doubles. The areas of triangles over these places are exact, too.
 struct ExactLattice {
     double west = 0, south = 0, step = 1;
-    [[nodiscard]] std::array<double, 2> at(const sand::tin::Place& place) const {
+    [[nodiscard]] std::array<double, 2> at(const sand::tin::LatticePoint& place) const {
         return {west + place.x * step, south + place.y * step};
     }
 };

@@ -15,7 +15,7 @@
 namespace scene::relax {
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::Vertex;
 
 constexpr double kStepsAcross = 524288;    // steps of the lattice on the longer side of a cloud, about: 2^19
@@ -44,7 +44,7 @@ Extent extentOf(const Points& points) {
 struct Lattice : ExactLattice {
     std::int32_t width = 0, depth = 0;
 
-    [[nodiscard]] Place placeOf(const std::array<double, 3>& point) const {
+    [[nodiscard]] LatticePoint placeOf(const std::array<double, 3>& point) const {
         const auto on = [this](double length, std::int32_t most) {
             return std::min(static_cast<std::int32_t>(std::floor(length / step + 0.5)), most);
         };
@@ -68,8 +68,8 @@ Lattice latticeOf(const Extent& extent) {
     for (const std::size_t axis : {0U, 1U}) {
         farthest = std::max({farthest, std::abs(extent.least.at(axis)), std::abs(extent.most.at(axis))});
     }
-    const double told = std::nextafter(farthest, HUGE_VAL) - farthest;
-    const auto [step, fine] = exactStep(std::max(longer / kStepsAcross, kFineSteps * told));
+    const double rounding = std::nextafter(farthest, HUGE_VAL) - farthest;
+    const auto [step, fine] = exactStep(std::max(longer / kStepsAcross, kFineSteps * rounding));
     return {{std::floor(extent.least[0] / fine) * fine, std::floor(extent.least[1] / fine) * fine, step}, 0, 0};
 }
 
@@ -136,7 +136,7 @@ struct Joined {
 };
 
 Joined join(const Points& points, const Extent& extent, const Lattice& lattice, const Thinned* raster) {
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     places.reserve(points.size());
     for (const auto& point : points) {
         places.push_back(lattice.placeOf(point));
@@ -165,13 +165,14 @@ Joined join(const Points& points, const Extent& extent, const Lattice& lattice, 
     }
     for (std::size_t corner = 0; corner < 4; ++corner) {
         if (!known[corner]) {
-            const Place at = joined.mesh.triangles().places[corner];
-            const auto squared = [&](const Place& place) {
+            const LatticePoint at = joined.mesh.triangles().places[corner];
+            const auto squared = [&](const LatticePoint& place) {
                 const std::int64_t x = std::int64_t{place.x} - at.x, y = std::int64_t{place.y} - at.y;
                 return x * x + y * y;
             };
-            const auto nearest = std::min_element(
-                places.begin(), places.end(), [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
+            const auto nearest =
+                std::min_element(places.begin(), places.end(),
+                                 [&](const LatticePoint& a, const LatticePoint& b) { return squared(a) < squared(b); });
             joined.points[corner] = {at.x == 0 ? extent.least[0] : extent.most[0],
                                      at.y == 0 ? extent.least[1] : extent.most[1],
                                      points[static_cast<std::size_t>(nearest - places.begin())][2]};

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Finds sentences that a reader has to read twice, in documents, comments and messages.
+"""Finds sentences that a reader has to read twice, in documents, comments and messages, and unclear names in headers.
 
 Reads Markdown, the comments and string literals of C++ and Python, and the comments of shell and CMake. Skips code, text
 in backquotes, fenced blocks and headings. The words to avoid are the phrases in backquotes in the table of docs/glossary.md
-below "Words that we avoid". A semicolon ends a sentence of a message, because most messages have no full stops. Prints the
+below "Words that we avoid". Names in C++ headers may have no single word of that table as a part, and no word of the table
+below "Words that names avoid". A semicolon ends a sentence of a message, because most messages have no full stops. Prints the
 share of flagged sentences per kind of text and the number of flags per rule.
 
-Exit status 1: more than 1 % of the documents' or the comments' sentences are flagged, or more than 0.5 % of the messages.
+Exit status 1: more than 1 % of the documents' or the comments' sentences are flagged, more than 0.5 % of the messages, or
+any name.
 Exit status 2: a path does not exist or cannot be checked.
 
 usage: scripts/plain_english.py [--list] [PATH...]   (--list: also print every flagged sentence with its file and line;
@@ -16,6 +18,7 @@ PATH: a file, or a folder whose tracked files are read; default: the whole repos
 
 import argparse
 import collections
+import itertools
 import os
 import pathlib
 import re
@@ -24,11 +27,12 @@ import subprocess
 import sys
 
 sys.dont_write_bytecode = True
+import cpp_names
 import prose_reader
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GLOSSARY = ROOT / "docs" / "glossary.md"
-MOST_FLAGGED = {"documents": 1.0, "comments": 1.0, "messages": 0.5}  # [%]
+MOST_FLAGGED = {"documents": 1.0, "comments": 1.0, "messages": 0.5, "names": 0.0}  # [%]
 MOST_WORDS = 25
 PROGRAM = ("(?:agent|client|launcher|master|node|peer|process|program|rank|replica|script|server|session|supervisor|thread|"
            "wall)(?:s|es)?")
@@ -80,12 +84,22 @@ LIST = re.compile(r"(?:, (?:and |or )?[\w'’-]+(?: [\w'’-]+)?(?=[,.;:)]| and 
 UNIT_OR_PARAMETER = re.compile(r"^\[[^]]*\][,:;]? |^[@\\](?:param(?:\[\w+\])? \w+|\w+) +")
 
 
+def phrases(page, heading):
+    """Returns the phrases in backquotes in the first column of the table below a heading."""
+    table = re.search(rf"^#+ {heading}\n[^|]*((?:\|.*\n)+)", page, re.MULTILINE)[1]
+    return [phrase for row in table.splitlines()[2:] for phrase in re.findall(r"`([^`]+)`", row.split("|")[1])]
+
+
 def words_to_avoid(page):
-    """Returns one pattern for the phrases in backquotes in the first column of the table below `Words that we avoid`."""
-    table = re.search(r"^## Words that we avoid\n[^|]*((?:\|.*\n)+)", page, re.MULTILINE)[1]
-    phrases = [phrase for row in table.splitlines()[2:] for phrase in re.findall(r"`([^`]+)`", row.split("|")[1])]
-    alternatives = "|".join(map(re.escape, phrases)).replace("PROGRAM", PROGRAM)
+    """Returns one pattern for the phrases that sentences avoid."""
+    alternatives = "|".join(map(re.escape, phrases(page, "Words that we avoid"))).replace("PROGRAM", PROGRAM)
     return re.compile(rf"(?<![\w-])({alternatives})(?![\w-])", re.IGNORECASE)
+
+
+def words_that_names_avoid(page):
+    """Returns the words that names must not have as a part."""
+    everywhere = [phrase for phrase in phrases(page, "Words that we avoid") if phrase.isalpha() and phrase.islower()]
+    return frozenset(everywhere + phrases(page, "Words that names avoid"))
 
 
 def flags(sentence, opens_comment, avoided):
@@ -123,6 +137,13 @@ def judged(path, avoided):
                 yield line, kind, sentence, found
 
 
+def judged_names(path, avoided):
+    """Yields (line, kind, name, flags) for each name in a header."""
+    for line, name in cpp_names.identifiers(path.read_text(errors="replace")):
+        found = [part for part in cpp_names.parts(name) if part in avoided]
+        yield line, "names", name, [f"word to avoid: {part}" for part in found]
+
+
 def files(paths):
     """Yields the files to read. Throws OSError for a path that does not exist or holds no text to check."""
     for path in paths:
@@ -140,10 +161,12 @@ def files(paths):
 
 def count(options):
     """Returns three counters: sentences by kind, flagged sentences by kind, flags by rule. Prints what --list asks for."""
-    avoided = words_to_avoid(GLOSSARY.read_text())
+    page = GLOSSARY.read_text()
+    avoided, of_names = words_to_avoid(page), words_that_names_avoid(page)
     seen, flagged, rules = collections.Counter(), collections.Counter(), collections.Counter()
     for path in files(options.paths):
-        for line, kind, sentence, found in judged(path, avoided):
+        names = judged_names(path, of_names) if path.suffix == ".hpp" else ()
+        for line, kind, sentence, found in itertools.chain(judged(path, avoided), names):
             seen[kind] += 1
             flagged[kind] += bool(found)
             rules.update(name.partition(":")[0] for name in found)
@@ -164,13 +187,15 @@ def main():
         return 2
     share = {kind: 100 * flagged[kind] / seen[kind] for kind in MOST_FLAGGED if seen[kind]}
     for kind in share:
-        print(f"{kind}: {flagged[kind]} of {seen[kind]} sentences flagged, {share[kind]:.1f} %")
+        what = "names" if kind == "names" else "sentences"
+        print(f"{kind}: {flagged[kind]} of {seen[kind]} {what} flagged, {share[kind]:.1f} %")
     for name, number in rules.most_common():
         print(f"  {number} {name}")
     too_many = [kind for kind in share if share[kind] > MOST_FLAGGED[kind]]
     for kind in too_many:
-        print(f"plain_english.py: {share[kind]:.1f} % of the sentences in {kind} are flagged, more than {MOST_FLAGGED[kind]} %; "
-              "rewrite the ones that --list prints", file=sys.stderr)
+        what = f"{flagged[kind]} names in headers" if kind == "names" else f"{share[kind]:.1f} % of the sentences in {kind}"
+        print(f"plain_english.py: {what} are flagged, more than {MOST_FLAGGED[kind]} %; rewrite the ones that --list prints",
+              file=sys.stderr)
     return 1 if too_many else 0
 
 

@@ -72,7 +72,7 @@ def colours():
     return OUT.descriptor is not None and os.isatty(OUT.descriptor) and "NO_COLOR" not in os.environ
 
 
-def say(line):
+def print_line(line):
     """Prints a line of the launcher for a person. A name in it cannot begin another line."""
     ERROR.line(f"sandwall: {CONTROLS.sub('?', str(line))}")
 

@@ -9,7 +9,7 @@ import pathlib
 
 import checked_json
 import session_folder
-from console import say
+from console import print_line
 
 NAME = "failures.jsonl"
 SERVER = "the haptic server"  # the text of its failures begins so
@@ -53,4 +53,4 @@ class FailedProcesses:
         try:
             session_folder.append_line(self.path, json.dumps(line))
         except OSError as error:
-            say(f"{self.path}: cannot be written ({error.strerror})")
+            print_line(f"{self.path}: cannot be written ({error.strerror})")

@@ -16,7 +16,7 @@ import checked_json
 import console
 import events
 import job_stream
-from console import say
+from console import print_line
 
 KEPT_TRIES = 8
 LAST_LINES = 16  # of each rank, for a report
@@ -43,12 +43,12 @@ class JobLog:
         self.streams = [self.out, self.err, *self.open_ranks(ranks if mpi.keeps_output else ())]
         self.hosts_file = None
         self.rank_logs = {}  # HOST:PATH of the output of ranks on other hosts
-        self.said = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
+        self.last_by_rank = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
         self.mpiruns = b""  # the last lines of mpirun itself on standard error
         self.ending = None  # `ranks` and `names` of the first event `waiting` that ends the job
         self.failure = None  # the content of the event `failure`, as events.failure_in() returns it
         self.frame = self.step = None  # the last frame and step that an event reported as shown
-        self.told = 0.0  # time of that event by the monotonic clock [s]
+        self.shown_at = 0.0  # time of that event by the monotonic clock [s]
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
         self.linked = None  # Unix time [s] of the last event about a hand that was linked or streams
         self.force = None  # share of the force that an operator has set in this try, 0 to 1
@@ -86,7 +86,7 @@ class JobLog:
                 if not stream.hides(rank, line):
                     stream.shown.line(line)
         if ended and (damaged := self.out.damaged + self.err.damaged):
-            say(f"{damaged} damaged pieces of the output of ranks on other hosts are left out")
+            print_line(f"{damaged} damaged pieces of the output of ranks on other hosts are left out")
 
     def read_event(self, event):
         """Takes what the launcher needs from an event. Leaves out a field that is not as the schema of events says."""
@@ -96,7 +96,7 @@ class JobLog:
             if frame is None or step is None:
                 return
             self.frame, self.step = frame, step
-            self.told = time.monotonic()
+            self.shown_at = time.monotonic()
             if event.get("hand") in ("hand linked", "hand streams"):
                 self.hand = time.monotonic()
                 self.refused = False
@@ -125,7 +125,7 @@ class JobLog:
 
     def read(self, rank, line, stream):
         if not BACKTRACE.match(line):  # a deep backtrace would leave no room for the lines before it
-            self.said[rank].append(line.decode(errors="replace"))
+            self.last_by_rank[rank].append(line.decode(errors="replace"))
         if stream is self.err and rank is None:
             self.mpiruns = (self.mpiruns + line + b"\n")[-LONGEST_LINE:]
 

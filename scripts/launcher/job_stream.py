@@ -10,7 +10,7 @@ import zlib
 
 import console
 import session_folder
-from console import say
+from console import print_line
 
 LONGEST_LINE = 1 << 16  # bytes that are held back for the rest of a line
 RESERVE = 1 << 18  # bytes of disk that are kept free for messages about a full disk
@@ -23,7 +23,7 @@ RELAYED = re.compile(rb"@rank (\d{1,9}) (\d{1,7}) ([0-9a-f]{8}) ")
 LIBC = ctypes.CDLL(None)  # loaded before any thread starts: a child between fork and exec must not wait for a lock
 
 
-def new_file(path, complain=say):
+def new_file(path, complain=print_line):
     """Makes a file for the output of a job and returns its descriptor. If the disk takes no file, the file is in memory."""
     path = pathlib.Path(path)
     try:
@@ -62,7 +62,7 @@ def relayed(line):
 class Stream:
     """The standard output or standard error of mpirun, a file that is read while it grows."""
 
-    def __init__(self, path, shown, mpi, complain=say):
+    def __init__(self, path, shown, mpi, complain=print_line):
         self.file = new_file(path, complain)
         self.shown = shown
         self.mpi = mpi

@@ -8,7 +8,7 @@ import subprocess
 
 import layout
 import screens
-from console import say
+from console import print_line
 from rank_hosts import BadInput
 
 DEVICE = "pointer"
@@ -43,10 +43,10 @@ def session_of(args):
     return ["run", "--here", "--wall", args.wall, "--scene", args.scene, "--device", DEVICE, "--show", "help", "--out", args.out]
 
 
-def tell_journal(out, wall):
+def print_journal(out, wall):
     journal = pathlib.Path(out) / "session.journal"
     command = [layout.PROGRAM, "film", str(journal), "--wall", wall, "--out", "film"]
-    say(f"all that you did is in {journal}; `{shlex.join(command)}` makes a film of it")
+    print_line(f"all that you did is in {journal}; `{shlex.join(command)}` makes a film of it")
 
 
 def add_parser(commands, run):

@@ -68,7 +68,7 @@ def content_of(path):
         return {}
 
 
-def told_name(told, hosts):
+def name_of_rank(told, hosts):
     """Returns the name of the rank in `told`, the content of failure.json or of the event `failure`."""
     if told["rank"] == 0:
         return "the master"
@@ -94,7 +94,7 @@ def failure_of_job(status, log, hosts, written):
         rank = told["rank"] if told.get("rank", -1) >= 0 else None
         lost = how == "broken"
         message = told.get("message") or f"{name(rank or 0)}: {how}"
-        text = f"{told_name(told, hosts)} hung" if how == "hung" and rank is not None else message
+        text = f"{name_of_rank(told, hosts)} hung" if how == "hung" and rank is not None else message
     elif signalled:
         rank, how = signalled[0], signal_name(signalled[1])
         text = f"{name(rank)} was killed by {how}"
@@ -111,7 +111,7 @@ def failure_of_job(status, log, hosts, written):
     if rank in log.rank_logs:
         text += f" (its output: {log.rank_logs[rank]})"
     failure = Failure(text, rank, how, lost, frame=log.frame, step=log.step)
-    failure.last_lines = list(log.said.get(rank) or log.said.get(0) or log.said.get(None) or [])
+    failure.last_lines = list(log.last_by_rank.get(rank) or log.last_by_rank.get(0) or log.last_by_rank.get(None) or [])
     return failure
 
 
@@ -119,5 +119,5 @@ def failure_without_log(status, told, hosts):
     """Returns the failure that ended a job whose output is not kept. `told` is the content of the master's failure.json."""
     rank = told["rank"] if told.get("rank", -1) >= 0 else None
     how = told.get("what") or ending_of(status)
-    text = told.get("message") or (f"{told_name(told, hosts)}: {how}" if rank is not None else f"mpirun {how_ended(status)}")
+    text = told.get("message") or (f"{name_of_rank(told, hosts)}: {how}" if rank is not None else f"mpirun {how_ended(status)}")
     return Failure(text, rank, how)

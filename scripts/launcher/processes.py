@@ -10,7 +10,7 @@ import threading
 import time
 
 import events
-from console import say
+from console import print_line
 from job_stream import LIBC
 from mpirun_end import EndWatch
 from rank_hosts import BadInput
@@ -154,10 +154,10 @@ class Job:
         now = time.monotonic()
         if not self.stuck and self.end_watch.stuck(now):
             self.stuck = True
-            say("mpirun does not end after its last process; killing it")
+            print_line("mpirun does not end after its last process; killing it")
             self.signal(signal.SIGKILL)
         if stop.count > 0 and not self.asked:
-            say("stopping; finishing journal and pictures; press Ctrl-C again to kill")
+            print_line("stopping; finishing journal and pictures; press Ctrl-C again to kill")
             events.emit("stopping")
             self.stop()
         if self.deadline is None and self.log and self.log.ending:
@@ -249,4 +249,4 @@ class Input:
         elif line == "stop":
             self.stop.add()
         else:
-            say(f"'{line}' is ignored, because the session is being started again")
+            print_line(f"'{line}' is ignored, because the session is being started again")

@@ -63,5 +63,5 @@ def versions(as_json):
             known = "".join(f", {key} {value}" for key, value in entry.items() if key not in ("program", "version", "build"))
             console.OUT.line(checked_json.one_line(f"{entry['program']} {entry['version']}, build {entry['build']}{known}"))
     if not one_build:
-        console.say(f"the programs are of several builds; {layout.MEND}")
+        console.print_line(f"the programs are of several builds; {layout.MEND}")
     return 0 if one_build else FAILED

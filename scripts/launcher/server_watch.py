@@ -6,7 +6,7 @@ import time
 
 import failed_processes
 import session_folder
-from console import say
+from console import print_line
 from process_failure import Failure, ending_of, how_ended
 
 HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
@@ -36,7 +36,7 @@ class ServerWatch:
         """
         status = self.server.process.poll()
         if status is None:
-            self.tell_linked(log)
+            self.write_recovery(log)
             self.end_hung(log)
         elif self.due is not None:
             if time.monotonic() >= self.due:
@@ -62,10 +62,10 @@ class ServerWatch:
             return
         self.missed = True
         failure = Failure(f"{failed_processes.SERVER} {how_ended(status)}", how=ending_of(status))
-        say(f"{failure.text}; the session continues without it, because of --restarts 0")
+        print_line(f"{failure.text}; the session continues without it, because of --restarts 0")
         failed.add(failure, restarted=False)
 
-    def tell_linked(self, log):
+    def write_recovery(self, log):
         """Writes the recovery of a restarted server when its hand is linked. The master writes the recoveries of the job."""
         failure = self.failure
         if failure is None or log.linked is None:
@@ -79,14 +79,14 @@ class ServerWatch:
         try:
             session_folder.append_line(self.out / RECOVERIES, json.dumps(recovery))
         except OSError as error:
-            say(f"{self.out / RECOVERIES}: cannot be written ({error.strerror})")
+            print_line(f"{self.out / RECOVERIES}: cannot be written ({error.strerror})")
 
     def end_hung(self, log):
         """Kills a running server without a link for HUNG_SECONDS, because it will not recover by itself."""
         if self.loads and self.server.listens():
             self.loads = False
             log.miss_hand()
-        if log.hand is not None and time.monotonic() - log.hand > HUNG_SECONDS and log.told > log.hand + HUNG_SECONDS / 2:
+        if log.hand is not None and time.monotonic() - log.hand > HUNG_SECONDS and log.shown_at > log.hand + HUNG_SECONDS / 2:
             log.hand = None
             self.hung = True
             self.server.process.kill()

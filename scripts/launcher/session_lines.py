@@ -144,7 +144,7 @@ def strokes(summary, _):
 def refusals(summary, _):
     haptic = summary["haptic"]
     parts = ((haptic["refused_by_server"], "by the server", SESSION), (haptic["refused"]["servers"], "of a server", SESSION),
-             (haptic["refused"]["guests"], "of other connections by the server", SERVER_START))
+             (haptic["refused"]["connections"], "of other connections by the server", SERVER_START))
     found = [f"{sum(kinds.values())} {what} {span} ({named_counts(kinds)})" for kinds, what, span in parts if any(kinds.values())]
     if not found:
         return None if summary["hand"]["asked"] != "server" else (GOOD, f"0 of the haptic link {SESSION}")

@@ -134,10 +134,10 @@ class Report:
                 title, replay = summary["scene"], replay_command(summary, self.out)
                 status = final_status(lines, status)
             except BadInput as complaint:
-                console.say(complaint)
+                console.print_line(complaint)
                 summary, lines, status = None, [], status or BAD_INPUT
             except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError):  # fields that do not fit each other
-                console.say(f"{self.out}/summary.json: fields are missing, or do not fit each other; the file is damaged")
+                console.print_line(f"{self.out}/summary.json: fields are missing, or do not fit each other; the file is damaged")
                 summary, lines, status = None, [], status or BAD_INPUT
         elif status not in (0, BAD_INPUT):  # a master that ends in order writes a summary, and bad input was refused before there was a session
             lines = lines_of_no_summary()

@@ -35,17 +35,17 @@ class SessionHosts:
             host = self.names[failure.rank - 1]
             self.strikes[host] += STRIKES if failure.host_is_lost else 1
 
-    def require_reachable(self, say):
+    def require_reachable(self, print_line):
         """Replaces hosts that cannot be reached or have failed too often by spares, and prints each replacement.
 
         Throws BadInput if a host cannot be reached and no spare can replace it.
         """
         complaints = self.ask(self.names)
         for host in [host for host, strikes in self.strikes.items() if strikes >= STRIKES and host in self.names]:
-            if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), say):
+            if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), print_line):
                 self.strikes[host] = 0  # no spare can replace the host, so its count begins again
         for host, complaint in complaints.items():
-            if host in self.names and not self.replace(host, complaint, say):
+            if host in self.names and not self.replace(host, complaint, print_line):
                 raise BadInput(complaint)
 
     def ask(self, hosts):
@@ -67,7 +67,7 @@ class SessionHosts:
         """Returns the ranks on this machine, with the master."""
         return [0, *(rank for rank, host in enumerate(self.names, start=1) if host == rank_hosts.HERE)]
 
-    def replace(self, host, why, say):
+    def replace(self, host, why, print_line):
         """Replaces a host by the first spare that can be reached and has slots for all ranks of the host.
 
         Returns whether there was such a spare.
@@ -78,11 +78,11 @@ class SessionHosts:
                 continue
             self.spares.remove((spare, slots))
             if self.ask([spare]):
-                say(f"spare {spare} cannot be reached either")
+                print_line(f"spare {spare} cannot be reached either")
                 continue
             self.names = [spare if name == host else name for name in self.names]
             listed = ", ".join(str(rank) for rank in ranks)
-            say(f"{why}; spare {spare} takes its place (rank{'s' if len(ranks) > 1 else ''} {listed})")
+            print_line(f"{why}; spare {spare} takes its place (rank{'s' if len(ranks) > 1 else ''} {listed})")
             events.emit("spare", host=host, spare=spare, ranks=ranks)
             return True
         return False

@@ -14,7 +14,7 @@ import failed_processes
 import job_log
 import session_control
 import session_folder
-from console import say
+from console import print_line
 from process_failure import content_of, failure_of_job, failure_without_log, taken
 from processes import HapticServer, Input, Job, exit_status
 from rank_hosts import BadInput
@@ -211,7 +211,7 @@ class Supervisor:
         goes_on = self.allowance.take(showed_a_frame)
         self.failed.add(failure, restarted=goes_on)
         if goes_on:
-            say(f"{failure.text}; starting again ({len(self.allowance.times)} of {self.limits})")
+            print_line(f"{failure.text}; starting again ({len(self.allowance.times)} of {self.limits})")
             events.emit("restart", what=failure.text, rank=failure.rank, how=failure.how,
                         count=len(self.allowance.times), limit=self.allowance.restarts)
             return True
@@ -229,12 +229,12 @@ class Supervisor:
         self.pause()
         try:
             self.hosts.struck(failure)
-            self.hosts.require_reachable(say)
+            self.hosts.require_reachable(print_line)
         except BadInput as complaint:
             self.report(str(complaint))
             return False
         if self.stop.count > 0:
-            say(f"stopped between two tries; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
+            print_line(f"stopped between two tries; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
             return False
         return True
 

@@ -18,7 +18,7 @@ constexpr auto valuesOf(Colour) {
     return std::array{base::Named{Colour::red, "red"}, base::Named{Colour::green, "green"}};
 }
 
-struct Place {
+struct Point {
     std::int32_t x = 0;
     double y = 0;
     template <class Self, class Visit>
@@ -26,20 +26,20 @@ struct Place {
         visit("x", it.x);
         visit("y", it.y);
     }
-    friend bool operator==(const Place&, const Place&) = default;
+    friend bool operator==(const Point&, const Point&) = default;
 };
 
 struct All {
-    Place place;
+    Point place;
     Colour colour = Colour::red;
     bool shown = false, small = false, round = false;
     std::array<std::uint8_t, 2> key{};
     std::array<std::uint16_t, 2> sides{};
-    std::optional<Place> other;
+    std::optional<Point> other;
     std::optional<double> width;
     std::uint32_t count = 0;
     double share = 0, any = 0;
-    std::vector<Place> path;
+    std::vector<Point> path;
     std::string name;
     std::vector<std::string> lines;
     base::Bytes block, rest;
@@ -74,7 +74,7 @@ All full() {
     all.shown = all.round = true;
     all.key = {7, 8};
     all.sides = {0x0a0b, 12};
-    all.other = Place{-2, 4};
+    all.other = Point{-2, 4};
     all.width = 0.25;
     all.count = 300;
     all.share = 1;
@@ -123,7 +123,7 @@ struct Further {
     std::optional<Direction> window;
     std::pair<std::int8_t, std::int16_t> edge;
     std::vector<std::uint8_t> colour{0, 0};
-    std::optional<Place> material;
+    std::optional<Point> material;
     std::vector<std::int8_t> tiles;
     static void fields(auto& it, auto& visit) {
         visit("keeps", base::flags<std::int32_t>(it.first, it.second));
@@ -163,7 +163,7 @@ using described::All;
 using described::full;
 using described::Long;
 using described::Noted;
-using described::Place;
+using described::Point;
 using described::Small;
 using described::Versioned;
 
@@ -245,10 +245,10 @@ TEST(Fields, RefuseANumberThatDoesNotFitItsMember) {
 }
 
 TEST(Fields, RefuseBytesBehindTheEnd) {
-    base::Bytes bytes = base::encoded(Place{1, 2});
-    EXPECT_EQ(base::decoded<Place>(bytes), (Place{1, 2}));
+    base::Bytes bytes = base::encoded(Point{1, 2});
+    EXPECT_EQ(base::decoded<Point>(bytes), (Point{1, 2}));
     bytes.push_back(0);
-    EXPECT_EQ(test::refusalOf<base::FormatError>([&] { (void)base::decoded<Place>(bytes); }),
+    EXPECT_EQ(test::refusalOf<base::FormatError>([&] { (void)base::decoded<Point>(bytes); }),
               "bytes behind its end: 1");
 }
 
@@ -290,7 +290,7 @@ TEST(Fields, HaveTheBytesOfTheirFurtherForms) {
     further.direction.numbers = {1, -2};
     further.edge = {-1, 258};
     further.colour = {9, 8};
-    further.material = Place{5, 0};
+    further.material = Point{5, 0};
     further.tiles = {4, -4};
     const base::Bytes expected{2, 0, 0, 0, 0,  0, 0x80, 0x3f, 0, 0, 0, 0xc0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xff,
                                2, 1, 9, 8, 12, 0, 0,    0,    5, 0, 0, 0,    0, 0, 0, 0, 0, 0, 0, 0, 4, 0xfc};
@@ -305,7 +305,7 @@ TEST(Fields, HaveTheBytesOfTheirFurtherForms) {
 
 TEST(Fields, NameWhatIsWrongInTheirFurtherForms) {
     described::Further further;
-    further.material = Place{5, 0};
+    further.material = Point{5, 0};
     const base::Bytes whole = base::encoded(further);
     const auto refusalWith = [&](std::size_t at, std::uint8_t byte) {
         base::Bytes bytes = whole;

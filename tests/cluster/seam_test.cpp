@@ -32,11 +32,11 @@ protected:
         const pictures::Comparison same = pictures::compare(expected, got, kLevels);
         EXPECT_LE(same.badShare, kMostBad);
         EXPECT_EQ(pictures::countOutside(same.bad, pictures::silhouettes(expected, kLevels)), 0);
-        const auto tells = [&](const pictures::Image& other) {
+        const auto differs = [&](const pictures::Image& other) {
             return pictures::compare(other, got, kLevels).badShare > kMostBad ? 1 : 0;
         };
-        shiftsTold_ += tells(pictures::shifted(expected, 1, 0)) * tells(pictures::shifted(expected, 0, 1));
-        eyesTold_ += tells(otherEye);
+        shiftsSeen_ += differs(pictures::shifted(expected, 1, 0)) * differs(pictures::shifted(expected, 0, 1));
+        eyesSeen_ += differs(otherEye);
         ++compared_;
     }
     /// Every tile of the grid must equal its part of one rank's picture of the whole grid.
@@ -73,7 +73,7 @@ protected:
             }
         }
     }
-    int compared_ = 0, shiftsTold_ = 0, eyesTold_ = 0;  // pictures
+    int compared_ = 0, shiftsSeen_ = 0, eyesSeen_ = 0;  // pictures
 };
 
 // The wall has sand on every tile, near and far, and a desk in front of it. Every picture must reveal both faults.
@@ -98,8 +98,8 @@ TEST_F(Seam, EveryTileIsTheCropOfTheWholeWallAndAScreenBesideItIsAsIfAlone) {
     expectCropsOfTheGrid("mixed", wall);
     expectScreensOfTheirOwn("mixed", wall);
     EXPECT_EQ(compared_, 10);
-    EXPECT_EQ(shiftsTold_, compared_);
-    EXPECT_EQ(eyesTold_, compared_);
+    EXPECT_EQ(shiftsSeen_, compared_);
+    EXPECT_EQ(eyesSeen_, compared_);
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ SANDWALL_FUZZER(checkpoint) {
     const fuzz::MemoryFile file(fuzz::checksummed({data, size}));
     fuzz::takeOrRefuse([&] {
         const master::Checkpoint checkpoint = master::readCheckpoint(file.path());
-        sand::Replica terrain(kScene);
-        terrain.decodeState(checkpoint.state);
-        (void)terrain.stateHash();
+        sand::Replica replica(kScene);
+        replica.decodeState(checkpoint.state);
+        (void)replica.stateHash();
     });
     return 0;
 }

@@ -30,8 +30,8 @@ SANDWALL_FUZZER(scene) {
     const fuzz::MemoryFile file(input);
     fuzz::takeOrRefuse([&] {
         const scene::Scene scene = scene::loadScene(file.path());
-        sand::Replica terrain(scene);
-        terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{0, 0, 0}}});
+        sand::Replica replica(scene);
+        replica.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{0, 0, 0}}});
         (void)scene::Scene::decode(scene.encode());
     });
     return 0;

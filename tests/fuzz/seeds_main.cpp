@@ -137,11 +137,11 @@ void writeJournal(Folder folder, const fs::path& scratch) {
 }
 
 void writeCheckpoints(Folder folder) {
-    sand::Replica terrain(samples::flatScene(24, 16));
+    sand::Replica replica(samples::flatScene(24, 16));
     for (std::uint64_t number = 1; number <= 3; ++number) {
-        terrain.apply(step(number));
-        const master::Checkpoint checkpoint{1,      "build", terrain.rules().digest(), number,
-                                            number, 1,       terrain.stateHash(),      terrain.encodeState()};
+        replica.apply(step(number));
+        const master::Checkpoint checkpoint{1,      "build", replica.rules().digest(), number,
+                                            number, 1,       replica.stateHash(),      replica.encodeState()};
         const Bytes bytes = checkpoint.encode();
         folder.add(bytes, {0});
         folder.add(Bytes(bytes.begin(), bytes.end() - 8), {1});  // without its checksum
@@ -152,10 +152,10 @@ void writeCheckpoints(Folder folder) {
 void writeSaved(Folder folder, const fs::path& scratch) {
     const std::array<scene::Scene, 2> scenes{samples::flatScene(24, 16), fuzz::tinScene()};
     for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
-        sand::Replica terrain(scenes[kind]);
-        terrain.apply(step(1));
-        master::writeSavedSand(scratch, {master::SandPlace::of(scenes[kind]), terrain.stepNumber(), terrain.stateHash(),
-                                         terrain.copySand()->encode()});
+        sand::Replica replica(scenes[kind]);
+        replica.apply(step(1));
+        master::writeSavedSand(scratch, {master::SandPlace::of(scenes[kind]), replica.stepNumber(), replica.stateHash(),
+                                         replica.copySand()->encode()});
         const Bytes bytes = fuzz::bytesOf(scratch);
         folder.add(bytes, {static_cast<std::uint8_t>(2 * kind)});
         folder.add(Bytes(bytes.begin(), bytes.end() - 8), {static_cast<std::uint8_t>(2 * kind + 1)});
@@ -164,15 +164,15 @@ void writeSaved(Folder folder, const fs::path& scratch) {
 }
 
 /// Returns the plain bytes of sand, as fuzz::packedSand() reads them.
-Bytes plainOf(const sand::Replica& terrain) {
+Bytes plainOf(const sand::Replica& replica) {
     base::ByteWriter plain;
-    if (const auto* tin = dynamic_cast<const sand::tin::TinSurface*>(&terrain.surface()); tin != nullptr) {
+    if (const auto* tin = dynamic_cast<const sand::tin::TinSurface*>(&replica.surface()); tin != nullptr) {
         dynamic_cast<const sand::tin::Snapshot&>(*tin->copy()).state().encode(plain);
         tin->layer().encode(plain);
         return plain.take();
     }
-    plain.put(terrain.outflow());
-    const sand::HeightField& field = std::get<sand::GridData>(terrain.surface().data()).field;
+    plain.put(replica.outflow());
+    const sand::HeightField& field = std::get<sand::GridData>(replica.surface().data()).field;
     for (int y = 0; y < field.rows(); ++y) {
         for (int x = 0; x < field.columns(); ++x) {
             plain.put(field.height(x, y));
@@ -184,27 +184,27 @@ Bytes plainOf(const sand::Replica& terrain) {
 }
 
 /// Returns the plain bytes of a state, as fuzz::packedState() reads them. The sand of `before` is kept for an undo.
-Bytes plainStateOf(const sand::Replica& terrain, const sand::Replica& before) {
+Bytes plainStateOf(const sand::Replica& replica, const sand::Replica& before) {
     base::ByteWriter plain;
-    plain.putBytes(piece(terrain.copyState().head));
+    plain.putBytes(piece(replica.copyState().head));
     plain.putBytes(piece(plainOf(before)));
-    plain.putBytes(plainOf(terrain));
+    plain.putBytes(plainOf(replica));
     return plain.take();
 }
 
 void writeState(Folder folder) {
     const scene::Scene scene = samples::flatScene(24, 16);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     for (std::uint64_t number = 1; number <= 3; ++number) {
-        terrain.apply(step(number));
+        replica.apply(step(number));
     }
-    folder.add(terrain.encodeState(), {0});
-    folder.add(terrain.copySand()->encode(), {1});
+    folder.add(replica.encodeState(), {0});
+    folder.add(replica.copySand()->encode(), {1});
     folder.add(scene.encode(), {2});
-    folder.add(terrain.copySand()->encode(), {3});
-    folder.add(plainStateOf(terrain, sand::Replica(scene)), {4});
-    folder.add(plainOf(terrain), {5});
-    folder.add(plainOf(terrain), {7});
+    folder.add(replica.copySand()->encode(), {3});
+    folder.add(plainStateOf(replica, sand::Replica(scene)), {4});
+    folder.add(plainOf(replica), {5});
+    folder.add(plainOf(replica), {7});
 }
 
 /// Writes inputs of the fuzzer of steps: a kind of scene, a state, and steps with every edit.
@@ -212,11 +212,11 @@ void writeSteps(Folder folder) {
     std::array<scene::Scene, 5> scenes{samples::flatScene(24, 16), samples::flatScene(24, 16),
                                        samples::flatScene(24, 16), fuzz::tinScene(), fuzz::tinScene()};
     for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
-        sand::Replica terrain(scenes[kind]);
-        const sand::Replica before = terrain;
-        terrain.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
+        sand::Replica replica(scenes[kind]);
+        const sand::Replica before = replica;
+        replica.apply({.epoch = 1, .number = 1, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
         base::ByteWriter input;
-        input.putBytes(piece(plainStateOf(terrain, before)));
+        input.putBytes(piece(plainStateOf(replica, before)));
         sand::Edit tuned = sand::Edit::tuned(scenes[kind].rules.tuning);
         tuned.tuning.tool.kind = sand::ToolKind::rectangle;
         tuned.tuning.tool.halfWidth = tuned.tuning.tool.radius / 2;

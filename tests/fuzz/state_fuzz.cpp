@@ -25,9 +25,9 @@ SANDWALL_FUZZER(state) {
         }
         switch (data[0] & 3U) {
             case 0: {
-                sand::Replica terrain(kScene);
-                terrain.decodeState(packed);
-                terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{0, 0, 0}}});
+                sand::Replica replica(kScene);
+                replica.decodeState(packed);
+                replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = true, .path = {{0, 0, 0}}});
                 break;
             }
             case 1:
@@ -38,8 +38,8 @@ SANDWALL_FUZZER(state) {
                 (void)scene::Scene::decode(packed);
                 break;
             default: {
-                sand::Replica terrain(kScene);
-                terrain.apply(
+                sand::Replica replica(kScene);
+                replica.apply(
                     {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(packed)});
             }
         }

@@ -37,12 +37,12 @@ std::size_t ticksOf(const std::vector<base::Bytes>& pieces) {
 
 void replay(const std::vector<base::Bytes>& pieces, const scene::Scene& scene) {
     TickReplay replay(scene, pieces);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     std::string rows;
-    replay.feel(terrain, rows);
+    replay.feel(replica, rows);
     for (std::uint64_t number = 1; number <= 3; ++number) {
-        terrain.apply({.epoch = 1, .number = number, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
-        replay.feel(terrain, rows);
+        replica.apply({.epoch = 1, .number = number, .engaged = true, .path = {{2000, 2000, 200}, {3000, 2500, 100}}});
+        replay.feel(replica, rows);
     }
     const auto felt = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), '\n'));
     fuzz::require(felt + replay.left() == ticksOf(pieces), "a replay has lost ticks");

@@ -14,7 +14,7 @@ constexpr auto valuesOf(Colour) {
     return std::array{base::Named{Colour::red, "red"}, base::Named{Colour::green, "green"}};
 }
 
-struct Place {
+struct Point {
     int x = 0;
     double y = 0;
     static void fields(auto& it, auto& visit) {
@@ -28,13 +28,13 @@ struct All {
     Colour colour = Colour::green;
     std::string name = "tool";
     std::optional<double> width, height = 0.5;
-    std::optional<Place> other;
+    std::optional<Point> other;
     std::optional<std::uint64_t> later;
-    std::vector<Place> path{{1, 2}, {3, 4}};
+    std::vector<Point> path{{1, 2}, {3, 4}};
     std::vector<std::string> lines{"a"};
     std::array<std::uint64_t, 2> counts{5, 6};
     std::uint32_t steps = 7;
-    Place place{8, 9};
+    Point place{8, 9};
     host::Json raw{R"({"b":1,"a":[null]})"};
     static void fields(auto& it, auto& visit) {
         visit("shown", it.shown);
@@ -86,7 +86,7 @@ TEST(JsonFields, AreWrittenInTheirOrderUnderTheirNames) {
               R"("path":[{"x":1,"y":2.0},{"x":3,"y":4.0}],"lines":["a"],"counts":{"red":5,"green":6},"steps":7,)"
               R"("place":{"x":8,"y":9.0,"sum":17.0},"raw":{"b":1,"a":[null]}})");
     All all;
-    all.other = printed::Place{-1, 0};
+    all.other = printed::Point{-1, 0};
     all.later = 4;
     const ordered_json written = host::jsonOf(all);
     EXPECT_EQ(written.at("other"), (ordered_json{{"x", -1}, {"y", 0.0}}));

@@ -71,7 +71,7 @@ TEST_F(RankOutput, TheRanksFileIsToldAndRemovedAtAGoodEnd) {
     const auto [error, relayed] = ran([&] {
         setenv("SANDWALL_RANK_LOG", path.c_str(), 1);
         close(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600));
-        host::tellRankLog();
+        host::sendRankLog();
         host::removeRankLog();
     });
     EXPECT_EQ(error, "");
@@ -97,7 +97,7 @@ TEST_F(RankOutput, WithoutAWayToTheLauncherALineGoesToStandardErrorAlone) {
     const auto [error, relayed] = ran([] {
         unsetenv("SANDWALL_RELAY");
         host::writeLine("text\n");
-        host::tellRankLog();
+        host::sendRankLog();
     });
     EXPECT_EQ(error, "text\n");
     EXPECT_EQ(relayed, "");

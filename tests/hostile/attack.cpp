@@ -65,7 +65,7 @@ private:
 
 namespace {
 
-constexpr int kGuests = 12;  // at once; with more connections the server closes the oldest one
+constexpr int kConnections = 12;  // at once; with more connections the server closes the oldest one
 constexpr std::uint64_t kPerFlood = 20'000;
 constexpr std::uint32_t kLoopback = 127U << 24U;
 
@@ -207,17 +207,18 @@ struct Attack {
         if (!socket.connect(from, port)) {
             return;
         }
-        Visit guest(socket, security);
+        Visit connection(socket, security);
         bool sent = false, welcome = false, refused = false;
         try {
             // Sends raw bytes, or a frame in place of the greeting, or a frame after the greeting.
-            const bool open = greeting == 0 || (guest.agree() && (greeting == 1 || guest.greet(frames.identity())));
+            const bool open =
+                greeting == 0 || (connection.agree() && (greeting == 1 || connection.greet(frames.identity())));
             welcome = greeting == 2 && open;
-            const std::uint64_t before = guest.heard();
-            sent = open && (greeting == 0 ? socket.send(frame) : guest.send(frame));
-            guest.end();
-            refused = guest.refused();
-            welcome = welcome || guest.heard() > before;
+            const std::uint64_t before = connection.heard();
+            sent = open && (greeting == 0 ? socket.send(frame) : connection.send(frame));
+            connection.end();
+            refused = connection.refused();
+            welcome = welcome || connection.heard() > before;
         } catch (const std::runtime_error&) {  // a TLS alert also counts as an answer
             welcome = true;
         }
@@ -234,12 +235,12 @@ struct Attack {
 Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const std::function<bool()>& goOn,
                   const LinkSecurity& security) {
     Attack attack{port, security, frames};
-    std::vector<std::thread> guests;
-    guests.reserve(kGuests);
+    std::vector<std::thread> connections;
+    connections.reserve(kConnections);
     std::atomic<std::uint64_t> left{count};
     std::atomic<bool> over{false};
-    for (int i = 0; i < kGuests; ++i) {
-        guests.emplace_back([&] {
+    for (int i = 0; i < kConnections; ++i) {
+        connections.emplace_back([&] {
             while (!over && left > 0) {
                 attack.visit();
                 const std::lock_guard lock(attack.mutex);
@@ -255,8 +256,8 @@ Done attackServer(std::uint16_t port, Frames& frames, std::uint64_t count, const
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
     over = true;
-    for (std::thread& guest : guests) {
-        guest.join();
+    for (std::thread& connection : connections) {
+        connection.join();
     }
     return attack.done;
 }
@@ -286,17 +287,17 @@ void FalseServer::serve() {
     while (!stopping_ && !done()) {
         pollfd waiting{listener_, POLLIN, 0};
         if (poll(&waiting, 1, 100) > 0) {
-            const int guest = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-            if (guest >= 0) {
+            const int descriptor = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+            if (descriptor >= 0) {
                 ++connections_;
-                talk(guest);
+                talk(descriptor);
             }
         }
     }
 }
 
-void FalseServer::talk(int guest) {
-    const Socket socket(guest);
+void FalseServer::talk(int descriptor) {
+    const Socket socket(descriptor);
     Visit visit(socket, security_);
     try {
         if (!visit.agree(true)) {

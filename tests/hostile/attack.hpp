@@ -46,7 +46,7 @@ public:
 
 private:
     void serve();
-    void talk(int guest);
+    void talk(int descriptor);
     void flood(const Socket& socket);
 
     Frames frames_;

@@ -23,13 +23,13 @@ using boost::system::error_code;
 /// A connection and the connection to its target. Used only on the link's thread.
 class ImpairedLink::Passage : public std::enable_shared_from_this<Passage> {
 public:
-    Passage(ImpairedLink& link, tcp::socket guest, std::uint32_t number)
+    Passage(ImpairedLink& link, tcp::socket client, std::uint32_t number)
         : link_(link),
-          guest_(std::move(guest)),
+          client_(std::move(client)),
           host_(link.io_),
           resolver_(link.io_),
-          there_(link, guest_, host_, 2 * number),
-          back_(link, host_, guest_, 2 * number + 1) {}
+          there_(link, client_, host_, 2 * number),
+          back_(link, host_, client_, 2 * number + 1) {}
 
     void open() {
         resolver_.async_resolve(
@@ -45,7 +45,7 @@ public:
                         return;
                     }
                     error_code ignored;
-                    self->guest_.set_option(tcp::no_delay(true), ignored);
+                    self->client_.set_option(tcp::no_delay(true), ignored);
                     self->host_.set_option(tcp::no_delay(true), ignored);
                     self->read(self->there_);
                     self->read(self->back_);
@@ -143,7 +143,7 @@ private:
     void reset() {
         error_code ignored;
         // Closing without lingering sends a reset instead of an end.
-        guest_.set_option(asio::socket_base::linger(true, 0), ignored);
+        client_.set_option(asio::socket_base::linger(true, 0), ignored);
         host_.set_option(asio::socket_base::linger(true, 0), ignored);
         close();
     }
@@ -152,12 +152,12 @@ private:
         error_code ignored;
         there_.timer.cancel(ignored);
         back_.timer.cancel(ignored);
-        guest_.close(ignored);
+        client_.close(ignored);
         host_.close(ignored);
     }
 
     ImpairedLink& link_;
-    tcp::socket guest_, host_;
+    tcp::socket client_, host_;
     tcp::resolver resolver_;
     Way there_, back_;
     std::uint64_t bytes_ = 0;
@@ -181,10 +181,10 @@ ImpairedLink::~ImpairedLink() {
 }
 
 void ImpairedLink::accept() {
-    acceptor_.async_accept([this](error_code error, tcp::socket guest) {
+    acceptor_.async_accept([this](error_code error, tcp::socket client) {
         if (!error) {
             const int number = connections_++;
-            std::make_shared<Passage>(*this, std::move(guest), static_cast<std::uint32_t>(number))->open();
+            std::make_shared<Passage>(*this, std::move(client), static_cast<std::uint32_t>(number))->open();
         }
         accept();
     });

@@ -19,7 +19,7 @@ namespace {
 struct Options {
     std::string to;
     std::uint16_t port = 0;
-    bool dieWithParent = false;
+    bool endWithParent = false;
     impaired_link::Impairment link;
 };
 
@@ -35,11 +35,11 @@ void addOptions(host::CommandLine& line, Options& options) {
     line.option("--reset-after", link.resetAfter, "number of bytes after which a connection is reset; 0: never");
     line.option("--resets", link.resets, "largest number of connections to reset").showDefault();
     line.option("--seed", link.seed, "seed of the random numbers").showDefault();
-    line.flag("--die-with-parent", options.dieWithParent, "end when the program that started this one ends");
+    line.flag("--die-with-parent", options.endWithParent, "end when the program that started this one ends");
 }
 
 int run(const Options& options) {
-    if (options.dieWithParent) {
+    if (options.endWithParent) {
         prctl(PR_SET_PDEATHSIG, SIGKILL);
     }
     const auto to = haptic_bridge::Address::parse(options.to, "--to");

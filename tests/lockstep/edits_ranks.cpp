@@ -64,7 +64,7 @@ std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const scene::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Replica terrain =
+    sand::Replica replica =
         kind == "tin"
             ? sand::Replica(scene, team.lend())
             : samples::replicaSwept(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
@@ -74,9 +74,9 @@ std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     for (std::uint64_t before = 0; before < (wild ? kWildEdits : kEdits); before += kTogether) {
         std::vector<std::uint64_t> hashes;
         for (std::uint64_t edit = before + 1; edit <= before + kTogether; ++edit) {
-            terrain.apply(wild ? samples::wildStep(edit, scene.rules, random)
+            replica.apply(wild ? samples::wildStep(edit, scene.rules, random)
                                : samples::randomStep(edit, scene.rules, random));
-            hashes.push_back(terrain.stateHash());
+            hashes.push_back(replica.stateHash());
             all = all * 31 + hashes.back();
         }
         const std::size_t differs = firstDifference(hashes);

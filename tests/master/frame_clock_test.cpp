@@ -69,7 +69,7 @@ TEST(FrameClock, KeepsItsGridWhenAFrameIsLate) {
 }
 
 TEST(FrameClock, OfAFastSessionWaitsOnlyWhileNoStepsAreTaken) {
-    FrameClock clock(100, master::Pace::fast);
+    FrameClock clock(100, haptic_bridge::Pace::fast);
     EXPECT_EQ(clock.begin(kSessionStart), 0);
     EXPECT_EQ(clock.next(), 0) << "the next frame is due at once";
     EXPECT_EQ(clock.begin(kSessionStart, true), 0) << "the first frame of a grid is due";
@@ -98,7 +98,7 @@ TEST(FrameClock, KnowsItsSwaps) {
 }
 
 TEST(FrameClock, CountsTheTimeOfAFastSessionInFrames) {
-    const FrameClock clock(120, master::Pace::fast);
+    const FrameClock clock(120, haptic_bridge::Pace::fast);
     EXPECT_EQ(clock.timeOf(0), 0);
     EXPECT_DOUBLE_EQ(clock.timeOf(30), 0.25);
     EXPECT_DOUBLE_EQ(clock.period(), 1.0 / 120);

@@ -28,7 +28,7 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
                            .stepsLeftOut = 9,
                            .links = 6,
                            .reconnects = 4,
-                           .stands = 1,
+                           .stops = 1,
                            .firstDifference = 250};
     some.refusedHere[1] = 8;
     some.refused[0] = 7;
@@ -58,17 +58,17 @@ TEST_F(IncidentFileTest, IsWrittenWhenTheDiskLetsItAndAtTheEnd) {
     master::IncidentFile file(folder_, false);
     std::filesystem::remove_all(folder_);  // acts like a full disk
     testing::internal::CaptureStderr();
-    file.keep({.stands = 1}, kSecond);
+    file.keep({.stops = 1}, kSecond);
     EXPECT_NE(testing::internal::GetCapturedStderr().find("incidents.json: cannot be written"), std::string::npos);
     testing::internal::CaptureStderr();
-    file.keep({.stands = 1}, kSecond * 3 / 2);
+    file.keep({.stops = 1}, kSecond * 3 / 2);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "it was told already";
     std::filesystem::create_directories(folder_);
-    file.keep({.stands = 1}, 2 * kSecond);
-    EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 1U);
-    file.keep({.stands = 2}, 2 * kSecond + 1);
-    file.keepLast({.stands = 2});
-    EXPECT_EQ(master::IncidentFile(folder_, true).before().stands, 2U);
+    file.keep({.stops = 1}, 2 * kSecond);
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().stops, 1U);
+    file.keep({.stops = 2}, 2 * kSecond + 1);
+    file.keepLast({.stops = 2});
+    EXPECT_EQ(master::IncidentFile(folder_, true).before().stops, 2U);
 }
 
 TEST_F(IncidentFileTest, BelievesNoNumberThatIsNoCount) {

@@ -23,9 +23,9 @@ protected:
     }
     /// Shows a frame with a step.
     void showFrame() {
-        const sand::Step step = samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_);
+        const sand::Step step = samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_);
         keeper_->keep({++frame_, wall_.stateHash(), {step}}, {});
-        terrain_.apply(step);
+        replica_.apply(step);
         wall_.apply(step);
     }
     void showFrames(int frames) {
@@ -61,7 +61,7 @@ protected:
     [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
 
     scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica terrain_{scene_};  // of the journal
+    sand::Replica replica_{scene_};  // of the journal
     sand::Replica wall_{scene_};     // of all ranks
     std::mt19937 random_{83};
     std::uint64_t frame_ = 0;
@@ -105,7 +105,7 @@ TEST_F(Check, TheJournalOutvotesAMajorityThatIsWrong) {
     const std::unique_ptr<sand::Replica> right = follow();
     ASSERT_NE(right, nullptr);
     EXPECT_EQ(right->stepNumber(), wall_.stepNumber()) << "the ranks take it in the frame that they show";
-    EXPECT_EQ(right->stateHash(), terrain_.stateHash());
+    EXPECT_EQ(right->stateHash(), replica_.stateHash());
     EXPECT_TRUE(check_.taking());
     wall_ = *right;
     check_.taken(frame_, shown());
@@ -127,7 +127,7 @@ TEST_F(Check, TheJournalOutvotesAMajorityThatIsWrong) {
         }
     }
     EXPECT_GT(doubted, 0);
-    EXPECT_EQ(master::restoreSand(journal(), replayed.stepNumber()).terrain.stateHash(), terrain_.stateHash());
+    EXPECT_EQ(master::restoreSand(journal(), replayed.stepNumber()).replica.stateHash(), replica_.stateHash());
 }
 
 // The session is killed between the wrong decision and the end of the check.
@@ -141,15 +141,15 @@ TEST_F(Check, AResumedSessionTakesTheSandOfTheJournalAndNamesTheMajority) {
     const auto resumed = master::readSession(journal(), "");
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->step, 35U);
-    EXPECT_EQ(resumed->hash, terrain_.stateHash());
+    EXPECT_EQ(resumed->hash, replica_.stateHash());
     ASSERT_TRUE(resumed->outvoted.has_value());
     EXPECT_EQ(resumed->outvoted->majority.sand.step, step);
-    check_.tellResumed(*resumed->outvoted);
+    check_.reportResumed(*resumed->outvoted);
     EXPECT_EQ(incidents_.outvoted, 1U);
     EXPECT_FALSE(check_.pending());
     // Once the session has resumed, the majority is no longer in doubt.
     keeper_.emplace(folder_, master::JournalOptions{.checkpointSeconds = 0}, scene_, &*resumed, "a kill", "test");
-    wall_ = terrain_;
+    wall_ = replica_;
     showFrames(3);
     keeper_->finish(shown());
     keeper_.reset();

@@ -47,7 +47,7 @@ private:
 };
 
 TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
-    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);
     for (const int ms :
          {1000, 10, 10, 14, 16, 10}) {  // the first frame has no frame before it; 16 is more than 1.5 · 10
@@ -64,7 +64,7 @@ TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
 }
 
 TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
-    Measurements measurements(3, 3, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 3, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);
     for (int frame = 1; frame <= 6; ++frame) {
         wall.show(frame <= 4 ? 400 * kMs : 10 * kMs);
@@ -76,7 +76,7 @@ TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
 
 TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
     using haptic_bridge::Held;
-    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);
     for (const Held held : {Held::pause, Held::no, Held::pause, Held::disk, Held::disk, Held::disk, Held::no}) {
         wall.hold(held);
@@ -87,7 +87,7 @@ TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
 }
 
 TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
-    Measurements measurements(3, 0, 0.01, master::Pace::fast);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::fast);
     Wall wall(measurements);
     wall.show(10 * kMs);
     wall.show(500 * kMs);
@@ -97,7 +97,7 @@ TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
 // The server read this step 12 ms before the swap on the master's clock. The server's clock is 7 s ahead.
 TEST(Measurements, FollowAStepFromTheHandToTheWall) {
     constexpr std::int64_t kAhead = 7'000 * kMs;
-    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);
     wall.show(10 * kMs);
     std::vector<TimedStep> steps(2);
@@ -115,21 +115,21 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
 }
 
 TEST(Measurements, SayHowManyFramesASecondHas) {
-    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     constexpr std::int64_t kStart = 1'000'000 * kMs;
-    measurements.sayProgress(1, 1, "", "no hand", false, kStart);
-    measurements.sayProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
+    measurements.printProgress(1, 1, "", "no hand", false, kStart);
+    measurements.printProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
     nlohmann::json status;
     measurements.describe(status, {});
     EXPECT_EQ(status["fps"], 0) << "less than a second has passed";
-    measurements.sayProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
+    measurements.printProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
     measurements.describe(status, {});
     EXPECT_NEAR(status["fps"].get<double>(), 60, 1e-9);
     EXPECT_EQ(status["slowest"], nullptr);
 }
 
 TEST(Measurements, TellTheWallWhatItsRanksCannotKnow) {
-    Measurements measurements(3, 0, 0.01, master::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);
     wall.show(10 * kMs);
     wall.show(11 * kMs);

@@ -232,9 +232,9 @@ TEST_F(Desk, KnowsTheShareOfTheForceFromBeforeARestart) {
 }
 
 TEST_F(Desk, WantsACaptureOfTheNextFrame) {
-    EXPECT_FALSE(desk_->wantsCapture());
+    EXPECT_FALSE(desk_->needsCapture());
     std::future<json> answer = send("capture");
-    obeyUntil([&] { return desk_->wantsCapture(); });
+    obeyUntil([&] { return desk_->needsCapture(); });
     desk_->close();  // no desk takes the line, and the connection ends
     EXPECT_TRUE(answer.get().is_discarded());
 }

@@ -82,7 +82,7 @@ master::Summary wholeSummary() {
 
 TEST_F(SchemaFiles, OfTheSummaryHasTheKeysThatItsTypesList) {
     master::Summary summary = wholeSummary();
-    master::tellRecovery({.failure = {"rank 1 died", 1, "SIGKILL", 0}}, folder_);
+    master::reportRecovery({.failure = {"rank 1 died", 1, "SIGKILL", 0}}, folder_);
     for (const std::string& recovery : master::recoveriesOf(folder_)) {
         Json line = Json::parse(recovery);
         line["seconds_to_link"] = 1;  // only the launcher writes it
@@ -104,7 +104,7 @@ TEST_F(SchemaFiles, OfTheSummaryRequiresEveryKeyThatIsAlwaysThere) {
     summary.haptic.reset();
     const Json haptic = host::jsonOf<Json>(summary)["haptic"];
     EXPECT_EQ(keysOf(haptic), schemaOf("summary")["properties"]["haptic"]["required"].get<Keys>());
-    EXPECT_EQ(keysOf(haptic["refused"]), (Keys{"guests", "servers"}));
+    EXPECT_EQ(keysOf(haptic["refused"]), (Keys{"connections", "servers"}));
 }
 
 TEST_F(SchemaFiles, OfStatusAndSummaryHaveEveryCounterOfIncidents) {

@@ -41,8 +41,8 @@ TEST_F(SessionFiles, APipeIsNotReadWhenASessionIsResumed) {
 TEST_F(SessionFiles, APipeIsNotWrittenToWhileFramesWait) {
     EXPECT_TRUE(support::endsByItself([this] {
         master::IncidentFile(folder_, false).keepLast({.divergences = 1});
-        master::tellRecovery({}, folder_);
-        master::tell({"a divergence"}, folder_ / "divergence.txt");
+        master::reportRecovery({}, folder_);
+        master::report({"a divergence"}, folder_ / "divergence.txt");
         EXPECT_FALSE(master::writeFailure({"hung", 1, "host", "tile", "message"}, folder_));
         EXPECT_THROW(master::writeSummary(master::Summary(), folder_ / "summary.json"), base::InputError);
         (void)master::beginDrills(drills_, 5, folder_);
@@ -63,13 +63,13 @@ TEST_F(Recoveries, ALineThatACrashHasTornIsEndedBeforeTheNext) {
         return all;
     };
     for (const std::uint64_t step : {7U, 8U}) {
-        master::tellRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = step}, folder_);
+        master::reportRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = step}, folder_);
     }
     const std::vector<std::string> whole = lines();
     ASSERT_EQ(whole.size(), 2U) << "a whole line needs no end";
     const std::string torn = whole[1].substr(0, whole[1].size() / 2);
     std::ofstream(file) << whole[0] << "\n" << torn;
-    master::tellRecovery({.failure = {"rank 3 died", 3, "SIGKILL", 0}, .step = 9}, folder_);
+    master::reportRecovery({.failure = {"rank 3 died", 3, "SIGKILL", 0}, .step = 9}, folder_);
     const std::vector<std::string> after = lines();
     ASSERT_EQ(after.size(), 3U);
     EXPECT_EQ(after[0], whole[0]);
@@ -80,7 +80,7 @@ TEST_F(Recoveries, ALineThatACrashHasTornIsEndedBeforeTheNext) {
 }
 
 TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
-    master::tellRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = 7, .frame = 8}, folder_);
+    master::reportRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = 7, .frame = 8}, folder_);
     std::string good;
     std::getline(std::ifstream(folder_ / "recoveries.jsonl"), good);
     const auto with = [&good](const std::string& key, const std::string& value) {

@@ -63,8 +63,8 @@ TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
                                       {"journal_state", "written"},
                                       {"checkpoints_failed", 0},
                                       {"restarts", 0}}));
-    master::tellRecovery({}, folder_);
-    master::tellRecovery({}, folder_);
+    master::reportRecovery({}, folder_);
+    master::reportRecovery({}, folder_);
     record.describe(status);
     EXPECT_EQ(status["restarts"], 2);
     EXPECT_EQ(record.summary().parts, 1U);
@@ -99,7 +99,7 @@ TEST_F(Record, TakesNoStepsForWhichTheDiskHasNoRoom) {
         EXPECT_FALSE(record.full()) << "the edit is refused, and the sand is not stopped";
         EXPECT_FALSE(record.hasRoom(8 << 20, sand_)) << "for sand that is larger than the disk";
         EXPECT_TRUE(record.full());
-        EXPECT_EQ(record.stands(), 1U);
+        EXPECT_EQ(record.stops(), 1U);
         nlohmann::json told;
         record.describe(told);
         EXPECT_EQ(told["journal_state"], "no_room");

@@ -46,8 +46,8 @@ walls::Wall wallOf(int count) {
 }
 
 std::string misplaced(const std::vector<lockstep::RankHost>& ranks, const std::vector<std::string>& places) {
-    std::vector<master::Place> parsed;
-    std::transform(places.begin(), places.end(), std::back_inserter(parsed), master::Place::parse);
+    std::vector<master::RankMachine> parsed;
+    std::transform(places.begin(), places.end(), std::back_inserter(parsed), master::RankMachine::parse);
     return test::refusalOf([&] { master::requirePlaces(ranks, wallOf(static_cast<int>(ranks.size()) - 1), parsed); });
 }
 
@@ -64,7 +64,7 @@ TEST(StartUp, RefusesARankOnAnotherMachineThanItsHost) {
 
 TEST(StartUp, RefusesAPlaceThatTheLauncherWouldNotWrite) {
     for (const std::string text : {"", "1", "1=a", "1=a=", "1==m", "=a=m", "0=a=m", "1,,2=a=m", "x=a=m", "1025=a=m"}) {
-        EXPECT_NE(test::refusalOf([&] { (void)master::Place::parse(text); }).find("--place: write RANK"),
+        EXPECT_NE(test::refusalOf([&] { (void)master::RankMachine::parse(text); }).find("--place: write RANK"),
                   std::string::npos)
             << text;
     }

@@ -41,11 +41,11 @@ bool writesGoldens() {
 const std::filesystem::path kFailures = failures();
 
 /// Writes the file "got". If there is a golden picture, also writes "want" and "diff".
-void leave(const std::string& name, const Image& got, const Image* want, const Image* difference) {
+void leave(const std::string& name, const Image& got, const Image* expected, const Image* difference) {
     std::filesystem::create_directories(kFailures);
     pictures::writePng(kFailures / (name + ".got.png"), got);
-    if (want != nullptr) {
-        pictures::writePng(kFailures / (name + ".want.png"), *want);
+    if (expected != nullptr) {
+        pictures::writePng(kFailures / (name + ".want.png"), *expected);
     }
     if (difference != nullptr) {
         pictures::writePng(kFailures / (name + ".diff.png"), *difference);
@@ -53,7 +53,7 @@ void leave(const std::string& name, const Image& got, const Image* want, const I
 }
 
 /// Returns the limit that the pixels of `where` exceed, or an empty text.
-std::string faultWithin(const std::string& what, const Mask& where, const Image& want, const Image& got,
+std::string faultWithin(const std::string& what, const Mask& where, const Image& expected, const Image& got,
                         const pictures::Comparison& comparison) {
     const auto pixels = static_cast<double>(std::count(where.begin(), where.end(), 1));
     Mask elsewhere = where;
@@ -63,7 +63,7 @@ std::string faultWithin(const std::string& what, const Mask& where, const Image&
         return fmt::format("of the {} pixels of {}, {} differ by more than {} levels, the most by {}", pixels, what,
                            bad, kLevels, comparison.largestDifference);
     }
-    const auto means = pictures::meanDifference(want, got, where);
+    const auto means = pictures::meanDifference(expected, got, where);
     if (std::ranges::any_of(means, [](double mean) { return std::abs(mean) > kMostMean; })) {
         return fmt::format("{} is brighter by {:.2f}, {:.2f}, {:.2f} levels in the mean of red, green, blue", what,
                            means[0], means[1], means[2]);
@@ -85,10 +85,10 @@ bool isBlank(const Image& image) {
     return colours.size() < 100;
 }
 
-std::string fault(const Image& want, const Image& got, const Mask& tool) {
-    const pictures::Comparison comparison = pictures::compare(want, got, kLevels);
-    const std::string whole = faultWithin("the picture", Mask(want.pixels(), 1), want, got, comparison);
-    return !whole.empty() || tool.empty() ? whole : faultWithin("the tool's part", tool, want, got, comparison);
+std::string fault(const Image& expected, const Image& got, const Mask& tool) {
+    const pictures::Comparison comparison = pictures::compare(expected, got, kLevels);
+    const std::string whole = faultWithin("the picture", Mask(expected.pixels(), 1), expected, got, comparison);
+    return !whole.empty() || tool.empty() ? whole : faultWithin("the tool's part", tool, expected, got, comparison);
 }
 
 void expect(const std::filesystem::path& folder, const std::string& name, const Image& got, const Mask& tool) {
@@ -107,18 +107,18 @@ void expect(const std::filesystem::path& folder, const std::string& name, const 
         ADD_FAILURE() << "no golden picture " << file << "; " << kFailures / (name + ".got.png") << ": " << kHow;
         return;
     }
-    const Image want = pictures::readPng(file);
-    EXPECT_FALSE(isBlank(want)) << file;
-    if (want.width != got.width || want.height != got.height) {
-        leave(name, got, &want, nullptr);
+    const Image expected = pictures::readPng(file);
+    EXPECT_FALSE(isBlank(expected)) << file;
+    if (expected.width != got.width || expected.height != got.height) {
+        leave(name, got, &expected, nullptr);
         ADD_FAILURE() << file << " has another size than the wall; " << kHow;
         return;
     }
-    EXPECT_GT(pictures::compare(want, pictures::shifted(got, 1, 0), kLevels).badShare, kMostBad)
+    EXPECT_GT(pictures::compare(expected, pictures::shifted(got, 1, 0), kLevels).badShare, kMostBad)
         << name << " shows too little to detect a shift of one pixel";
-    if (const std::string why = fault(want, got, tool); !why.empty()) {
-        const Image difference = pictures::differenceImage(want, pictures::compare(want, got, kLevels));
-        leave(name, got, &want, &difference);
+    if (const std::string why = fault(expected, got, tool); !why.empty()) {
+        const Image difference = pictures::differenceImage(expected, pictures::compare(expected, got, kLevels));
+        leave(name, got, &expected, &difference);
         ADD_FAILURE() << name << ": " << why << "; " << kFailures << " holds got, want and diff; " << kHow;
     }
 }

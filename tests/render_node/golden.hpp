@@ -22,10 +22,11 @@ inline constexpr int kMostPixels = 45000;
 /// Returns whether a picture is blank or broken. A blank picture has one colour, a broken one a few.
 [[nodiscard]] bool isBlank(const pictures::Image& image);
 
-/// Returns why `got` does not equal `want`, or an empty text if it does. Both have one size. `tool` marks the pixels
-/// that may show the tool or its shadow. These pixels are also compared separately, because they are too few to count
-/// in the whole picture. An empty mask means a picture without a tool.
-[[nodiscard]] std::string fault(const pictures::Image& want, const pictures::Image& got, const pictures::Mask& tool);
+/// Returns why `got` does not equal `expected`, or an empty text if it does. Both have one size. `tool` marks the
+/// pixels that may show the tool or its shadow. These pixels are also compared separately, because they are too few to
+/// count in the whole picture. An empty mask means a picture without a tool.
+[[nodiscard]] std::string fault(const pictures::Image& expected, const pictures::Image& got,
+                                const pictures::Mask& tool);
 
 /// Fails the test unless `got` equals the golden picture `name`.png of the folder. Writes got, want and diff. With
 /// SANDWALL_WRITE_GOLDENS=1, writes `got` as the golden picture and fails the test too.

@@ -57,10 +57,10 @@ protected:
     [[nodiscard]] WallPictures picturesOf(const walls::Wall& wall) const {
         render_node::ScenePainter view = sample::makeView(dug_, wall);
         WallPictures pictures{sample::wallPicture(view, wall), {}, {}, partOfTool(wall)};
-        view.setTool(dug_.terrain.probe(), false);
+        view.setTool(dug_.replica.probe(), false);
         pictures.hovering = sample::wallPicture(view, wall);
         render_node::ScenePainter bare(dug_.scene, sample::sceneToRoom(wall, dug_.scene));
-        bare.update(dug_.terrain.surface().data(), {});
+        bare.update(dug_.replica.surface().data(), {});
         pictures.without = sample::wallPicture(bare, wall);
         return pictures;
     }

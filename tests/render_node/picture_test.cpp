@@ -73,11 +73,11 @@ TEST_F(Picture, OfASandBedIsFullOfSandColouredGrains) {
 
 TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
     const scene::Scene scene = sample::flatScene(256, 256);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     ScenePainter view(scene, glm::dmat4(1));
     // The furrow runs north-south through the middle. The sun is in the west, so that the eastern slope faces it.
-    sample::drag(terrain, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
-    view.update(terrain.surface().data(), terrain.takeChange());
+    sample::drag(replica, scene, {1, 0.5, 0.01}, {1, 1.5, 0.01});
+    view.update(replica.surface().data(), replica.takeChange());
     const Pixels pixels = sample::draw(view, above_, target_);
     // 1.5 m over 400 pixels: 3.75 mm per pixel. The furrow is some 5 cm wide on either side of column 200.
     const double west = meanLuminance(pixels, 193, 130, 198, 170);
@@ -87,18 +87,18 @@ TEST_F(Picture, OfAFurrowHasASunnyAndAShadyBank) {
     EXPECT_LT(west, level - 25);
 }
 
-TEST_F(Picture, OfDamageAloneEqualsThatOfEverything) {
+TEST_F(Picture, OfTheChangeAloneEqualsThatOfEverything) {
     const scene::Scene scene = sample::duneScene(150);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     ScenePainter partial(scene, glm::dmat4(1));
-    (void)terrain.takeChange();
+    (void)replica.takeChange();
     const auto camera = sample::camera({1, -0.4, 1.1}, {1, 0.9, 0});
     const Pixels before = sample::draw(partial, camera, target_);
     for (const double x : {0.02, 0.5, 1.3}) {  // the first touches the rim
-        sample::drag(terrain, scene, {x, 0.4, 0.03}, {x + 0.3, 1.2, 0.02});
-        partial.update(terrain.surface().data(), terrain.takeChange());
+        sample::drag(replica, scene, {x, 0.4, 0.03}, {x + 0.3, 1.2, 0.02});
+        partial.update(replica.surface().data(), replica.takeChange());
         ScenePainter whole(scene, glm::dmat4(1));
-        whole.update(terrain.surface().data(), {});
+        whole.update(replica.surface().data(), {});
         const Pixels got = sample::draw(partial, camera, target_);
         EXPECT_TRUE(got == sample::draw(whole, camera, target_)) << "after the furrow at " << x;
         EXPECT_FALSE(got == before);

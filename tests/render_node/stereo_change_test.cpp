@@ -47,16 +47,16 @@ TEST(StereoChange, OfATileShowsWhatATileOfThatModeShows) {
     lockstep::ViewState view;
     std::copy_n(glm::value_ptr(wall.viewer.eye), 3, view.head.begin());
     view.eyeSeparation = 0.3;
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     walls::Wall shown = wall;
     render_node::TilePainter painter(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
     std::uint64_t frame = 0;
-    painter.paint(terrain, view, ++frame);
+    painter.paint(replica, view, ++frame);
     for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::right, Stereo::checkerboard, Stereo::left,
                                 Stereo::active, Stereo::anaglyphColour}) {
         shown = walls::shownOnItsOutputs(wall, stereo);
         painter.showAs(shown, shown.tiles[0]);
-        painter.paint(terrain, view, ++frame);
+        painter.paint(replica, view, ++frame);
         render_node::TilePainter fresh(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
         sand::Replica same(scene);
         fresh.paint(same, view, 1);

@@ -172,7 +172,7 @@ TEST_F(TiledWall, DrawsOnlyTheChunksEachTileSees) {
 
 TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
     scene_ = sample::flatScene(300, 300, 0.03);
-    sand::Replica terrain(scene_);
+    sand::Replica replica(scene_);
     ScenePainter lazy = makeView();
     std::vector<EyeTarget> targets;
     std::vector<render_node::EyeMemory> memories(kAcross * kDown);
@@ -183,10 +183,10 @@ TEST_F(TiledWall, LeavesOutTilesThatCannotHaveChangedAndMissesNone) {
             lazy.setTool(sample::probeAt(scene_, {0.2 + 0.09 * frame, 0.5 + 0.03 * frame, frame % 2 == 0 ? 0.05 : 0.5}),
                          false);
         } else if (frame != 3) {  // the tool rests in one frame
-            sample::drag(terrain, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
-            lazy.setTool(terrain.probe(), frame % 2 == 0);
+            sample::drag(replica, scene_, from, from + glm::dvec3(0.1, 0.15, 0));
+            lazy.setTool(replica.probe(), frame % 2 == 0);
         }
-        lazy.update(terrain.surface().data(), terrain.takeChange());
+        lazy.update(replica.surface().data(), replica.takeChange());
         const EyeTarget fresh(kTileWidth, kTileHeight);
         for (int tile = 0; tile < kAcross * kDown; ++tile) {
             if (frame == 0) {

@@ -172,15 +172,15 @@ protected:
         }
     }
     [[nodiscard]] sand::Replica dug(int steps = 4) const {
-        sand::Replica terrain(scene_);
+        sand::Replica replica(scene_);
         for (int i = 0; i < steps; ++i) {
-            dig(terrain);
+            dig(replica);
         }
-        return terrain;
+        return replica;
     }
-    void dig(sand::Replica& terrain) const {
-        const double along = 0.05 * static_cast<double>(terrain.stepNumber());
-        terrain.apply({0, terrain.stepNumber() + 1, true, {sample::probeAt(scene_, {0.8 + along, 0.9, 0.06})}});
+    void dig(sand::Replica& replica) const {
+        const double along = 0.05 * static_cast<double>(replica.stepNumber());
+        replica.apply({0, replica.stepNumber() + 1, true, {sample::probeAt(scene_, {0.8 + along, 0.9, 0.06})}});
     }
     [[nodiscard]] glm::dmat4 sceneToRoom() const { return sample::sceneToRoom(gridAndDesk(Stereo::mono), scene_); }
     [[nodiscard]] lockstep::ViewState view() const {
@@ -196,10 +196,10 @@ protected:
     }
     /// Returns the sand as an eye sees it through a tile.
     [[nodiscard]] Image drawn(std::size_t tile, Eye eye) const {
-        const sand::Replica terrain = dug();
+        const sand::Replica replica = dug();
         render_node::ScenePainter painter(scene_, sceneToRoom());
-        painter.update(terrain.surface().data(), {});
-        painter.setTool(terrain.probe(), true);
+        painter.update(replica.surface().data(), {});
+        painter.setTool(replica.probe(), true);
         const render_node::EyeTarget target(kEyePixels.x, kEyePixels.y);
         painter.draw(cameraByHand(tile, eye), target);
         return sample::pictureOf(target);
@@ -245,8 +245,8 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
         const walls::Wall wall = gridAndDesk(stereo);
         for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile) {
             TilePainter painter(wall, wall.tiles[tile], scene_, "host", sand::GridData{scene_.terrain});
-            sand::Replica terrain = dug();
-            painter.paint(terrain, view(), 1);
+            sand::Replica replica = dug();
+            painter.paint(replica, view(), 1);
             ASSERT_EQ(painter.outputs().size(), stereo == Stereo::passive ? 2U : 1U) << name;
             expectEachEyeItsPicture(stereo, tile, painter.outputs());
         }
@@ -307,7 +307,7 @@ TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
         wall.tiles[0].pixels = {480, 360};
         ASSERT_FALSE(render_node::helpLayout(wall.tiles[0].pixels, render_node::pointerHelp()).places.empty());
         TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
-        sand::Replica terrain = dug(0);
+        sand::Replica replica = dug(0);
         std::vector<Image> before;
         int inPart = 0, still = 0;
         for (std::uint64_t frame = 1; frame <= 24; ++frame) {
@@ -316,9 +316,9 @@ TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
             state.layers.set(lockstep::Overlay::statistics, frame >= 9 && frame < 12);
             state.pattern = static_cast<std::uint8_t>(frame == 16 ? lockstep::Pattern::grid : lockstep::Pattern::none);
             if (frame % 4 != 0) {
-                dig(terrain);
+                dig(replica);
             }
-            painter.paint(terrain, state, frame);
+            painter.paint(replica, state, frame);
             std::vector<Image> now;
             for (const OutputPicture& output : painter.outputs()) {
                 now.push_back(sample::pictureOf(*output.picture));

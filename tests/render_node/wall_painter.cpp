@@ -128,8 +128,8 @@ glm::dmat4 sceneToRoom(const walls::Wall& wall, const scene::Scene& scene) {
 
 render_node::ScenePainter makeView(const DugScene& dug, const walls::Wall& wall) {
     render_node::ScenePainter view(dug.scene, sceneToRoom(wall, dug.scene));
-    view.update(dug.terrain.surface().data(), {});
-    view.setTool(dug.terrain.probe(), true);
+    view.update(dug.replica.surface().data(), {});
+    view.setTool(dug.replica.probe(), true);
     return view;
 }
 
@@ -189,9 +189,9 @@ Image wallPicture(render_node::ScenePainter& sand, const walls::Wall& wall) {
 
 Ball ballOf(const DugScene& dug) {
     const double cell = dug.scene.terrain.cellSize();
-    const sand::ProbePoint probe = dug.terrain.probe();
+    const sand::ProbePoint probe = dug.replica.probe();
     const std::vector<double>& sun = dug.scene.look.sunDirection;
-    const sand::HeightField* field = &samples::fieldOf(dug.terrain);
+    const sand::HeightField* field = &samples::fieldOf(dug.replica);
     return {glm::dvec3(probe.x, probe.y, probe.z) * (cell / sand::kProbePerCell),
             dug.scene.rules.tuning.tool.radius * (cell / sand::kProbePerCell),
             {sun[0], sun[1], sun[2]},

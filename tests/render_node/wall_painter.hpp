@@ -24,11 +24,11 @@ using pictures::Image;
 /// Dunes with a furrow through them. The tool is still in the sand.
 struct DugScene {
     scene::Scene scene = ballInDunes();
-    sand::Replica terrain{scene};
+    sand::Replica replica{scene};
 
     DugScene() {
-        drag(terrain, scene, {0.4, 0.4, 0.07}, {1.5, 0.6, 0.06});
-        drag(terrain, scene, {1.5, 0.6, 0.06}, {1.3, 1.5, 0.09});
+        drag(replica, scene, {0.4, 0.4, 0.07}, {1.5, 0.6, 0.06});
+        drag(replica, scene, {1.5, 0.6, 0.06}, {1.3, 1.5, 0.09});
     }
 
 private:

@@ -38,21 +38,21 @@ constexpr int kColumns = 100, kRows = 70;  // three by two whole tiles of 32 cel
 Replica restingSand() {
     scene::Scene scene = samples::flatScene(kColumns, kRows);
     scene.rules.tuning.startThreshold = scene.rules.tuning.threshold + 1000;
-    Replica terrain(scene);
-    terrain.apply({1, 1, false, {}});
-    return terrain;
+    Replica replica(scene);
+    replica.apply({1, 1, false, {}});
+    return replica;
 }
 
 /// Returns the number of tiles whose hashes differ from those of `right` after one round of the audit.
-int spoiltTiles(Replica terrain, const Replica& right, int tile) {
-    const std::uint64_t before = terrain.stateHash();
-    terrain.audit(terrain.hashTiles().tileCount());
-    EXPECT_NE(terrain.stateHash(), before) << "tile " << tile;
-    EXPECT_NE(terrain.hashTiles().tileHashes()[static_cast<std::size_t>(tile)],
+int spoiltTiles(Replica replica, const Replica& right, int tile) {
+    const std::uint64_t before = replica.stateHash();
+    replica.audit(replica.hashTiles().tileCount());
+    EXPECT_NE(replica.stateHash(), before) << "tile " << tile;
+    EXPECT_NE(replica.hashTiles().tileHashes()[static_cast<std::size_t>(tile)],
               right.hashTiles().tileHashes()[static_cast<std::size_t>(tile)]);
     int spoilt = 0;
     for (std::size_t i = 0; i < right.hashTiles().tileHashes().size(); ++i) {
-        spoilt += terrain.hashTiles().tileHashes()[i] != right.hashTiles().tileHashes()[i] ? 1 : 0;
+        spoilt += replica.hashTiles().tileHashes()[i] != right.hashTiles().tileHashes()[i] ? 1 : 0;
     }
     return spoilt;
 }
@@ -73,10 +73,10 @@ void expectFoundIn(const IsMeant& isMeant, const Corrupt& corrupt) {
             continue;
         }
         for (const auto& [column, row] : {std::pair(cells.x0, cells.y0), std::pair(cells.x1 - 1, cells.y1 - 1)}) {
-            Replica terrain(restingSand());
-            (void)terrain.stateHash();
-            corrupt(terrain, column, row);
-            EXPECT_EQ(spoiltTiles(std::move(terrain), right, tile), 1) << "tile " << tile;
+            Replica replica(restingSand());
+            (void)replica.stateHash();
+            corrupt(replica, column, row);
+            EXPECT_EQ(spoiltTiles(std::move(replica), right, tile), 1) << "tile " << tile;
         }
     }
 }
@@ -86,29 +86,29 @@ void expectFound(const Corrupt& corrupt) {
     expectFoundIn([](const sand::CellRect&) { return true; }, corrupt);
 }
 
-Erosion& memoryOf(Replica& terrain) { return const_cast<Erosion&>(samples::erosionOf(terrain)); }
+Erosion& memoryOf(Replica& replica) { return const_cast<Erosion&>(samples::erosionOf(replica)); }
 
 TEST(Audit, FindsAFlippedBitOfAHeightInEveryTile) {
-    expectFound([](Replica& terrain, int column, int row) { terrain.corrupt(column, row, 0); });
+    expectFound([](Replica& replica, int column, int row) { replica.corrupt(column, row, 0); });
 }
 
 TEST(Audit, FindsAFluxToTheEastInEveryTile) {
-    expectFound([](Replica& terrain, int column, int row) { eastOf(memoryOf(terrain)).row(row)[column] = 1; });
+    expectFound([](Replica& replica, int column, int row) { eastOf(memoryOf(replica)).row(row)[column] = 1; });
 }
 
 TEST(Audit, FindsAFluxToTheNorthInEveryTile) {
-    expectFound([](Replica& terrain, int column, int row) { northOf(memoryOf(terrain)).row(row)[column] = 1; });
+    expectFound([](Replica& replica, int column, int row) { northOf(memoryOf(replica)).row(row)[column] = 1; });
 }
 
 // A cell at the western or southern rim gains what such a flux brings over the rim.
 TEST(Audit, FindsAFluxOverTheWesternRimInEveryTileThere) {
     expectFoundIn([](const sand::CellRect& cells) { return cells.x0 == 0; },
-                  [](Replica& terrain, int, int row) { eastOf(memoryOf(terrain)).row(row)[-1] = 1; });
+                  [](Replica& replica, int, int row) { eastOf(memoryOf(replica)).row(row)[-1] = 1; });
 }
 
 TEST(Audit, FindsAFluxOverTheSouthernRimInEveryTileThere) {
     expectFoundIn([](const sand::CellRect& cells) { return cells.y0 == 0; },
-                  [](Replica& terrain, int column, int) { northOf(memoryOf(terrain)).row(-1)[column] = 1; });
+                  [](Replica& replica, int column, int) { northOf(memoryOf(replica)).row(-1)[column] = 1; });
 }
 
 // An audit must not take sand that falls over an open rim for corrupted memory.
@@ -137,20 +137,20 @@ TEST(Audit, LeavesSandThatFallsOverAnOpenRim) {
 
 // Sand in a cell with such a mark would slide although it is not steep enough to start.
 TEST(Audit, FindsAMarkOfTheBandInEveryTile) {
-    expectFound([](Replica& terrain, int column, int row) { slidingOf(memoryOf(terrain))->row(row)[column] = 1; });
+    expectFound([](Replica& replica, int column, int row) { slidingOf(memoryOf(replica))->row(row)[column] = 1; });
 }
 
 TEST(Audit, TakesTheTilesInTurn) {
-    Replica terrain = restingSand();
-    (void)terrain.stateHash();
-    terrain.audit(5);
-    const std::uint64_t before = terrain.stateHash();
-    const sand::CellRect cells = terrain.hashTiles().cellsOf(4);
-    terrain.corrupt(cells.x0, cells.y0);
-    terrain.audit(11);  // seven up to the last tile, and four from the first
-    EXPECT_EQ(terrain.stateHash(), before) << "the fifth tile has been audited";
-    terrain.audit(1);
-    EXPECT_NE(terrain.stateHash(), before);
+    Replica replica = restingSand();
+    (void)replica.stateHash();
+    replica.audit(5);
+    const std::uint64_t before = replica.stateHash();
+    const sand::CellRect cells = replica.hashTiles().cellsOf(4);
+    replica.corrupt(cells.x0, cells.y0);
+    replica.audit(11);  // seven up to the last tile, and four from the first
+    EXPECT_EQ(replica.stateHash(), before) << "the fifth tile has been audited";
+    replica.audit(1);
+    EXPECT_NE(replica.stateHash(), before);
 }
 
 }  // namespace

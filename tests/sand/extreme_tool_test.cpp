@@ -35,18 +35,18 @@ scene::Scene sceneWith(double toolCells, Rim rim) {
 TEST(ExtremeTool, OutsideTheFieldItTouchesNothing) {
     for (const Rim rim : kRims) {
         const scene::Scene scene = sceneWith(4, rim);
-        Replica terrain(scene);
+        Replica replica(scene);
         std::uint64_t number = 0;
         for (const ProbePoint point :
              {probeAt(-4, 16, -1), probeAt(49, 16, -1), probeAt(20, -4, -1), probeAt(20, 37, -1), probeAt(20, 16, 4),
               ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, 0},
               ProbePoint{-sand::kMaxProbe, sand::kMaxProbe, -sand::kMaxProbe}}) {
-            terrain.apply({1, ++number, false, {point}});
-            terrain.apply({1, ++number, true, {point}});
-            EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "at " << point.x << ", " << point.y;
-            terrain.apply({1, ++number, false, {}});
+            replica.apply({1, ++number, false, {point}});
+            replica.apply({1, ++number, true, {point}});
+            EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain)) << "at " << point.x << ", " << point.y;
+            replica.apply({1, ++number, false, {}});
         }
-        EXPECT_EQ(terrain.outflow(), 0);
+        EXPECT_EQ(replica.outflow(), 0);
     }
 }
 
@@ -56,14 +56,14 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
             for (const ProbePoint point : {probeAt(0, 0, -1), probeAt(45, 33, -1), probeAt(0, 33, 0), probeAt(45, 0, 0),
                                            probeAt(22, 0, -2), probeAt(0, 16, -2), probeAt(44.5, 32.5, 0)}) {
                 const scene::Scene scene = sceneWith(radius, rim);
-                Replica terrain(scene);
+                Replica replica(scene);
                 for (std::uint64_t i = 1; i <= 200; ++i) {
-                    terrain.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
-                    ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), 0)
+                    replica.apply({1, i, i < 100, i == 1 ? std::vector{point} : std::vector<ProbePoint>{}});
+                    ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), 0)
                         << "radius " << radius << " at " << point.x << ", " << point.y << " in step " << i;
                 }
-                EXPECT_EQ(terrain.outflow() == 0,
-                          rim == Rim::closed || sameHeights(samples::fieldOf(terrain), scene.terrain));
+                EXPECT_EQ(replica.outflow() == 0,
+                          rim == Rim::closed || sameHeights(samples::fieldOf(replica), scene.terrain));
             }
         }
     }
@@ -71,9 +71,9 @@ TEST(ExtremeTool, AtACornerAndOnTheRimsItLosesNothing) {
 
 TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
     const scene::Scene scene = sceneWith(2048, Rim::closed);
-    Replica terrain(scene);
-    terrain.apply({1, 1, true, {probeAt(22, 16, 2000)}});
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "it passes through the sand";
+    Replica replica(scene);
+    replica.apply({1, 1, true, {probeAt(22, 16, 2000)}});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain)) << "it passes through the sand";
     Replica open(sceneWith(2048, Rim::open));
     open.apply({1, 1, true, {probeAt(22, 16, 2000)}});
     EXPECT_GT(open.outflow(), 0) << "over an open rim it clears the table";
@@ -82,55 +82,55 @@ TEST(ExtremeTool, LargerThanTheFieldItHasNowhereToPutTheSand) {
 
 TEST(ExtremeTool, OfNoRadiusItDigsNothing) {
     const scene::Scene scene = sceneWith(0, Rim::closed);
-    Replica terrain(scene);
-    terrain.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    Replica replica(scene);
+    replica.apply({1, 1, true, {probeAt(5.5, 5.5, -3), probeAt(40, 30, -3)}});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
 }
 
 TEST(ExtremeTool, ThePapersOf256HundredthsDigsAFurrow) {
-    Replica terrain(sceneWith(2.56, Rim::closed));
+    Replica replica(sceneWith(2.56, Rim::closed));
     for (std::uint64_t i = 1; i <= 30; ++i) {
-        terrain.apply({1, i, true, {probeAt(8 + static_cast<double>(i), 16.5, 1)}});
+        replica.apply({1, i, true, {probeAt(8 + static_cast<double>(i), 16.5, 1)}});
     }
-    EXPECT_LT(samples::fieldOf(terrain).height(20, 16), -sand::kUnitsPerCell / 2);
-    EXPECT_GT(samples::extremesOf(samples::fieldOf(terrain)).highest, sand::kUnitsPerCell / 4);
-    EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
+    EXPECT_LT(samples::fieldOf(replica).height(20, 16), -sand::kUnitsPerCell / 2);
+    EXPECT_GT(samples::extremesOf(samples::fieldOf(replica)).highest, sand::kUnitsPerCell / 4);
+    EXPECT_EQ(samples::fieldOf(replica).volume(), 0);
 }
 
 TEST(ExtremeTool, TeleportingItPloughsAllTheWay) {
     for (const Rim rim : kRims) {
-        Replica terrain(sceneWith(2.56, rim));
-        terrain.apply({1, 1, true, {probeAt(4, 16.5, 1)}});
-        terrain.apply({1, 2, true, {probeAt(40, 16.5, 1)}});
+        Replica replica(sceneWith(2.56, rim));
+        replica.apply({1, 1, true, {probeAt(4, 16.5, 1)}});
+        replica.apply({1, 2, true, {probeAt(40, 16.5, 1)}});
         for (const int column : {10, 20, 30}) {
-            EXPECT_LT(samples::fieldOf(terrain).height(column, 16), 0) << "no furrow at column " << column;
+            EXPECT_LT(samples::fieldOf(replica).height(column, 16), 0) << "no furrow at column " << column;
         }
         // From one end of the reachable range to the other, and back.
-        terrain.apply({1, 3, true, {{sand::kMaxProbe, sand::kMaxProbe, 0}, {-sand::kMaxProbe, -sand::kMaxProbe, 0}}});
-        terrain.apply({1, 4, true, {{sand::kMaxProbe, 16 * kProbePerCell, -sand::kMaxProbe}}});
-        EXPECT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), 0);
+        replica.apply({1, 3, true, {{sand::kMaxProbe, sand::kMaxProbe, 0}, {-sand::kMaxProbe, -sand::kMaxProbe, 0}}});
+        replica.apply({1, 4, true, {{sand::kMaxProbe, 16 * kProbePerCell, -sand::kMaxProbe}}});
+        EXPECT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), 0);
     }
 }
 
 TEST(ExtremeTool, HeldStillItLetsTheSweepsStop) {
     for (const double radius : {2.56, 8.0}) {
         for (const double height : {0.0, 1.0, -3.0}) {
-            Replica terrain(sceneWith(radius, Rim::closed));
+            Replica replica(sceneWith(radius, Rim::closed));
             std::uint64_t number = 0;
-            terrain.apply({1, ++number, true, {probeAt(22.3, 16.1, height)}});
-            for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
-                terrain.apply({1, ++number, true, {}});
+            replica.apply({1, ++number, true, {probeAt(22.3, 16.1, height)}});
+            for (int i = 0; i < 2000 && !replica.settled(); ++i) {
+                replica.apply({1, ++number, true, {}});
             }
-            ASSERT_TRUE(terrain.settled()) << "a ball held still must not move sand forever";
-            const std::int64_t sweeps = samples::erosionOf(terrain).sweepsDone();
-            (void)terrain.stateHash();
-            const auto tiles = terrain.hashTiles().tileHashes();
+            ASSERT_TRUE(replica.settled()) << "a ball held still must not move sand forever";
+            const std::int64_t sweeps = samples::erosionOf(replica).sweepsDone();
+            (void)replica.stateHash();
+            const auto tiles = replica.hashTiles().tileHashes();
             for (int i = 0; i < 100; ++i) {
-                terrain.apply({1, ++number, true, {}});
-                (void)terrain.stateHash();
-                ASSERT_EQ(terrain.hashTiles().tileHashes(), tiles) << "step " << number;
+                replica.apply({1, ++number, true, {}});
+                (void)replica.stateHash();
+                ASSERT_EQ(replica.hashTiles().tileHashes(), tiles) << "step " << number;
             }
-            EXPECT_EQ(samples::erosionOf(terrain).sweepsDone(), sweeps);
+            EXPECT_EQ(samples::erosionOf(replica).sweepsDone(), sweeps);
         }
     }
 }
@@ -145,13 +145,13 @@ TEST(ExtremeTool, DiggingToBedrockStopsThere) {
     }
     scene.ground = ground;
     scene.rules.ground = ground->digest();
-    Replica terrain(scene);
+    Replica replica(scene);
     for (std::uint64_t i = 1; i <= 60; ++i) {
-        terrain.apply({1, i, true, {probeAt(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
-        ASSERT_GE(samples::extremesOf(samples::fieldOf(terrain)).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
-        ASSERT_EQ(samples::fieldOf(terrain).volume(), 0);
+        replica.apply({1, i, true, {probeAt(10 + 0.4 * static_cast<double>(i), 16.5, 2)}});
+        ASSERT_GE(samples::extremesOf(samples::fieldOf(replica)).lowest, -2 * sand::kUnitsPerCell) << "step " << i;
+        ASSERT_EQ(samples::fieldOf(replica).volume(), 0);
     }
-    EXPECT_EQ(samples::fieldOf(terrain).height(34, 16), -2 * sand::kUnitsPerCell) << "bare rock under the tool";
+    EXPECT_EQ(samples::fieldOf(replica).height(34, 16), -2 * sand::kUnitsPerCell) << "bare rock under the tool";
 }
 
 }  // namespace

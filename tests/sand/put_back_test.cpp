@@ -24,12 +24,12 @@ sand::ProbePoint cellAt(int column, int row, int height /* [cell] */) {
 /// Numbers the steps of one replica and applies them.
 class Hand {
 public:
-    explicit Hand(Replica& terrain) : terrain_(terrain) {}
+    explicit Hand(Replica& replica) : replica_(replica) {}
 
-    void hover(const Edit& edit = Edit::none) { terrain_.apply({1, terrain_.stepNumber() + 1, false, {}, edit}); }
-    void lift() { terrain_.apply({1, terrain_.stepNumber() + 1, false, {cellAt(32, 32, 30)}, Edit::none}); }
+    void hover(const Edit& edit = Edit::none) { replica_.apply({1, replica_.stepNumber() + 1, false, {}, edit}); }
+    void lift() { replica_.apply({1, replica_.stepNumber() + 1, false, {cellAt(32, 32, 30)}, Edit::none}); }
     void dig(int column, int row, const Edit& edit = Edit::none) {
-        terrain_.apply({1, terrain_.stepNumber() + 1, true, {cellAt(column, row, 0)}, edit});
+        replica_.apply({1, replica_.stepNumber() + 1, true, {cellAt(column, row, 0)}, edit});
     }
     void stroke(int row) {
         for (int column = 16; column < 48; ++column) {
@@ -39,7 +39,7 @@ public:
     }
 
 private:
-    Replica& terrain_;
+    Replica& replica_;
 };
 
 /// Sand that slides under an open rim: heights, outflow and inertia can all go wrong.
@@ -52,37 +52,37 @@ scene::Scene slidingScene() {
 
 TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     const scene::Scene scene = samples::flatScene(64, 64);
-    Replica terrain(scene);
-    Hand hand(terrain);
+    Replica replica(scene);
+    Hand hand(replica);
     hand.stroke(20);
-    const sand::HeightField first = samples::fieldOf(terrain);
+    const sand::HeightField first = samples::fieldOf(replica);
     hand.stroke(40);
-    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), first))
+    ASSERT_FALSE(sameHeights(samples::fieldOf(replica), first))
         << "the second stroke must move sand, or the test proves nothing";
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), first));
-    EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << "only the last stroke";
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), first));
+    EXPECT_FALSE(sameHeights(samples::fieldOf(replica), scene.terrain)) << "only the last stroke";
 }
 
 // The whole state is restored, except step number and tool. Equal steps therefore have equal results afterwards.
 TEST(Undo, GoesOnAsIfTheStrokeHadNotBeen) {
-    Replica terrain(slidingScene());
-    Hand hand(terrain);
+    Replica replica(slidingScene());
+    Hand hand(replica);
     for (int i = 0; i < 5; ++i) {
         hand.hover();
     }
-    Replica other(terrain);
+    Replica other(replica);
     hand.stroke(32);
     hand.hover(Edit::undo);
-    ASSERT_FALSE(terrain.settled());
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other)));
-    EXPECT_EQ(terrain.outflow(), other.outflow());
+    ASSERT_FALSE(replica.settled());
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(other)));
+    EXPECT_EQ(replica.outflow(), other.outflow());
     Hand untouched(other);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other))) << i << " steps later";
-        ASSERT_EQ(terrain.outflow(), other.outflow());
+        ASSERT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(other))) << i << " steps later";
+        ASSERT_EQ(replica.outflow(), other.outflow());
     }
     EXPECT_GT(other.outflow(), 0) << "no sand fell over the rim, so that this test proves nothing";
 }
@@ -105,90 +105,90 @@ TEST(Undo, RestoresTheHashOfBeforeTheStroke) {
 }
 
 TEST(Undo, OfAnUndoDoesNothingMore) {
-    Replica terrain(samples::flatScene(64, 64));
-    Hand hand(terrain);
-    EXPECT_FALSE(terrain.canUndo());
+    Replica replica(samples::flatScene(64, 64));
+    Hand hand(replica);
+    EXPECT_FALSE(replica.canUndo());
     hand.hover(Edit::undo);
     hand.stroke(20);
     hand.stroke(40);
-    EXPECT_TRUE(terrain.canUndo());
+    EXPECT_TRUE(replica.canUndo());
     hand.hover(Edit::undo);
-    EXPECT_FALSE(terrain.canUndo());
-    Replica other(terrain);
+    EXPECT_FALSE(replica.canUndo());
+    Replica other(replica);
     hand.hover(Edit::undo);
     Hand(other).hover();
-    EXPECT_EQ(terrain.stateHash(), other.stateHash()) << "this edit must act as an ordinary step";
+    EXPECT_EQ(replica.stateHash(), other.stateHash()) << "this edit must act as an ordinary step";
 }
 
 TEST(Undo, TakesBackWhatSettledSince) {
-    Replica terrain(slidingScene());
-    Hand hand(terrain);
+    Replica replica(slidingScene());
+    Hand hand(replica);
     hand.hover();
-    const sand::HeightField before = samples::fieldOf(terrain);
+    const sand::HeightField before = samples::fieldOf(replica);
     hand.dig(32, 32);
     hand.lift();
     hand.hover(Edit::settle);
-    ASSERT_TRUE(terrain.settled());
+    ASSERT_TRUE(replica.settled());
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), before));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), before));
 }
 
 // The operator acts during the stroke. The stroke then begins where the undo left the sand.
 TEST(Undo, InMidStrokeLetsTheStrokeBeginAnew) {
     const scene::Scene scene = samples::flatScene(64, 64);
-    Replica terrain(scene);
-    Hand hand(terrain);
+    Replica replica(scene);
+    Hand hand(replica);
     hand.dig(20, 32);
     hand.dig(24, 32, Edit::undo);
     Replica pressed(scene);
     Hand(pressed).dig(24, 32, Edit::reset);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(pressed))) << "the tool presses once";
-    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(pressed))) << "the tool presses once";
+    ASSERT_FALSE(sameHeights(samples::fieldOf(replica), scene.terrain));
     hand.dig(28, 32);
     hand.lift();
-    ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    ASSERT_FALSE(sameHeights(samples::fieldOf(replica), scene.terrain));
     hand.hover(Edit::undo);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
 }
 
 TEST(Reset, RestoresTheSceneAndForgetsTheStroke) {
     const scene::Scene scene = slidingScene();
-    Replica terrain(scene);
-    Hand hand(terrain);
+    Replica replica(scene);
+    Hand hand(replica);
     hand.stroke(20);
-    ASSERT_NE(terrain.outflow(), 0);
+    ASSERT_NE(replica.outflow(), 0);
     hand.hover(Edit::reset);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
-    EXPECT_EQ(terrain.outflow(), 0);
-    EXPECT_FALSE(terrain.canUndo());
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
+    EXPECT_EQ(replica.outflow(), 0);
+    EXPECT_FALSE(replica.canUndo());
     Replica fresh(scene);
     Hand untouched(fresh);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(fresh))) << i << " steps later";
+        ASSERT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(fresh))) << i << " steps later";
     }
 }
 
 TEST(Load, PutsBackHeightsOutflowAndInertiaAndForgetsTheStroke) {
-    Replica terrain(slidingScene());
-    Hand hand(terrain);
+    Replica replica(slidingScene());
+    Hand hand(replica);
     for (int i = 0; i < 5; ++i) {
         hand.hover();
     }
-    ASSERT_FALSE(terrain.settled()) << "sand at rest has no inertia to lose";
-    Replica other(terrain);
-    const Edit load = Edit::loaded(terrain.copySand()->encode());
+    ASSERT_FALSE(replica.settled()) << "sand at rest has no inertia to lose";
+    Replica other(replica);
+    const Edit load = Edit::loaded(replica.copySand()->encode());
     hand.stroke(32);
     hand.hover(load);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other)));
-    EXPECT_FALSE(terrain.canUndo());
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(other)));
+    EXPECT_FALSE(replica.canUndo());
     Hand untouched(other);
     for (int i = 0; i < 30; ++i) {
         hand.hover();
         untouched.hover();
-        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), samples::fieldOf(other))) << i << " steps later";
-        ASSERT_EQ(terrain.outflow(), other.outflow());
+        ASSERT_TRUE(sameHeights(samples::fieldOf(replica), samples::fieldOf(other))) << i << " steps later";
+        ASSERT_EQ(replica.outflow(), other.outflow());
     }
 }
 
@@ -198,27 +198,27 @@ TEST(Load, OfBytesThatAreNoSandOfThisFieldIsAStepLikeAnyOther) {
     longer.push_back(0);
     const base::Bytes larger = Replica(samples::flatScene(65, 64)).copySand()->encode();
     for (const base::Bytes& bytes : {base::Bytes(), base::Bytes(whole.begin(), whole.end() - 1), longer, larger}) {
-        Replica terrain(slidingScene());
-        Replica other(terrain);
-        Hand(terrain).hover(Edit::loaded(bytes));
+        Replica replica(slidingScene());
+        Replica other(replica);
+        Hand(replica).hover(Edit::loaded(bytes));
         Hand(other).hover();
-        EXPECT_EQ(terrain.stateHash(), other.stateHash());
+        EXPECT_EQ(replica.stateHash(), other.stateHash());
     }
 }
 
 TEST(Undo, KeepsWhatTheOperatorHasChosen) {
     const scene::Scene scene = samples::flatScene(64, 64);
-    Replica terrain(scene);
-    Hand hand(terrain);
+    Replica replica(scene);
+    Hand hand(replica);
     hand.stroke(20);
     sand::Tuning tuning = scene.rules.tuning;
     tuning.tool.radius *= 2;
     hand.hover(Edit::tuned(tuning));
     hand.hover(Edit::undo);
-    EXPECT_EQ(terrain.rules().tuning, tuning);
+    EXPECT_EQ(replica.rules().tuning, tuning);
     hand.hover(Edit::reset);
-    EXPECT_EQ(terrain.rules().tuning, tuning);
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
+    EXPECT_EQ(replica.rules().tuning, tuning);
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
 }
 
 /// Random strokes with occasional edits of every kind.
@@ -242,25 +242,25 @@ TEST(Edits, VolumeIsExactAndTheHashIsTheWholeFields) {
         scene.rules.rim = rim;
         std::mt19937 random(53);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
-        Replica terrain(scene);
+        Replica replica(scene);
         for (std::uint64_t i = 1; i <= 200; ++i) {
-            const sand::HeightField before = samples::fieldOf(terrain);
-            (void)terrain.takeChange();
-            terrain.apply(editedStep(i, scene.rules, random));
-            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
-            const std::vector<sand::CellRect> changed = samples::takeCells(terrain);
+            const sand::HeightField before = samples::fieldOf(replica);
+            (void)replica.takeChange();
+            replica.apply(editedStep(i, scene.rules, random));
+            ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), scene.terrain.volume()) << "step " << i;
+            const std::vector<sand::CellRect> changed = samples::takeCells(replica);
             for (int y = 0; y < 33; ++y) {
                 for (int x = 0; x < 45; ++x) {
                     const bool listed = std::ranges::any_of(changed, [x, y](const sand::CellRect& cells) {
                         return x >= cells.x0 && x < cells.x1 && y >= cells.y0 && y < cells.y1;
                     });
-                    ASSERT_TRUE(listed || before.height(x, y) == samples::fieldOf(terrain).height(x, y))
+                    ASSERT_TRUE(listed || before.height(x, y) == samples::fieldOf(replica).height(x, y))
                         << x << ", " << y;
                 }
             }
-            const std::uint64_t incremental = terrain.stateHash();
-            terrain.audit(terrain.hashTiles().tileCount());
-            ASSERT_EQ(terrain.stateHash(), incremental) << "step " << i;
+            const std::uint64_t incremental = replica.stateHash();
+            replica.audit(replica.hashTiles().tileCount());
+            ASSERT_EQ(replica.stateHash(), incremental) << "step " << i;
         }
     }
 }
@@ -277,8 +277,8 @@ TEST(Edits, ThreadsAndBlocksChangeNothingAndAStateTakesTheStrokeAlong) {
     std::mt19937 random(59);
     for (std::uint64_t i = 1; i <= 150; ++i) {
         const Step step = editedStep(i, scene.rules, random);
-        for (Replica* terrain : {&plain, &blocks, &joined}) {
-            terrain->apply(step);
+        for (Replica* replica : {&plain, &blocks, &joined}) {
+            replica->apply(step);
         }
         if (i % 7 == 0) {
             Replica fresh(scene);
@@ -297,11 +297,11 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     Hand(dug).stroke(32);
     base::Bytes state = dug.encodeState();
     state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte of the compressed heights before the stroke
-    Replica terrain(scene);
-    const std::uint64_t hash = terrain.stateHash();
-    EXPECT_THROW(terrain.decodeState(state), base::FormatError);
-    EXPECT_EQ(terrain.stateHash(), hash);
-    EXPECT_FALSE(terrain.canUndo());
+    Replica replica(scene);
+    const std::uint64_t hash = replica.stateHash();
+    EXPECT_THROW(replica.decodeState(state), base::FormatError);
+    EXPECT_EQ(replica.stateHash(), hash);
+    EXPECT_FALSE(replica.canUndo());
 }
 
 }  // namespace

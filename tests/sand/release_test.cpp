@@ -42,14 +42,14 @@ TEST(Release, WhatTheToolHeldBackFlowsAsInAReplicaThatHasJustJoined) {
 // The far end of the plate is 20 cells from its middle, and the plate that points north does not reach it. The cell is
 // in the northernmost row of the imprint, beside the sand that leans on the plate.
 TEST(Release, ATurnedToolLetsTheSandAtItsOldEndsFall) {
-    Replica terrain(plateScene());
-    ASSERT_NO_FATAL_FAILURE(hold(terrain, kPlate));
-    const auto atTheEnd = [&terrain] { return terrain.surface().height(63.5 * kProbePerCell, 46.5 * kProbePerCell); };
+    Replica replica(plateScene());
+    ASSERT_NO_FATAL_FAILURE(hold(replica, kPlate));
+    const auto atTheEnd = [&replica] { return replica.surface().height(63.5 * kProbePerCell, 46.5 * kProbePerCell); };
     const double before = atTheEnd();
     ASSERT_LT(before, -3.9 * sand::kUnitsPerCell) << "the bottom of the plate's imprint";
-    Step step{1, terrain.stepNumber() + 1, true, {}};
+    Step step{1, replica.stepNumber() + 1, true, {}};
     step.heading = *sand::headingOf(90);
-    terrain.apply(step);
+    replica.apply(step);
     EXPECT_GT(atTheEnd(), before) << "after a single sweep";
 }
 

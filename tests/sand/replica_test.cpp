@@ -24,20 +24,20 @@ ProbePoint at(double column, double row, double height /* [cell] */) {
 }
 
 Replica dragged(const scene::Scene& scene, ProbePoint from, ProbePoint to, int steps) {
-    Replica terrain(scene);
+    Replica replica(scene);
     for (int i = 1; i <= steps; ++i) {
         const auto between = [&](std::int32_t a, std::int32_t b) { return a + (b - a) * i / steps; };
-        terrain.apply({1,
+        replica.apply({1,
                        static_cast<std::uint64_t>(i),
                        true,
                        {{between(from.x, to.x), between(from.y, to.y), between(from.z, to.z)}}});
     }
-    return terrain;
+    return replica;
 }
 
 TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
-    const Replica terrain = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
-    const auto& field = samples::fieldOf(terrain);
+    const Replica replica = dragged(samples::flatScene(96, 64), at(20, 32, 2), at(70, 32, 2), 60);
+    const auto& field = samples::fieldOf(replica);
     EXPECT_LT(field.height(45, 32), -sand::kUnitsPerCell) << "the furrow";
     EXPECT_GT(field.height(45, 37), sand::kUnitsPerCell) << "the northern bank";
     EXPECT_GT(field.height(45, 26), sand::kUnitsPerCell) << "the southern bank";
@@ -46,17 +46,17 @@ TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
 
 TEST(Replica, AHeldToolComesToRest) {
     scene::Scene scene = samples::flatScene(64, 64, 8);
-    Replica terrain(scene);
+    Replica replica(scene);
     std::uint64_t number = 0;
-    terrain.apply({1, ++number, true, {at(32, 32, 4)}});
-    for (int i = 0; i < 2000 && !terrain.settled(); ++i) {
-        terrain.apply({1, ++number, true, {}});
+    replica.apply({1, ++number, true, {at(32, 32, 4)}});
+    for (int i = 0; i < 2000 && !replica.settled(); ++i) {
+        replica.apply({1, ++number, true, {}});
     }
-    ASSERT_TRUE(terrain.settled()) << "a ball held still must not move sand forever";
-    const sand::HeightField rest = samples::fieldOf(terrain);
-    terrain.apply({1, ++number, true, {}});
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest));
-    const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.tuning.tool).obstacle(rest, terrain.probe());
+    ASSERT_TRUE(replica.settled()) << "a ball held still must not move sand forever";
+    const sand::HeightField rest = samples::fieldOf(replica);
+    replica.apply({1, ++number, true, {}});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), rest));
+    const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.tuning.tool).obstacle(rest, replica.probe());
     std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
@@ -68,17 +68,17 @@ TEST(Replica, AHeldToolComesToRest) {
 TEST(Replica, SandFallsWhenTheToolLeaves) {
     scene::Scene scene = samples::flatScene(64, 64, 8);
     scene.rules.tuning.sweepsPerStep = 2;
-    Replica terrain(scene);
+    Replica replica(scene);
     std::uint64_t number = 0;
-    terrain.apply({1, ++number, true, {at(32, 32, 0)}});
-    while (!terrain.settled()) {
-        terrain.apply({1, ++number, true, {}});
+    replica.apply({1, ++number, true, {at(32, 32, 0)}});
+    while (!replica.settled()) {
+        replica.apply({1, ++number, true, {}});
     }
-    const std::int32_t held = samples::fieldOf(terrain).height(32, 32);
+    const std::int32_t held = samples::fieldOf(replica).height(32, 32);
     for (int i = 0; i < 200; ++i) {
-        terrain.apply({1, ++number, false, {at(32, 32, 20)}});
+        replica.apply({1, ++number, false, {at(32, 32, 20)}});
     }
-    EXPECT_GT(samples::fieldOf(terrain).height(32, 32), held);
+    EXPECT_GT(samples::fieldOf(replica).height(32, 32), held);
 }
 
 TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
@@ -87,27 +87,27 @@ TEST(Replica, VolumeIsExactWhateverTheHandDoes) {
         scene.rules.rim = rim;
         std::mt19937 random(23);
         scene.terrain = samples::randomField(45, 33, 1 << 18, random);
-        Replica terrain(scene);
+        Replica replica(scene);
         for (std::uint64_t i = 1; i <= 500; ++i) {
-            terrain.apply(samples::randomStep(i, scene.rules, random));
-            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            replica.apply(samples::randomStep(i, scene.rules, random));
+            ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), scene.terrain.volume()) << "step " << i;
         }
     }
 }
 
 TEST(Replica, AToolLargerThanTheFieldLosesNothing) {
     const scene::Scene scene = samples::flatScene(5, 4, 40);
-    Replica terrain(scene);
-    terrain.apply({1, 1, true, {at(2, 2, 0)}});
-    EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
+    Replica replica(scene);
+    replica.apply({1, 1, true, {at(2, 2, 0)}});
+    EXPECT_EQ(samples::fieldOf(replica).volume(), 0);
 }
 
 TEST(Replica, HoveringLeavesTheSandAlone) {
     const scene::Scene scene = samples::flatScene(32, 32);
-    Replica terrain(scene);
-    terrain.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain));
-    EXPECT_TRUE(terrain.settled());
+    Replica replica(scene);
+    replica.apply({1, 1, false, {at(16, 16, -3), at(20, 16, -3)}});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
+    EXPECT_TRUE(replica.settled());
 }
 
 // As after a call of a driver that was compiled with fast-math. Float products round otherwise, and with them fluxes.
@@ -115,16 +115,16 @@ TEST(Replica, ComputesTheSameAlthoughItsCallerRoundsUp) {
     const scene::Scene scene = samples::flatScene(96, 64);
     Replica expected = dragged(scene, at(20, 32, 2), at(70, 32, 2), 60);
     const test::OtherFloats other;
-    Replica terrain = dragged(scene, at(20, 32, 2), at(70, 32, 2), 60);
-    EXPECT_EQ(terrain.stateHash(), expected.stateHash());
+    Replica replica = dragged(scene, at(20, 32, 2), at(70, 32, 2), 60);
+    EXPECT_EQ(replica.stateHash(), expected.stateHash());
     EXPECT_EQ(base::unusualFloats(), "") << "until the next call of the driver";
 }
 
 TEST(Replica, RefusesStepsOutOfOrder) {
-    Replica terrain(samples::flatScene(8, 8));
-    terrain.apply({1, 1, false, {}});
-    EXPECT_THROW(terrain.apply({1, 1, false, {}}), std::logic_error);
-    EXPECT_THROW(terrain.apply({1, 3, false, {}}), std::logic_error);
+    Replica replica(samples::flatScene(8, 8));
+    replica.apply({1, 1, false, {}});
+    EXPECT_THROW(replica.apply({1, 1, false, {}}), std::logic_error);
+    EXPECT_THROW(replica.apply({1, 3, false, {}}), std::logic_error);
 }
 
 TEST(Replica, GoesOnFromAStateAsIfNothingHadHappened) {
@@ -154,8 +154,8 @@ TEST(Replica, GoesOnInMidSlide) {
         Replica whole(scene);
         Replica resumed(scene);
         for (std::uint64_t i = 1; i <= 40; ++i) {
-            for (Replica* terrain : {&whole, &resumed}) {
-                terrain->apply({1, i, i == 20, {at(32, 32, i == 20 ? 0 : 100)}});
+            for (Replica* replica : {&whole, &resumed}) {
+                replica->apply({1, i, i == 20, {at(32, 32, i == 20 ? 0 : 100)}});
             }
             Replica fresh(scene);
             fresh.decodeState(resumed.encodeState());
@@ -181,8 +181,8 @@ TEST(Replica, GoesOnFromSettledSand) {
     joined.decodeState(whole.encodeState());
     for (int i = 0; i < 5; ++i) {
         const bool digs = i == 3;
-        for (Replica* terrain : {&whole, &joined}) {
-            terrain->apply({1, step + 1, digs, {at(32, 32, digs ? 0 : 100)}});
+        for (Replica* replica : {&whole, &joined}) {
+            replica->apply({1, step + 1, digs, {at(32, 32, digs ? 0 : 100)}});
         }
         ++step;
         ASSERT_EQ(joined.stateHash(), whole.stateHash()) << i << " steps after joining";
@@ -198,54 +198,54 @@ TEST(Replica, SettlesAtOnceWhenAsked) {
             scene.ground = std::make_shared<sand::Ground>(64, 64);
             scene.rules.ground = scene.ground->digest();
         }
-        Replica terrain(scene);
-        terrain.apply({1, 1, false, {}, sand::Edit::settle});
-        EXPECT_TRUE(terrain.settled());
-        EXPECT_EQ(samples::fieldOf(terrain).volume(), scene.terrain.volume());
-        EXPECT_LT(samples::fieldOf(terrain).height(32, 32), scene.terrain.height(32, 32))
+        Replica replica(scene);
+        replica.apply({1, 1, false, {}, sand::Edit::settle});
+        EXPECT_TRUE(replica.settled());
+        EXPECT_EQ(samples::fieldOf(replica).volume(), scene.terrain.volume());
+        EXPECT_LT(samples::fieldOf(replica).height(32, 32), scene.terrain.height(32, 32))
             << "a cone, lower than its cylinder";
-        const std::uint64_t incremental = terrain.stateHash();
-        terrain.audit(terrain.hashTiles().tileCount());
-        EXPECT_EQ(terrain.stateHash(), incremental);
+        const std::uint64_t incremental = replica.stateHash();
+        replica.audit(replica.hashTiles().tileCount());
+        EXPECT_EQ(replica.stateHash(), incremental);
     }
 }
 
 TEST(Replica, IncrementalHashEqualsAFreshOne) {
     const scene::Scene scene = samples::flatScene(70, 50);
     std::mt19937 random(31);
-    Replica terrain(scene);
+    Replica replica(scene);
     for (std::uint64_t i = 1; i <= 200; ++i) {
-        terrain.apply(samples::randomStep(i, scene.rules, random));
-        const std::uint64_t incremental = terrain.stateHash();
-        terrain.audit(terrain.hashTiles().tileCount());
-        ASSERT_EQ(terrain.stateHash(), incremental) << "step " << i;
+        replica.apply(samples::randomStep(i, scene.rules, random));
+        const std::uint64_t incremental = replica.stateHash();
+        replica.audit(replica.hashTiles().tileCount());
+        ASSERT_EQ(replica.stateHash(), incremental) << "step " << i;
     }
 }
 
 TEST(Replica, AFlippedBitShowsInTheRightTile) {
-    Replica terrain(samples::flatScene(100, 70));
-    const std::uint64_t before = terrain.stateHash();
-    const auto tiles = terrain.hashTiles().tileHashes();
-    terrain.corrupt(70, 40);
-    EXPECT_EQ(terrain.stateHash(), before) << "no audit has run yet";
-    terrain.audit(terrain.hashTiles().tileCount());
-    EXPECT_NE(terrain.stateHash(), before);
-    for (int tile = 0; tile < terrain.hashTiles().tileCount(); ++tile) {
+    Replica replica(samples::flatScene(100, 70));
+    const std::uint64_t before = replica.stateHash();
+    const auto tiles = replica.hashTiles().tileHashes();
+    replica.corrupt(70, 40);
+    EXPECT_EQ(replica.stateHash(), before) << "no audit has run yet";
+    replica.audit(replica.hashTiles().tileCount());
+    EXPECT_NE(replica.stateHash(), before);
+    for (int tile = 0; tile < replica.hashTiles().tileCount(); ++tile) {
         const auto i = static_cast<std::size_t>(tile);
-        EXPECT_EQ(tiles[i] != terrain.hashTiles().tileHashes()[i], tile == 4 + 2) << "tile " << tile;
+        EXPECT_EQ(tiles[i] != replica.hashTiles().tileHashes()[i], tile == 4 + 2) << "tile " << tile;
     }
 }
 
 TEST(Replica, ChangesHoldEveryChangedCellAndEachCellOnce) {
     const scene::Scene scene = samples::flatScene(100, 70);
     std::mt19937 random(37);
-    Replica terrain(scene);
-    (void)terrain.takeChange();
+    Replica replica(scene);
+    (void)replica.takeChange();
     for (std::uint64_t i = 1; i <= 100; ++i) {
-        const sand::HeightField before = samples::fieldOf(terrain);
-        terrain.apply(samples::randomStep(i, scene.rules, random));
+        const sand::HeightField before = samples::fieldOf(replica);
+        replica.apply(samples::randomStep(i, scene.rules, random));
         std::vector<int> listed(100 * 70);
-        for (const sand::CellRect& cells : samples::takeCells(terrain)) {
+        for (const sand::CellRect& cells : samples::takeCells(replica)) {
             ASSERT_EQ(cells, cells.clippedTo(before.bounds()));
             for (int y = cells.y0; y < cells.y1; ++y) {
                 for (int x = cells.x0; x < cells.x1; ++x) {
@@ -256,7 +256,7 @@ TEST(Replica, ChangesHoldEveryChangedCellAndEachCellOnce) {
         for (int y = 0; y < 70; ++y) {
             for (int x = 0; x < 100; ++x) {
                 ASSERT_TRUE(listed[static_cast<std::size_t>(y * 100 + x)] == 1 ||
-                            before.height(x, y) == samples::fieldOf(terrain).height(x, y))
+                            before.height(x, y) == samples::fieldOf(replica).height(x, y))
                     << x << ", " << y;
             }
         }
@@ -266,17 +266,17 @@ TEST(Replica, ChangesHoldEveryChangedCellAndEachCellOnce) {
 TEST(Replica, EverythingMayHaveChangedUntilSomebodyAsks) {
     const scene::Scene scene = samples::flatScene(40, 24);
     std::mt19937 random(41);
-    Replica terrain(scene);
+    Replica replica(scene);
     std::uint64_t number = 0;
-    terrain.apply(samples::randomStep(++number, scene.rules, random));
-    EXPECT_TRUE(terrain.takeChange().whole);
-    sand::SurfaceChange change = terrain.takeChange();
+    replica.apply(samples::randomStep(++number, scene.rules, random));
+    EXPECT_TRUE(replica.takeChange().whole);
+    sand::SurfaceChange change = replica.takeChange();
     EXPECT_FALSE(change.whole);
     EXPECT_TRUE(std::get<sand::CellChange>(change.parts).cells.empty());
-    EXPECT_TRUE(Replica(terrain).takeChange().whole) << "the copy is not drawn yet";
-    terrain.apply({1, ++number, false, {}, sand::Edit::reset});
-    EXPECT_TRUE(terrain.takeChange().whole);
-    EXPECT_FALSE(terrain.takeChange().whole);
+    EXPECT_TRUE(Replica(replica).takeChange().whole) << "the copy is not drawn yet";
+    replica.apply({1, ++number, false, {}, sand::Edit::reset});
+    EXPECT_TRUE(replica.takeChange().whole);
+    EXPECT_FALSE(replica.takeChange().whole);
 }
 
 TEST(Start, OfAHeightFieldAnswersForItsCells) {

@@ -24,11 +24,11 @@ constexpr int kSide = 40;  // [cell]
 
 /// Returns a replica after one step that leaves the level sand as it is.
 Replica after(const std::function<void(Step&)>& change, const scene::Scene& scene = samples::flatScene(kSide, kSide)) {
-    Replica terrain(scene);
+    Replica replica(scene);
     Step step{1, 1, false, {{100, 200, 300}}};
     change(step);
-    terrain.apply(step);
-    return terrain;
+    replica.apply(step);
+    return replica;
 }
 
 std::uint64_t hashAfter(const std::function<void(Step&)>& change) { return after(change).stateHash(); }
@@ -68,11 +68,11 @@ TEST(StateHash, TellsThePlaceOfTheToolAndWhetherItIsEngaged) {
 TEST(StateHash, TellsTheAgeOfTheInertiaAndTheOutflow) {
     DistinctHashes hashes;
     for (const int age : {0, 1, 2, 1000}) {
-        const Replica terrain = after([age](Step& step) { step.edit = loadOf(age, 0); });
-        ASSERT_EQ(terrain.leftOut(), "");
-        ASSERT_EQ(samples::erosionOf(terrain).undisturbed(), age);
-        ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), sand::HeightField(kSide, kSide, 1.0)));
-        hashes.add("age " + std::to_string(age), Replica(terrain).stateHash());
+        const Replica replica = after([age](Step& step) { step.edit = loadOf(age, 0); });
+        ASSERT_EQ(replica.leftOut(), "");
+        ASSERT_EQ(samples::erosionOf(replica).undisturbed(), age);
+        ASSERT_TRUE(sameHeights(samples::fieldOf(replica), sand::HeightField(kSide, kSide, 1.0)));
+        hashes.add("age " + std::to_string(age), Replica(replica).stateHash());
     }
     hashes.add("outflow 1", hashAfter([](Step& step) { step.edit = loadOf(0, 1); }));
     hashes.add("outflow -1", hashAfter([](Step& step) { step.edit = loadOf(0, -1); }));
@@ -131,15 +131,15 @@ TEST(StateHash, TellsTheHeadingOfTheRulesFromThatOfTheHand) {
     DistinctHashes hashes;
     for (const double ofRules : {0.0, 90.0}) {
         for (const double ofHand : {0.0, 45.0, 90.0}) {
-            Replica terrain(samples::flatScene(kSide, kSide));
-            Tuning tuning = terrain.rules().tuning;
+            Replica replica(samples::flatScene(kSide, kSide));
+            Tuning tuning = replica.rules().tuning;
             tuning.tool.kind = sand::ToolKind::circle;
             tuning.tool.heading = *sand::headingOf(ofRules);
-            terrain.apply({1, 1, false, {}, Edit::tuned(tuning)});
+            replica.apply({1, 1, false, {}, Edit::tuned(tuning)});
             Step turned{1, 2, false, {}};
             turned.heading = *sand::headingOf(ofHand);
-            terrain.apply(turned);
-            hashes.add(std::to_string(ofRules) + " and " + std::to_string(ofHand), terrain.stateHash());
+            replica.apply(turned);
+            hashes.add(std::to_string(ofRules) + " and " + std::to_string(ofHand), replica.stateHash());
         }
     }
 }

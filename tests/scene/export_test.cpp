@@ -89,7 +89,7 @@ scene::Scene inclinedTin() {
     start.width = 4 * sand::kProbePerCell;
     start.depth = 3 * sand::kProbePerCell;
     start.places = {{0, 0}, {start.width, 0}, {start.width, start.depth}, {0, start.depth}, {300, 500}};
-    for (const sand::tin::Place& place : start.places) {
+    for (const sand::tin::LatticePoint& place : start.places) {
         start.heights.push_back((2 * place.x + place.y) * (kUnitsPerCell / sand::kProbePerCell));
     }
     scene::Scene scene;
@@ -116,12 +116,12 @@ TEST(ExportOfATin, IsSampledInTheMiddlesOfTheCells) {
 
 TEST(ExportOfATin, AMeshHasItsVerticesWhereTheTinHasThem) {
     const scene::Scene scene = inclinedTin();
-    const sand::Replica terrain(scene);
-    const scene::Mesh mesh = scene::meshOf(samples::tinOf(terrain), scene);
+    const sand::Replica replica(scene);
+    const scene::Mesh mesh = scene::meshOf(samples::tinOf(replica), scene);
     const double probe = 6.0 / sand::kProbePerCell;  // [unit of the source]
     ASSERT_EQ(mesh.vertices.size(), scene.tin->places.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        const sand::tin::Place& place = scene.tin->places[i];
+        const sand::tin::LatticePoint& place = scene.tin->places[i];
         EXPECT_DOUBLE_EQ(mesh.vertices[i][0], 1000 + place.x * probe) << i;
         EXPECT_DOUBLE_EQ(mesh.vertices[i][1], 5000 + place.y * probe) << i;
         EXPECT_NEAR(mesh.vertices[i][2], 20 + 3.0 * (2 * place.x + place.y) / sand::kProbePerCell, 1e-4) << i;

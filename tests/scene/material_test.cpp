@@ -72,23 +72,23 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
 TEST(Tuning, AFlatterTalusWakesSandAtRest) {
     scene::Scene scene = samples::flatScene(64, 64);
     scene.terrain = samples::cylinder(64, 16, 20);
-    sand::Replica terrain(scene);
-    terrain.apply({1, 1, false, {}, Edit::settle});
-    while (!terrain.settled()) {
-        terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::none});
+    sand::Replica replica(scene);
+    replica.apply({1, 1, false, {}, Edit::settle});
+    while (!replica.settled()) {
+        replica.apply({1, replica.stepNumber() + 1, false, {}, Edit::none});
     }
-    const sand::HeightField rest = samples::fieldOf(terrain);
-    const std::uint64_t hash = terrain.stateHash();
+    const sand::HeightField rest = samples::fieldOf(replica);
+    const std::uint64_t hash = replica.stateHash();
     sand::Tuning tuning = scene.rules.tuning;
-    terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
-    EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), rest)) << "the same material moves nothing";
+    replica.apply({1, replica.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
+    EXPECT_TRUE(sameHeights(samples::fieldOf(replica), rest)) << "the same material moves nothing";
     tuning.threshold /= 2;
     tuning.startThreshold /= 2;
-    terrain.apply({1, terrain.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
-    EXPECT_FALSE(terrain.settled());
-    EXPECT_FALSE(sameHeights(samples::fieldOf(terrain), rest));
-    EXPECT_EQ(samples::fieldOf(terrain).volume(), rest.volume());
-    EXPECT_NE(terrain.stateHash(), hash);
+    replica.apply({1, replica.stepNumber() + 1, false, {}, Edit::tuned(tuning)});
+    EXPECT_FALSE(replica.settled());
+    EXPECT_FALSE(sameHeights(samples::fieldOf(replica), rest));
+    EXPECT_EQ(samples::fieldOf(replica).volume(), rest.volume());
+    EXPECT_NE(replica.stateHash(), hash);
 }
 
 // Two replicas with equal sand and different tools differ one step later. The hash must show that at once.
@@ -113,13 +113,13 @@ TEST(Tuning, IsPartOfTheHashAndOfTheState) {
 
 TEST(Tuning, AToolThatGrowsInTheSandPresses) {
     const scene::Scene scene = samples::flatScene(64, 64);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     const std::int32_t middle = 32 * sand::kProbePerCell;
-    terrain.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});
+    replica.apply({1, 1, true, {{middle, middle, 2 * sand::kProbePerCell}}, Edit::none});
     sand::Tuning tuning = scene.rules.tuning;
     tuning.tool.radius = 8 * sand::kProbePerCell;
-    terrain.apply({1, 2, true, {}, Edit::tuned(tuning)});
-    EXPECT_LE(samples::fieldOf(terrain).height(32, 32), -5 * sand::kUnitsPerCell);
+    replica.apply({1, 2, true, {}, Edit::tuned(tuning)});
+    EXPECT_LE(samples::fieldOf(replica).height(32, 32), -5 * sand::kUnitsPerCell);
 }
 
 }  // namespace

@@ -16,10 +16,10 @@ namespace {
 
 class SurveyScene : public test::FolderTest {
 protected:
-    void writeDunes(const std::string& terrain, const std::string& tin) const {
+    void writeDunes(const std::string& replica, const std::string& tin) const {
         std::ofstream(folder_ / "scene.toml")
             << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
-            << terrain << "[tin]\n"
+            << replica << "[tin]\n"
             << tin << "[material]\ntalus_deg = 34\n[tool]\nradius = 0.1\n";
     }
 };
@@ -34,9 +34,9 @@ TEST_F(SurveyScene, IsMadeOfTheSurveyPointsThemselves) {
     EXPECT_EQ(read.rules.rows, 10);
     ASSERT_EQ(read.tin->places.size(), 7U)
         << "three points at corners, one within the field, the fourth corner, and two places on sides of 20 cells";
-    const sand::Replica terrain(read);
+    const sand::Replica replica(read);
     const auto height = [&](double x, double y) {
-        return terrain.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
+        return replica.surface().height((x - 100) / 0.5 * 256, (y - 200) / 0.5 * 256) * 0.5 / 65536;
     };
     EXPECT_DOUBLE_EQ(height(100, 200), 3);
     EXPECT_DOUBLE_EQ(height(110, 200), 5);

@@ -61,13 +61,13 @@ std::vector<Step> strokes(std::uint32_t seed, int steps) {
     std::mt19937 random(seed);
     const auto below = [&](std::uint32_t most) { return static_cast<std::int32_t>(random() % most); };
     std::vector<Step> all;
-    sand::ProbePoint at{kRasterSide * 128, kRasterSide * 128, 600};
+    sand::ProbePoint probe{kRasterSide * 128, kRasterSide * 128, 600};
     for (int i = 0; i < steps; ++i) {
         Step step{.epoch = 1, .number = static_cast<std::uint64_t>(i + 1), .engaged = i % 16 < 11, .path = {}};
         for (int points = below(4); points > 0; --points) {
-            at = {std::clamp(at.x + below(801) - 400, 0, kRasterSide * 256),
-                  std::clamp(at.y + below(801) - 400, 0, kRasterSide * 256), 300 + below(900)};
-            step.path.push_back(at);
+            probe = {std::clamp(probe.x + below(801) - 400, 0, kRasterSide * 256),
+                     std::clamp(probe.y + below(801) - 400, 0, kRasterSide * 256), 300 + below(900)};
+            step.path.push_back(probe);
         }
         all.push_back(step);
     }
@@ -84,12 +84,12 @@ TEST_F(TinHoleScene, ASessionIsTheSameTwiceFromItsMiddleAndAfterItsSceneTravelle
 
 TEST_F(TinHoleScene, HolesComeBackWithoutData) {
     const scene::Scene start = scene("[tin]\nmax_error = 0.05\n");
-    Replica terrain(start);
+    Replica replica(start);
     for (const Step& step : strokes(9, 40)) {
-        terrain.apply(step);
+        replica.apply(step);
     }
     const scene::Scene before = scene::sampledScene(start);
-    const sand::HeightField after = scene::sampled(terrain, start.tin->holes.get());
+    const sand::HeightField after = scene::sampled(replica, start.tin->holes.get());
     const scene::EsriGrid heights = scene::heightsOf(after, before), change = scene::differenceOf(after, before);
     for (int row = 0; row < kRasterSide; ++row) {
         for (int column = 0; column < kRasterSide; ++column) {
@@ -97,7 +97,7 @@ TEST_F(TinHoleScene, HolesComeBackWithoutData) {
             EXPECT_EQ(change.isNoData(column, row), isGap(column, row)) << column << ", " << row;
         }
     }
-    const scene::Mesh mesh = scene::meshOf(terrain, start);
+    const scene::Mesh mesh = scene::meshOf(replica, start);
     EXPECT_GT(mesh.triangles.size(), 10U);
     for (const auto& triangle : mesh.triangles) {
         const auto& a = mesh.vertices[triangle[0]];

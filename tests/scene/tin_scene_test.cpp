@@ -142,7 +142,7 @@ TEST_F(TinScene, ARimHasVerticesNoFartherApartThanWidest) {
             const scene::Scene scene = loaded(std::string(rim).append(terrain).append(material));
             const sand::tin::TinStart& start = *scene.tin;
             std::array<std::vector<std::int32_t>, 4> sides;
-            for (const sand::tin::Place& place : start.places) {
+            for (const sand::tin::LatticePoint& place : start.places) {
                 for (const auto& [side, on, along] :
                      {std::tuple{0U, place.y == 0, place.x}, std::tuple{1U, place.x == start.width, place.y},
                       std::tuple{2U, place.y == start.depth, place.x}, std::tuple{3U, place.x == 0, place.y}}) {
@@ -232,8 +232,8 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
     };
     const std::size_t before = taken();
     const scene::Scene received = scene::Scene::decode(bytes);
-    sand::Replica terrain(received);
-    (void)terrain.stateHash();
+    sand::Replica replica(received);
+    (void)replica.stateHash();
     const std::size_t after = taken();
     ASSERT_GT(after, 0U);
     EXPECT_GE(after - before, static_cast<std::size_t>(received.leastBytes()));
@@ -244,7 +244,7 @@ TEST_F(TinScene, AReplicaTakesNoLessMemoryThanItsHostIsAskedFor) {
 TEST_F(TinScene, LevelGroundIsItsCornersAndThePointsAtWidest) {
     const scene::Scene read = scene(40, "flat", "max_error = 0\nwidest = 0.4\n");  // 8 cells
     EXPECT_EQ(read.tin->places.size(), 4U + 5 * 5 + 4 * 4) << "corners, middles, and the sides every 8 cells";
-    EXPECT_EQ(read.tin->places[2], (sand::tin::Place{40 * 256, 40 * 256}));
+    EXPECT_EQ(read.tin->places[2], (sand::tin::LatticePoint{40 * 256, 40 * 256}));
     EXPECT_EQ(read.tin->heights, std::vector<std::int32_t>(45, 0));
 }
 

@@ -56,7 +56,7 @@ class FullDisk(Supervised):
 
 class LogWithoutDisk(unittest.TestCase):
     def test_a_job_runs_although_no_file_can_be_made_for_its_output(self):
-        said = mock.patch("job_stream.say")
+        said = mock.patch("job_stream.print_line")
         said.start()
         self.addCleanup(said.stop)
         log = job_log.JobLog("/nowhere", 1, open_mpi.OpenMpi4("4.1.4"))

@@ -120,7 +120,7 @@ class Folder:
         one.report("too many failures")
         watch = one.watch_of(mock.Mock())
         watch.failure, watch.loads = failure, True
-        watch.tell_linked(log)
+        watch.write_recovery(log)
         watch.end_hung(log)
         one.mark_restart(None)
         log.close()

@@ -174,8 +174,8 @@ class Values(LauncherTest):
 class ShownCommands(unittest.TestCase):
     def test_the_command_of_try_can_be_pasted_whatever_its_files_are_called(self):
         for out, wall in (("out/try", "desktop.toml"), ("my out; echo x", "a wall's.toml"), ("$(touch x)", "w`x`.toml")):
-            with mock.patch("pointer.say") as said:
-                pointer.tell_journal(out, wall)
+            with mock.patch("pointer.print_line") as said:
+                pointer.print_journal(out, wall)
             command = said.call_args[0][0].partition("session.journal; `")[2]
             self.assertEqual(shlex.split(command.removesuffix("` makes a film of it"))[1:],
                              ["film", f"{out}/session.journal", "--wall", wall, "--out", "film"])

@@ -164,7 +164,7 @@ class Output(unittest.TestCase):
         self.shown = []
         for stream in self.log.streams:
             stream.shown = mock.Mock(line=self.shown.append)
-        for mocked in (mock.patch("console.ERROR", self.log.err.shown), mock.patch("job_log.say")):
+        for mocked in (mock.patch("console.ERROR", self.log.err.shown), mock.patch("job_log.print_line")):
             self.said = mocked.start()
             self.addCleanup(mocked.stop)
 
@@ -178,7 +178,7 @@ class Output(unittest.TestCase):
         for i in range(len(text)):
             self.follow(text[i:i + 1])
         self.assertEqual((self.shown, self.log.err.damaged), ([b"sandwall-render-node: hello"], 0))
-        self.assertEqual(list(self.log.said[1]), ["sandwall-render-node: hello"])
+        self.assertEqual(list(self.log.last_by_rank[1]), ["sandwall-render-node: hello"])
 
     def test_damaged_lines_are_left_out_and_counted(self):
         whole = relayed(3, b"good")
@@ -207,13 +207,13 @@ class Output(unittest.TestCase):
     def test_a_whole_line_behind_the_rest_of_another_is_found(self):
         # mpirun holds an unfinished piece back for all ranks, and prints it before the next line of any rank.
         self.follow(b"[1,3]<stderr>: " + relayed(3, b"lost line")[:-4] + relayed(5, b"kept") + b"\n")
-        self.assertEqual((self.shown, list(self.log.said[5]), self.log.err.damaged), ([b"kept"], ["kept"], 1))
+        self.assertEqual((self.shown, list(self.log.last_by_rank[5]), self.log.err.damaged), ([b"kept"], ["kept"], 1))
 
     def test_a_wrong_tag_does_not_name_the_rank(self):
         self.follow(b"[1,7]<stderr>: " + relayed(2, b'@sandwall {"event":"progress","frame":9,"step":8}') + b"\n")
         self.assertEqual(self.log.frame, 9)
         self.follow(b"[1,7]<stderr>: " + relayed(4, b"text") + b"\n")
-        self.assertEqual(list(self.log.said), [4])
+        self.assertEqual(list(self.log.last_by_rank), [4])
 
     def test_ranks_on_this_machine_are_read_from_their_files(self):
         self.assertEqual(sorted(path.name for path in self.log.path.parent.glob("*.rank_*")),
@@ -224,7 +224,7 @@ class Output(unittest.TestCase):
             file.write(b"ond\nlast without an end")
             self.log.follow(ended=True)
         self.assertEqual(self.shown, [b"first", b"second", b"last without an end"])
-        self.assertEqual(list(self.log.said[2]), ["first", "second", "last without an end"])
+        self.assertEqual(list(self.log.last_by_rank[2]), ["first", "second", "last without an end"])
 
     def test_the_file_of_a_rank_on_another_host_is_noted(self):
         self.follow(b"[1,3]<stderr>: " + relayed(3, b"@log node2:/tmp/sandwall-rank-3.abc") + b"\n")

@@ -76,6 +76,12 @@ class Rules(unittest.TestCase):
             self.assertEqual(found and found[0], word, text)
 
 
+    def test_names_avoid_single_words_of_both_tables(self):
+        page = ("## Words that we avoid\n\n| a | b |\n|---|---|\n| `first`, `old sand`, `PROGRAM sings` | x |\n\n"
+                "### Words that names avoid\n\n| a | b |\n|---|---|\n| `second` (rarely), `third` | `x` |\n")
+        self.assertEqual(plain_english.words_that_names_avoid(page), {"first", "second", "third"})
+
+
 class Reading(unittest.TestCase):
     def test_a_page_has_paragraphs_items_and_cells(self):
         page = ("# Heading\n\nOne line\nand the next.\n\n- an item\n  of two lines\n1. a number\n\n    code\n\n```\nmore code\n```\n"
@@ -160,6 +166,15 @@ class Command(unittest.TestCase):
         self.assertTrue(printed.startswith(f"a.cpp:2: messages: [{flags_of(BAD[1])[0]}") or
                         printed.startswith(f"a.cpp:1: comments: [{flags_of(BAD[0])[0]}"), printed)
         self.assertIn(f"] {BAD[0]}\n", printed)
+
+    def test_a_header_may_have_no_name_with_a_word_to_avoid(self):
+        plain = "".join(f"int name{i};\n" for i in range(2000))
+        self.assertEqual(self.run_check(self.write("a.hpp", plain))[:2], (0, "names: 0 of 2001 names flagged, 0.0 %\n"))
+        status, printed, error = self.run_check("--list", self.write("a.hpp", plain + "void tellAll();\n"))
+        self.assertEqual((status, error.count("\n")), (1, 1), error)
+        self.assertIn("a.hpp:2001: names: [word to avoid: tell] tellAll\n", printed)
+        self.assertIn("plain_english.py: 1 names in headers are flagged, more than 0.0 %;", error)
+        self.assertEqual(self.run_check(self.write("a.cpp", "void tellAll();\n"))[0], 0, "only names of headers are checked")
 
     def test_a_semicolon_ends_a_sentence_of_a_message_alone(self):
         half = "the file has a word in the place of a number and the scene cannot be loaded"

@@ -31,7 +31,7 @@ SUMMARY = {
     "haptic_period_us": {"p50": 1000.0, "p99": 1010.0, "max": 1100.0}, "slowest": None, "broadcast_bytes": SPREAD,
     "hand": {"asked": "server", "links": 1, "frames_with_hand": 598, "linked_at_end": True, "last_refusal": None},
     "haptic": {"reconnects": 0, "hand_overs": {"by_steps": 0, "by_state": 0}, "refused_by_server": REFUSALS,
-               "refused": {"servers": REFUSALS, "guests": REFUSALS}, "force_us": {"p50": 2.0, "p99": 3.0}, "half_round_trip_ms": TRIP,
+               "refused": {"servers": REFUSALS, "connections": REFUSALS}, "force_us": {"p50": 2.0, "p99": 3.0}, "half_round_trip_ms": TRIP,
                "half_round_trip_to_master_ms": TRIP, "step_message_bytes": 140.0, "steps_withheld": 0,
                "steps_withheld_by": {"wall": 0, "disk": 0, "pause": 0, "start": 0}, "samples_dropped": 0, "ticks": 10400, "ticks_missed": 0,
                "literal": False, "hand_ticks": 10000, "felt_ticks": 4000, "faulted_ticks": 0, "guarded_ticks": {**GUARDS, "ramp": 500}},

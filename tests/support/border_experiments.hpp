@@ -285,14 +285,15 @@ inline Held heldSettle(const Ground& ground, int n, bool atRest) {
         hand.hold();
     }
     Held result;
-    const sand::ProbePoint at = sand.probe();
-    result.largest = overUnderside(sand, at) / scale;
+    const sand::ProbePoint probe = sand.probe();
+    result.largest = overUnderside(sand, probe) / scale;
     const sand::TurnedShape turned(sand.tool());
     for (int row = 0; row < n; ++row) {
         for (int column = 0; column < n; ++column) {
-            const sand::Offset offset{std::int64_t{column} * 256 + 128 - at.x, std::int64_t{row} * 256 + 128 - at.y};
+            const sand::Offset offset{std::int64_t{column} * 256 + 128 - probe.x,
+                                      std::int64_t{row} * 256 + 128 - probe.y};
             if (turned.covers(offset)) {
-                const double under = static_cast<double>(turned.underside(at.z, offset)) / sand::kUnitsPerCell;
+                const double under = static_cast<double>(turned.underside(probe.z, offset)) / sand::kUnitsPerCell;
                 result.volume += std::max(heightAt(sand, column + 0.5, row + 0.5) - under, 0.0) / scale / scale / scale;
             }
         }

@@ -152,9 +152,9 @@ double misplaced(const sand::Replica& sand, const Right& right) {
     return misplaced(sand, right, [](double, double) { return true; });
 }
 
-/// Returns how far the surface is above the underside of a tool at `at`, on a lattice of quarter cells. Counts only
+/// Returns how far the surface is above the underside of a tool at `probe`, on a lattice of quarter cells. Counts only
 /// places on ground within 0.98 of the tool's outline, because the outline in a mesh is a polygon inside it.
-inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& at) {
+inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& probe) {
     const sand::TurnedShape turned(sand.tool());
     const bool tin = sand.rules().tin != 0;
     const int step = tin ? sand::kProbePerCell / 4 : sand::kProbePerCell;
@@ -163,14 +163,14 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& a
     const sand::Ground* const ground = tin ? nullptr : std::get<sand::GridData>(sand.surface().data()).ground;
     for (std::int32_t y = step / 2; y < sand.rules().rows * sand::kProbePerCell; y += step) {
         for (std::int32_t x = step / 2; x < sand.rules().columns * sand::kProbePerCell; x += step) {
-            const sand::Offset offset{std::int64_t{x} - at.x, std::int64_t{y} - at.y};
+            const sand::Offset offset{std::int64_t{x} - probe.x, std::int64_t{y} - probe.y};
             const sand::Offset wider{offset.x * 50 / 49, offset.y * 50 / 49};
             if (std::max(std::abs(offset.x), std::abs(offset.y)) > sand.tool().radius || !turned.covers(wider) ||
                 (holes != nullptr && holes->holds({x, y})) ||
                 (ground != nullptr && ground->isWall(x / sand::kProbePerCell, y / sand::kProbePerCell))) {
                 continue;
             }
-            const double under = static_cast<double>(turned.underside(at.z, offset));
+            const double under = static_cast<double>(turned.underside(probe.z, offset));
             most = std::max(most, (sand.surface().height(x, y) - under) / sand::kUnitsPerCell);
         }
     }
@@ -179,7 +179,7 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& a
 
 /// Returns the exact volume of each part of the sand that walls, holes and rims separate over the whole field, by a
 /// place in it. On a grid, cells are joined over faces, and the place is the first cell by rows. On a TIN, vertices are
-/// joined by edges of ground triangles, and the place is that of the first vertex in the order of Place.
+/// joined by edges of ground triangles, and the place is that of the first vertex in the order of LatticePoint.
 inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Replica& sand) {
     std::vector<std::size_t> up;
     const auto root = [&](std::size_t at) {
@@ -226,7 +226,7 @@ inline std::map<std::pair<int, int>, std::int64_t> volumesByPart(const sand::Rep
             up[std::max(a, b)] = std::min(a, b);
         }
     }
-    std::map<std::size_t, std::pair<sand::tin::Place, std::int64_t>> parts;
+    std::map<std::size_t, std::pair<sand::tin::LatticePoint, std::int64_t>> parts;
     for (std::size_t at = 0; at < up.size(); ++at) {
         if (mesh.alive(static_cast<sand::tin::Vertex>(at)) && layer.stars()[at] > 0) {
             const auto [part, fresh] = parts.try_emplace(root(at), mesh.places[at], 0);

@@ -46,7 +46,7 @@ public:
         surface_.timeNs = nowNs_;
         path_.add(hand_.tick(time(), nowNs_, surface_));
         const std::int64_t due = nowNs_ * stepsPerSecond / 1'000'000'000;
-        if (std::exchange(due_, due) != due && !stands) {
+        if (std::exchange(due_, due) != due && !paused) {
             sand::Step step{1, sand_.stepNumber() + 1, false, {}};
             (void)path_.take(step);
             sand_.apply(step);
@@ -57,7 +57,7 @@ public:
     [[nodiscard]] double time() const { return static_cast<double>(nowNs_) * 1e-9; }  // [s]
     [[nodiscard]] const haptic_bridge::ForceLimits& limits() const { return hand_.guards().limits(); }
 
-    bool stands = false;      // no steps are made. The hand still gets new copies of the same sand
+    bool paused = false;      // no steps are made. The hand still gets new copies of the same sand
     int stepsPerSecond = 60;  // that are made, whatever the scene's rules say
 
 private:

@@ -31,29 +31,29 @@ inline std::string inTwoGiB(const std::function<void()>& act) {
         const rlimit limit{kLimit, kLimit};
         setrlimit(RLIMIT_AS, &limit);
 #endif
-        std::array<char, 1000> said{};
+        std::array<char, 1000> text{};
         int length = 0;
         try {
             act();
-            length = std::snprintf(said.data(), said.size(), "done");
+            length = std::snprintf(text.data(), text.size(), "done");
         } catch (const std::exception& error) {
-            length = std::snprintf(said.data(), said.size(), "%s", error.what());
+            length = std::snprintf(text.data(), text.size(), "%s", error.what());
         }
-        const ssize_t written = write(ends[1], said.data(), static_cast<std::size_t>(length));
+        const ssize_t written = write(ends[1], text.data(), static_cast<std::size_t>(length));
         _exit(written == length ? 0 : 1);  // without the handlers of the test program
     }
     close(ends[1]);
-    std::string said;
+    std::string text;
     std::array<char, 1000> part{};
     for (ssize_t count = 0; (count = read(ends[0], part.data(), part.size())) > 0;) {
-        said.append(part.data(), static_cast<std::size_t>(count));
+        text.append(part.data(), static_cast<std::size_t>(count));
     }
     close(ends[0]);
     int status = 0;
     if (child < 0 || waitpid(child, &status, 0) != child || status != 0) {
-        return "the child ended with status " + std::to_string(status) + ": " + said;
+        return "the child ended with status " + std::to_string(status) + ": " + text;
     }
-    return said;
+    return text;
 }
 
 }  // namespace test

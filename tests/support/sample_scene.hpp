@@ -48,17 +48,17 @@ inline sand::ProbePoint probeAt(const scene::Scene& scene, const glm::dvec3& pla
 }
 
 /// Drags the tool along a straight line, with a step per centimetre. Then lets the sand settle for 60 steps.
-inline void drag(sand::Replica& terrain, const scene::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
+inline void drag(sand::Replica& replica, const scene::Scene& scene, const glm::dvec3& from, const glm::dvec3& to) {
     sand::Step step;
     const int steps = 1 + static_cast<int>(glm::length(to - from) / 0.01);
     for (int i = 0; i <= steps; ++i) {
-        step.number = terrain.stepNumber() + 1;
+        step.number = replica.stepNumber() + 1;
         step.engaged = true;
         step.path = {probeAt(scene, glm::mix(from, to, static_cast<double>(i) / steps))};
-        terrain.apply(step);
+        replica.apply(step);
     }
     for (int i = 0; i < 60; ++i) {
-        terrain.apply({0, terrain.stepNumber() + 1, false, {}});
+        replica.apply({0, replica.stepNumber() + 1, false, {}});
     }
 }
 

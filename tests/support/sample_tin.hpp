@@ -45,44 +45,44 @@ public:
         mesh_.width = columns * sand::kProbePerCell;
         mesh_.depth = rows * sand::kProbePerCell;
         link();
-        damage_ = {};
+        change_ = {};
     }
 
     [[nodiscard]] sand::tin::SurfaceView view() const { return {mesh_, heights_}; }
     [[nodiscard]] const sand::tin::Triangles& mesh() const { return mesh_; }
     [[nodiscard]] double height(Vertex vertex) const { return heights_[static_cast<std::size_t>(vertex)]; }
     sand::TinChange takeParts() {
-        for (auto* list : {&damage_.triangles, &damage_.vertices}) {
+        for (auto* list : {&change_.triangles, &change_.vertices}) {
             std::sort(list->begin(), list->end());
             list->erase(std::unique(list->begin(), list->end()), list->end());
         }
-        return std::exchange(damage_, {});
+        return std::exchange(change_, {});
     }
     sand::SurfaceChange takeChange() { return {.whole = false, .parts = takeParts()}; }
 
     void setHeight(Vertex vertex, double height /* [unit] */) {
         heights_[static_cast<std::size_t>(vertex)] = height;
-        damage_.vertices.push_back(vertex);
+        change_.vertices.push_back(vertex);
     }
     /// Adds a vertex in the middle of a triangle.
     Vertex split(Slot slot, double height) {
         const auto [a, b, c] = triangle(slot).corner;
-        const sand::tin::Place p = place(a), q = place(b), r = place(c);
+        const sand::tin::LatticePoint p = place(a), q = place(b), r = place(c);
         const auto vertex = static_cast<Vertex>(mesh_.places.size());
         mesh_.places.push_back({(p.x + q.x + r.x) / 3, (p.y + q.y + r.y) / 3});
         heights_.push_back(height);
-        damage_.vertices.push_back(vertex);
+        change_.vertices.push_back(vertex);
         triangle(slot).corner = {a, b, vertex};
-        damage_.triangles.push_back(slot);
+        change_.triangles.push_back(slot);
         add({b, c, vertex});
         add({c, a, vertex});
         link();
         return vertex;
     }
     /// Moves a vertex within its triangles.
-    void move(Vertex vertex, const sand::tin::Place& to) {
+    void move(Vertex vertex, const sand::tin::LatticePoint& to) {
         mesh_.places[static_cast<std::size_t>(vertex)] = to;
-        damage_.vertices.push_back(vertex);
+        change_.vertices.push_back(vertex);
     }
     /// Removes a vertex if it has three triangles.
     void join(Vertex vertex) {
@@ -103,8 +103,8 @@ public:
             }
         }
         triangle(around[1]).corner = triangle(around[2]).corner = {-1, -1, -1};
-        damage_.triangles.insert(damage_.triangles.end(), around.begin(), around.end());
-        damage_.vertices.push_back(vertex);
+        change_.triangles.insert(change_.triangles.end(), around.begin(), around.end());
+        change_.vertices.push_back(vertex);
         link();
     }
     /// Flips the edge opposite a corner if both its triangles exist and the flipped edge lies between them.
@@ -124,15 +124,15 @@ public:
         }
         triangle(slot).corner = {a, b, d};
         triangle(beyond).corner = {a, d, c};
-        damage_.triangles.insert(damage_.triangles.end(), {slot, beyond});
+        change_.triangles.insert(change_.triangles.end(), {slot, beyond});
         link();
     }
     void constrain(Slot slot, std::size_t edge, bool constrained) {
         const Vertex b = triangle(slot).corner[(edge + 1) % 3], c = triangle(slot).corner[(edge + 2) % 3];
         constraints_[std::minmax(b, c)] = constrained;
-        damage_.triangles.push_back(slot);
+        change_.triangles.push_back(slot);
         if (triangle(slot).neighbour[edge] >= 0) {
-            damage_.triangles.push_back(triangle(slot).neighbour[edge]);
+            change_.triangles.push_back(triangle(slot).neighbour[edge]);
         }
         link();
     }
@@ -144,7 +144,7 @@ public:
             const bool hole =
                 isHole((place(a).x + place(b).x + place(c).x) / 3.0, (place(a).y + place(b).y + place(c).y) / 3.0);
             triangle(slot).hole = hole;
-            damage_.triangles.push_back(slot);
+            change_.triangles.push_back(slot);
         }
     }
     /// Puts the triangles of the surface into other slots and rotates their corners.
@@ -160,11 +160,11 @@ public:
 
 private:
     [[nodiscard]] sand::tin::Triangle& triangle(Slot slot) { return mesh_.triangles[static_cast<std::size_t>(slot)]; }
-    [[nodiscard]] const sand::tin::Place& place(Vertex vertex) const {
+    [[nodiscard]] const sand::tin::LatticePoint& place(Vertex vertex) const {
         return mesh_.places[static_cast<std::size_t>(vertex)];
     }
     void add(const std::array<Vertex, 3>& corner) {
-        damage_.triangles.push_back(static_cast<Slot>(mesh_.triangles.size()));
+        change_.triangles.push_back(static_cast<Slot>(mesh_.triangles.size()));
         mesh_.triangles.emplace_back().corner = corner;
     }
     /// Derives all other members from corners and constraints.
@@ -191,7 +191,7 @@ private:
     sand::tin::Triangles mesh_;
     std::vector<double> heights_;
     std::map<std::pair<Vertex, Vertex>, bool> constraints_;
-    sand::TinChange damage_;
+    sand::TinChange change_;
 };
 
 }  // namespace sample

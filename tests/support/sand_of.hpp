@@ -16,22 +16,22 @@ inline sand::Replica replicaSwept(const sand::Start& start, const sand::grid::Er
     return {start, std::make_unique<sand::grid::GridSurface>(start.rules, start.terrain, start.ground, options)};
 }
 
-inline const sand::HeightField& fieldOf(const sand::Replica& terrain) {
-    return std::get<sand::GridData>(terrain.surface().data()).field;
+inline const sand::HeightField& fieldOf(const sand::Replica& replica) {
+    return std::get<sand::GridData>(replica.surface().data()).field;
 }
 
-inline const sand::grid::Erosion& erosionOf(const sand::Replica& terrain) {
-    return dynamic_cast<const sand::grid::GridSurface&>(terrain.surface()).erosion();
+inline const sand::grid::Erosion& erosionOf(const sand::Replica& replica) {
+    return dynamic_cast<const sand::grid::GridSurface&>(replica.surface()).erosion();
 }
 
-inline const sand::tin::SurfaceView& tinOf(const sand::Replica& terrain) {
-    return std::get<sand::TinData>(terrain.surface().data()).view;
+inline const sand::tin::SurfaceView& tinOf(const sand::Replica& replica) {
+    return std::get<sand::TinData>(replica.surface().data()).view;
 }
 
 /// Returns every cell that may have changed since the last call.
-inline std::vector<sand::CellRect> takeCells(sand::Replica& terrain) {
-    const sand::SurfaceChange change = terrain.takeChange();
-    return change.whole ? std::vector{fieldOf(terrain).bounds()} : std::get<sand::CellChange>(change.parts).cells;
+inline std::vector<sand::CellRect> takeCells(sand::Replica& replica) {
+    const sand::SurfaceChange change = replica.takeChange();
+    return change.whole ? std::vector{fieldOf(replica).bounds()} : std::get<sand::CellChange>(change.parts).cells;
 }
 
 }  // namespace samples

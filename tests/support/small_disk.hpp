@@ -20,12 +20,12 @@ namespace support {
 /// Maps the user and the group into a new user namespace. A process without a mapped id could make no file there.
 /// Returns false if the kernel refuses the mapping.
 inline bool mapIds(uid_t user, gid_t group) {
-    const auto say = [](const char* file, const std::string& text) {
+    const auto put = [](const char* file, const std::string& text) {
         return static_cast<bool>(std::ofstream(file) << text << std::flush);
     };
-    return say("/proc/self/setgroups", "deny") &&
-           say("/proc/self/uid_map", std::to_string(user) + " " + std::to_string(user) + " 1") &&
-           say("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
+    return put("/proc/self/setgroups", "deny") &&
+           put("/proc/self/uid_map", std::to_string(user) + " " + std::to_string(user) + " 1") &&
+           put("/proc/self/gid_map", std::to_string(group) + " " + std::to_string(group) + " 1");
 }
 
 inline constexpr int kNoMount = 77;

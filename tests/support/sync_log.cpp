@@ -24,7 +24,7 @@ bool isJournal(int descriptor) {
            std::strstr(path.data(), "/session.journal") != nullptr;
 }
 
-void say(int number, int descriptor) {
+void log(int number, int descriptor) {
     struct stat file {};
     const char* const log = std::getenv("SANDWALL_SYNC_LOG");
     if (log == nullptr || fstat(descriptor, &file) != 0) {
@@ -44,7 +44,7 @@ extern "C" int fdatasync(int descriptor) {
         return real(descriptor);
     }
     const int number = ++calls;
-    say(number, descriptor);
+    log(number, descriptor);
     const char* const fails = std::getenv("SANDWALL_SYNC_FAILS");
     if (fails != nullptr && std::atoi(fails) == number) {
         errno = EIO;

@@ -17,7 +17,7 @@
 /// probe units.
 namespace tin_piles {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
@@ -37,10 +37,10 @@ inline double chance(std::mt19937& random) { return static_cast<double>(random()
 /// Returns the places of about n² vertices on n x n cells. A regular mesh is a square lattice turned by `degrees` about
 /// the middle. In a jittered mesh each vertex of this lattice is moved by up to a quarter of a cell in each direction.
 /// A random mesh has independent places. Each mesh also has a vertex per cell along the rim.
-inline std::vector<Place> placesOf(Kind kind, int n, double degrees, std::uint32_t seed) {
+inline std::vector<LatticePoint> placesOf(Kind kind, int n, double degrees, std::uint32_t seed) {
     std::mt19937 random(seed);
     const std::int32_t side = n * kCell;
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     for (std::int32_t at = kCell; at < side; at += kCell) {
         places.insert(places.end(), {{at, 0}, {at, side}, {0, at}, {side, at}});
     }
@@ -88,18 +88,18 @@ inline VertexSand layerOf(Kind kind, int n, double degrees = 0, std::uint32_t se
 
 /// Calls visit(weights, x, y) for the centres of 256 equal parts of a triangle.
 template <class Visit>
-void everywhereIn(const std::array<Place, 3>& at, const Visit& visit) {
+void everywhereIn(const std::array<LatticePoint, 3>& at, const Visit& visit) {
     constexpr int kParts = 16;
-    const auto tell = [&](double a, double b) {
+    const auto visitPoint = [&](double a, double b) {
         const std::array<double, 3> weights{a / kParts, b / kParts, 1 - (a + b) / kParts};
         visit(weights, (weights[0] * at[0].x + weights[1] * at[1].x + weights[2] * at[2].x) / kCell,
               (weights[0] * at[0].y + weights[1] * at[1].y + weights[2] * at[2].y) / kCell);
     };
     for (int i = 0; i < kParts; ++i) {
         for (int j = 0; i + j < kParts; ++j) {
-            tell(i + 1 / 3.0, j + 1 / 3.0);
+            visitPoint(i + 1 / 3.0, j + 1 / 3.0);
             if (i + j + 1 < kParts) {
-                tell(i + 2 / 3.0, j + 2 / 3.0);
+                visitPoint(i + 2 / 3.0, j + 2 / 3.0);
             }
         }
     }
@@ -111,7 +111,7 @@ void everywhere(const VertexSand& layer, const Visit& visit) {
     const sand::tin::Triangles& mesh = layer.triangles();
     for (const sand::tin::Triangle& triangle : mesh.triangles) {
         if (triangle.alive()) {
-            std::array<Place, 3> at;
+            std::array<LatticePoint, 3> at;
             std::transform(triangle.corner.begin(), triangle.corner.end(), at.begin(),
                            [&](Vertex corner) { return mesh.places[static_cast<std::size_t>(corner)]; });
             const auto part = static_cast<double>(doubledArea(at[0], at[1], at[2])) / 256;
@@ -164,7 +164,7 @@ double misplaced(const VertexSand& layer, const Profile& profile) {
 }
 
 /// Returns the height of the surface over a place [cell].
-inline double heightAt(const VertexSand& layer, Place place, std::int32_t& triangle) {
+inline double heightAt(const VertexSand& layer, LatticePoint place, std::int32_t& triangle) {
     const sand::tin::Located there = locate(layer.triangles(), place, triangle);
     triangle = there.triangle;
     const auto& corner = layer.triangles().triangles[static_cast<std::size_t>(triangle)].corner;

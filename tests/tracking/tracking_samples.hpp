@@ -15,12 +15,12 @@
 namespace test {
 
 /// Returns whether two vectors are at most `most` apart, and prints both if they are not.
-inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 want, double most = 1e-12) {
-    if (glm::length(got - want) <= most) {
+inline testing::AssertionResult near(glm::dvec3 got, glm::dvec3 expected, double most = 1e-12) {
+    if (glm::length(got - expected) <= most) {
         return testing::AssertionSuccess();
     }
-    return testing::AssertionFailure() << "got (" << got.x << ", " << got.y << ", " << got.z << "), want (" << want.x
-                                       << ", " << want.y << ", " << want.z << ")";
+    return testing::AssertionFailure() << "got (" << got.x << ", " << got.y << ", " << got.z << "), want ("
+                                       << expected.x << ", " << expected.y << ", " << expected.z << ")";
 }
 
 inline base::Bytes bytesOf(const std::string& text) { return {text.begin(), text.end()}; }

@@ -40,7 +40,7 @@ std::vector<Vertex> ActiveEdges::takeReleased(const Underside* held) {
     return released;
 }
 
-double ActiveEdges::undersideAt(Vertex vertex, const Place& place) {
+double ActiveEdges::undersideAt(Vertex vertex, const LatticePoint& place) {
     if (held_ == nullptr) {
         return ActiveMesh::kFree;
     }
@@ -87,7 +87,7 @@ void ActiveEdges::begin(const VertexSand& layer, bool band, const Underside* hel
 
 std::int32_t ActiveEdges::localOf(const VertexSand& layer, Vertex vertex) {
     std::int32_t& local = noteOf(vertex).local;
-    if (local == kNobody) {
+    if (local == kNoNumber) {
         const auto at = index(vertex);
         local =
             sand_.addVertex(layer.volumes()[at], layer.stars()[at], undersideAt(vertex, layer.triangles().places[at]),
@@ -99,7 +99,7 @@ std::int32_t ActiveEdges::localOf(const VertexSand& layer, Vertex vertex) {
 
 std::int32_t ActiveEdges::facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     std::int32_t& number = noteOfSlot(slot).facet;
-    if (number == kNobody) {
+    if (number == kNoNumber) {
         Facet facet = facetOf(layer.triangles(), slot, slopes);
         for (Vertex& corner : facet.corner) {
             corner = localOf(layer, corner);
@@ -139,7 +139,7 @@ void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weig
         const TriangleSide other = across(mesh, side);
         watched = static_cast<std::uint8_t>(watched | bit);
         bits_.push_back({bit, bit});
-        if (other.triangle != kNobody) {
+        if (other.triangle != kNoNumber) {
             bits_.back().right = bitOf(mesh, other);
             std::uint8_t& beyond = noteOfSlot(other.triangle).watched;
             beyond = static_cast<std::uint8_t>(beyond | bits_.back().right);
@@ -157,7 +157,7 @@ void ActiveEdges::watchEdges(const VertexSand& layer, const Slopes& slopes, Weig
 bool ActiveEdges::maySlide(const VertexSand& layer, const Slopes& slopes, std::int32_t slot) {
     const Triangles& mesh = layer.triangles();
     const std::array<Vertex, 3> corners = smallestFirst(mesh.triangles[index(slot)].corner);  // as in facetOf()
-    std::array<Place, 3> at;
+    std::array<LatticePoint, 3> at;
     std::array<double, 3> heights{}, under{};
     for (std::size_t k = 0; k < 3; ++k) {
         at[k] = mesh.places[index(corners[k])];
@@ -269,7 +269,7 @@ bool ActiveEdges::sweep(const VertexSand& layer, const Slopes& slopes, Weights& 
         }
     }
     const std::int64_t around = std::max(restAround_, static_cast<std::int64_t>(sand_.vertexCount() / kOfVerticesRest));
-    inVain_ = std::max<std::int64_t>(inVain_ + result.resting - around, 0);
+    restingVisits_ = std::max<std::int64_t>(restingVisits_ + result.resting - around, 0);
     return result.moved;
 }
 
@@ -286,7 +286,7 @@ void ActiveEdges::store(VertexSand& layer, std::vector<Vertex>& moved) const {
 void ActiveEdges::storeMotion(VertexSand& layer, std::vector<Vertex>& changed) {
     const auto flows = [&](Vertex vertex) {
         const std::int32_t local = noteOf(vertex).local;
-        return swept_ && local != kNobody && sand_.flowed(index(local));
+        return swept_ && local != kNoNumber && sand_.flowed(index(local));
     };
     for (const Vertex vertex : moving_) {
         if (layer.moving()[index(vertex)] != 0 && !flows(vertex)) {
@@ -307,7 +307,7 @@ void ActiveEdges::storeMotion(VertexSand& layer, std::vector<Vertex>& changed) {
 }
 
 bool ActiveEdges::manyRest() const {
-    return inVain_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
+    return restingVisits_ > static_cast<std::int64_t>(kSweepsToForget * sand_.vertexCount());
 }
 
 void ActiveEdges::keep(const ActiveMesh::Marks& kept) {
@@ -337,7 +337,7 @@ void ActiveEdges::keep(const ActiveMesh::Marks& kept) {
                              std::size_t count) {
         for (std::size_t i = 0; i < names.size(); ++i) {
             local(names[i]) = by[i];
-            if (by[i] != kNobody) {
+            if (by[i] != kNoNumber) {
                 names[index(by[i])] = names[i];
             }
         }
@@ -350,7 +350,7 @@ void ActiveEdges::keep(const ActiveMesh::Marks& kept) {
 }
 
 void ActiveEdges::forgetResting() {
-    inVain_ = 0;
+    restingVisits_ = 0;
     for (std::size_t i = 0; i < sand_.vertexCount(); ++i) {
         sand_.setWatched(i, sand_.flowed(i));
     }
@@ -368,13 +368,13 @@ std::vector<Vertex> ActiveEdges::meshChanged(const Mesh::Change& change) {
                            std::vector<std::uint8_t>(sand_.edgeCount())};
     std::vector<std::uint8_t> staleVertices(sand_.vertexCount());
     for (const Vertex vertex : change.vertices) {
-        if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNobody) {
+        if (index(vertex) < ofVertices_.size() && noteOf(vertex).local != kNoNumber) {
             staleVertices[index(noteOf(vertex).local)] = 1;
         }
     }
     std::vector<Vertex> corners;
     for (const std::int32_t slot : change.triangles) {
-        if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNobody) {
+        if (index(slot) < ofSlots_.size() && noteOfSlot(slot).facet != kNoNumber) {
             kept.facets[index(noteOfSlot(slot).facet)] = 0;
             for (const std::int32_t corner : sand_.facet(noteOfSlot(slot).facet).corner) {
                 corners.push_back(vertices_[index(corner)]);

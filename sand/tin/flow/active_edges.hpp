@@ -29,7 +29,7 @@ namespace sand::tin {
 /// any other sand on the rim, wake() is called. Not thread-safe.
 class ActiveEdges {
 public:
-    using Underside = std::function<std::int32_t(Place)>;
+    using Underside = std::function<std::int32_t(LatticePoint)>;
 
     explicit ActiveEdges(Rim rim = Rim::closed) : rim_(rim) {}
 
@@ -71,7 +71,7 @@ private:
     /// A vertex that is or was watched below an obstacle.
     struct Held {
         Vertex vertex;
-        Place place;
+        LatticePoint place;
         std::int32_t underside;
     };
 
@@ -85,7 +85,7 @@ private:
     void makeRoom(std::size_t vertices, std::size_t slots);
     [[nodiscard]] std::int32_t facetAt(const VertexSand& layer, const Slopes& slopes, std::int32_t slot);
     [[nodiscard]] std::int32_t localOf(const VertexSand& layer, Vertex vertex);
-    [[nodiscard]] double undersideAt(Vertex vertex, const Place& place);
+    [[nodiscard]] double undersideAt(Vertex vertex, const LatticePoint& place);
     [[nodiscard]] bool spills(const Triangles& mesh, Vertex vertex) const {
         return rim_ == Rim::open && isOnRim(mesh, mesh.places[static_cast<std::size_t>(vertex)]);
     }
@@ -94,14 +94,14 @@ private:
     /// All numbers that waking and watching need of a vertex or of a slot. They are in one struct because they are in
     /// no cache where sand begins to move.
     struct VertexNote {
-        std::int32_t local = kNobody;
+        std::int32_t local = kNoNumber;
         std::uint32_t woken = 0;           // turn in which wake() last examined it
         std::uint32_t undersideKnown = 0;  // turn for which `underside` is known
         bool isHeldBack = false;
         double underside = 0;  // [unit]
     };
     struct SlotNote {
-        std::int32_t facet = kNobody;
+        std::int32_t facet = kNoNumber;
         std::uint32_t examined = 0;  // turn in which wake() last examined it
         std::uint8_t watched = 0;    // one bit per side whose edge is watched
     };
@@ -123,9 +123,9 @@ private:
     std::vector<Vertex> moving_;                         // all vertices whose sand moves in the layer, and more
     std::vector<std::int32_t> met_, steepHeld_, steep_;  // scratch
     std::uint32_t turn_ = 0;                             // number of begin() calls; marks what wake() has examined
-    std::int64_t inVain_ = 0;      // vertices at rest, summed over the sweeps, less the usual number at rest
-    std::int64_t restAround_ = 0;  // vertices at rest that the last forgetResting() since begin() left
-    std::int64_t outflow_ = 0;     // since takeOutflow()
+    std::int64_t restingVisits_ = 0;  // vertices at rest, summed over the sweeps, less the usual number at rest
+    std::int64_t restAround_ = 0;     // vertices at rest that the last forgetResting() since begin() left
+    std::int64_t outflow_ = 0;        // since takeOutflow()
     bool band_ = false;
     bool swept_ = false;  // whether a sweep ran since begin()
     const Underside* held_ = nullptr;

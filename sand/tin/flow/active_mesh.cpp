@@ -33,9 +33,9 @@ std::vector<std::int32_t> numberMarked(std::vector<std::int32_t>& marks) {
     std::vector<std::int32_t> kept(marks.size());
     std::int32_t count = 0;
     for (std::size_t i = 0; i < marks.size(); ++i) {
-        const bool marked = marks[i] != kNobody;
+        const bool marked = marks[i] != kNoNumber;
         kept[index(count)] = static_cast<std::int32_t>(i);
-        marks[i] = marked ? count : kNobody;
+        marks[i] = marked ? count : kNoNumber;
         count += marked ? 1 : 0;
     }
     kept.resize(index(count));
@@ -274,11 +274,11 @@ ActiveMesh::Marks ActiveMesh::whatMayFlow() const {
 }
 
 ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
-    Renumbering now{std::vector<std::int32_t>(vertexCount(), kNobody),
-                    std::vector<std::int32_t>(facetCount(), kNobody)};
-    std::vector<std::int32_t> edges(edgeCount(), kNobody);
+    Renumbering now{std::vector<std::int32_t>(vertexCount(), kNoNumber),
+                    std::vector<std::int32_t>(facetCount(), kNoNumber)};
+    std::vector<std::int32_t> edges(edgeCount(), kNoNumber);
     for (std::size_t i = 0; i < facetCount(); ++i) {
-        now.facets[i] = kept.facets[i] != 0 ? 0 : kNobody;
+        now.facets[i] = kept.facets[i] != 0 ? 0 : kNoNumber;
     }
     for (std::size_t i = 0; i < edgeCount(); ++i) {
         if (kept.edges[i] != 0) {
@@ -290,7 +290,7 @@ ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
         }
     }
     for (std::size_t i = 0; i < facetCount(); ++i) {
-        if (now.facets[i] != kNobody) {
+        if (now.facets[i] != kNoNumber) {
             now.vertices[index(first_[i])] = now.vertices[index(second_[i])] = now.vertices[index(third_[i])] = 0;
         }
     }
@@ -308,7 +308,7 @@ ActiveMesh::Renumbering ActiveMesh::keep(const Marks& kept) {
     renumber(left_, now.facets);
     renumber(right_, now.facets);
     renumber(rim_, now.vertices);
-    std::erase(rim_, kNobody);
+    std::erase(rim_, kNoNumber);
     heldKnown_ = false;
     return now;
 }

@@ -78,7 +78,7 @@ public:
     /// Adds the unwatched vertices at which sand flowed to `found`.
     void findUnwatched(std::vector<std::int32_t>& found) const;
 
-    /// New numbers of vertices and facets after keep(); kNobody stands for a vertex or facet that is gone.
+    /// New numbers of vertices and facets after keep(); kNoNumber stands for a vertex or facet that is gone.
     struct Renumbering {
         std::vector<std::int32_t> vertices, facets;
     };

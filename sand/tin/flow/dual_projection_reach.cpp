@@ -60,8 +60,8 @@ bool DualProjection::nearEdge() const {
 DualProjection::Facet DualProjection::facetOf(std::int32_t slot, const std::vector<std::int32_t>& local) const {
     const Triangles& mesh = layer_.triangles();
     const std::array<Vertex, 3> corner = smallestFirst(mesh.triangles[index(slot)].corner);
-    const Place &a = mesh.places[index(corner[0])], &b = mesh.places[index(corner[1])],
-                &c = mesh.places[index(corner[2])];
+    const LatticePoint &a = mesh.places[index(corner[0])], &b = mesh.places[index(corner[1])],
+                       &c = mesh.places[index(corner[2])];
     const auto area = static_cast<double>(doubledArea(a, b, c));
     Facet facet;
     std::transform(corner.begin(), corner.end(), facet.corner.begin(),
@@ -127,7 +127,7 @@ void DualProjection::surround(const std::vector<Vertex>& corners) {
         fallen[2 * vertex] = spill.now;
         fallen[2 * vertex + 1] = spill.before;
     }
-    std::vector<std::int32_t> local(mesh.places.size(), kNobody);
+    std::vector<std::int32_t> local(mesh.places.size(), kNoNumber);
     vertices_.clear();
     for (std::size_t vertex = 0; vertex < local.size(); ++vertex) {
         if (edges_[vertex] < kFar) {

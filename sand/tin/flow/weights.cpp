@@ -19,9 +19,11 @@ constexpr double kGrain = 0.5;    // accuracy of a height [unit]
 const Triangle& triangleOf(const Triangles& mesh, std::int32_t slot) {
     return mesh.triangles[static_cast<std::size_t>(slot)];
 }
-const Place& placeOf(const Triangles& mesh, Vertex vertex) { return mesh.places[static_cast<std::size_t>(vertex)]; }
+const LatticePoint& placeOf(const Triangles& mesh, Vertex vertex) {
+    return mesh.places[static_cast<std::size_t>(vertex)];
+}
 
-std::int64_t dot(const Place& origin, const Place& a, const Place& b) {
+std::int64_t dot(const LatticePoint& origin, const LatticePoint& a, const LatticePoint& b) {
     return std::int64_t{a.x - origin.x} * (b.x - origin.x) + std::int64_t{a.y - origin.y} * (b.y - origin.y);
 }
 
@@ -37,7 +39,7 @@ Corners cornersOf(const Triangles& mesh, TriangleSide side) {
 }
 
 /// Returns half the cotangent of the angle at `apex`.
-double half(const Place& apex, const Place& begin, const Place& end, double doubledArea) {
+double half(const LatticePoint& apex, const LatticePoint& begin, const LatticePoint& end, double doubledArea) {
     // Both are integers below 2^53, so that the quotient is rounded once.
     return 0.5 * static_cast<double>(dot(apex, begin, end)) / doubledArea;
 }
@@ -46,7 +48,7 @@ double half(const Place& apex, const Place& begin, const Place& end, double doub
 
 TriangleSide across(const Triangles& mesh, TriangleSide side) {
     const std::int32_t beyond = triangleOf(mesh, side.triangle).neighbour[static_cast<std::size_t>(side.corner)];
-    if (beyond == kNobody || triangleOf(mesh, beyond).hole) {
+    if (beyond == kNoNumber || triangleOf(mesh, beyond).hole) {
         return {};
     }
     const auto& back = triangleOf(mesh, beyond).neighbour;
@@ -56,7 +58,7 @@ TriangleSide across(const Triangles& mesh, TriangleSide side) {
 void Weights::forget(const Mesh::Change& change) {
     for (const std::int32_t slot : change.triangles) {
         if (static_cast<std::size_t>(slot) < halves_.size()) {
-            halves_[static_cast<std::size_t>(slot)].first = kNobody;
+            halves_[static_cast<std::size_t>(slot)].first = kNoNumber;
         }
     }
     for (const Vertex vertex : change.vertices) {
@@ -78,7 +80,7 @@ const std::array<std::int32_t, 3>& Weights::halvesOf(const Triangles& mesh, std:
     const auto& corner = triangleOf(mesh, slot).corner;
     Halves& halves = halves_[static_cast<std::size_t>(slot)];
     if (halves.first != corner[0]) {
-        const Place &a = placeOf(mesh, corner[0]), &b = placeOf(mesh, corner[1]), &c = placeOf(mesh, corner[2]);
+        const LatticePoint &a = placeOf(mesh, corner[0]), &b = placeOf(mesh, corner[1]), &c = placeOf(mesh, corner[2]);
         const auto area = static_cast<double>(doubledArea(a, b, c));
         const std::array<double, 3> of{half(a, b, c, area), half(b, c, a, area), half(c, a, b, area)};
         // All three get one factor. If each were cut by itself, a sliver's sand would not run down the sliver's slope.
@@ -125,15 +127,15 @@ Edge Weights::edge(const Triangles& mesh, std::span<const std::int64_t> stars, T
         return static_cast<double>(halvesOf(mesh, one.triangle)[static_cast<std::size_t>(one.corner)]) * step;
     };
     edge.left = weight(side);
-    if (across.triangle != kNobody) {
+    if (across.triangle != kNoNumber) {
         edge.rightFacet = across.triangle;
         edge.right = weight(across);
     }
     return edge;
 }
 
-double slackOf(const Place& a, const Place& b, const Place& c) {
-    const auto length = [](const Place& from, const Place& to) {
+double slackOf(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
+    const auto length = [](const LatticePoint& from, const LatticePoint& to) {
         return std::sqrt(static_cast<double>(dot(from, to, to)));
     };
     // A corner that is higher by 1 changes the slope by the length of the opposite side over the doubled area.
@@ -148,9 +150,9 @@ std::array<Vertex, 3> smallestFirst(const std::array<Vertex, 3>& corner) {
 Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes) {
     Facet facet;
     facet.corner = smallestFirst(triangleOf(mesh, slot).corner);
-    const Place& origin = placeOf(mesh, facet.corner[0]);
-    const Place& first = placeOf(mesh, facet.corner[1]);
-    const Place& second = placeOf(mesh, facet.corner[2]);
+    const LatticePoint& origin = placeOf(mesh, facet.corner[0]);
+    const LatticePoint& first = placeOf(mesh, facet.corner[1]);
+    const LatticePoint& second = placeOf(mesh, facet.corner[2]);
     const auto area = static_cast<double>(doubledArea(origin, first, second));
     const auto firstSquared = static_cast<double>(dot(origin, first, first));
     const auto secondSquared = static_cast<double>(dot(origin, second, second));

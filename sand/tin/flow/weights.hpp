@@ -15,9 +15,9 @@ namespace sand::tin {
 /// corners' heights. Then s = first d1² + mixed d1 d2 + second d2² is the square of its slope over the slope g at
 /// which it rests. The triangle slides if s > 1.
 struct Facet {
-    std::array<Vertex, 3> corner{kNobody, kNobody, kNobody};  // counter-clockwise, the smallest first
-    double first = 0, mixed = 0, second = 0;                  // [1/unit²]
-    double start = 1;                                         // s at which sand at rest starts to slide
+    std::array<Vertex, 3> corner{kNoNumber, kNoNumber, kNoNumber};  // counter-clockwise, the smallest first
+    double first = 0, mixed = 0, second = 0;                        // [1/unit²]
+    double start = 1;                                               // s at which sand at rest starts to slide
     /// Returns s.
     [[nodiscard]] double steepness(double d1, double d2) const {
         return first * d1 * d1 + (mixed * d1 + second * d2) * d2;
@@ -27,8 +27,8 @@ struct Facet {
 /// The numbers of an edge in the law of sliding. Per height difference of its ends, the volume left · c_left + right ·
 /// c_right flows. Here c is how strongly each of its triangles slides, from 0 to 1.
 struct Edge {
-    Vertex from = kNobody, to = kNobody;                     // from < to
-    std::int32_t leftFacet = kNobody, rightFacet = kNobody;  // slots; equal at the rim
+    Vertex from = kNoNumber, to = kNoNumber;                     // from < to
+    std::int32_t leftFacet = kNoNumber, rightFacet = kNoNumber;  // slots; equal at the rim
     double left = 0, right = 0;  // [probe unit²]; one may be negative, opposite an obtuse angle
 };
 
@@ -39,11 +39,11 @@ struct Slopes {
 
 /// One side of a triangle: the edge opposite its corner.
 struct TriangleSide {
-    std::int32_t triangle = kNobody;  // slot
+    std::int32_t triangle = kNoNumber;  // slot
     int corner = 0;
 };
 
-/// Returns the same edge as a side of the triangle beyond it. Its slot is kNobody at the rim and at a hole.
+/// Returns the same edge as a side of the triangle beyond it. Its slot is kNoNumber at the rim and at a hole.
 [[nodiscard]] TriangleSide across(const Triangles& mesh, TriangleSide side);
 
 /// Returns the index of a triangle's smallest corner.
@@ -59,7 +59,7 @@ struct TriangleSide {
 /// Returns by how much a triangle may be steeper than its slopes [unit per probe unit]. Heights are accurate to half a
 /// unit at best. The slack is the slope that three heights make if each is off by that. A plane with the slope at
 /// which sand rests is therefore at rest, and slivers freeze.
-[[nodiscard]] double slackOf(const Place& a, const Place& b, const Place& c);
+[[nodiscard]] double slackOf(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c);
 
 /// Returns the facet of a triangle, with the slack of slackOf().
 [[nodiscard]] Facet facetOf(const Triangles& mesh, std::int32_t slot, const Slopes& slopes);
@@ -90,7 +90,7 @@ private:
     /// The w of a triangle's angles, times kOne, by corner. They hold while `first` is the first corner, because a
     /// slot may rotate its corners without notice.
     struct Halves {
-        Vertex first = kNobody;  // kNobody: not yet computed
+        Vertex first = kNoNumber;  // kNoNumber: not yet computed
         std::array<std::int32_t, 3> of{};
     };
     [[nodiscard]] const std::array<std::int32_t, 3>& halvesOf(const Triangles& mesh, std::int32_t slot);

@@ -108,7 +108,7 @@ private:
         const std::int32_t x = cells_.west(column), y = cells_.south(row);
         const std::int32_t east = isHole(column, row) ? -bridge_ : bridge_;  // of the northern corner
         for (const std::int32_t side : {1, -1}) {
-            const Place corner{x + side * east, y + side * bridge_};
+            const LatticePoint corner{x + side * east, y + side * bridge_};
             parts_.push_back({{x, corner.y}, corner});
             parts_.push_back({corner, {corner.x, y}});
         }
@@ -193,12 +193,12 @@ bool Holes::holds(std::int64_t x, std::int64_t y, int scale) const {
     return false;
 }
 
-bool Holes::holds(const Place& a, const Place& b, const Place& c) const {
+bool Holes::holds(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) const {
     // The centroid lies within the triangle.
     return holds(std::int64_t{a.x} + b.x + c.x, std::int64_t{a.y} + b.y + c.y, 3);
 }
 
-bool Holes::borders(const Place& a, const Place& b) const {
+bool Holes::borders(const LatticePoint& a, const LatticePoint& b) const {
     if ((a.x == b.x) == (a.y == b.y)) {
         return false;
     }
@@ -209,7 +209,7 @@ bool Holes::borders(const Place& a, const Place& b) const {
     return holds(x + across, y + along, 4) != holds(x - across, y - along, 4);
 }
 
-bool Holes::reachInto(const Place& southWest, const Place& northEast) const {
+bool Holes::reachInto(const LatticePoint& southWest, const LatticePoint& northEast) const {
     const int west = std::max(cells_.columnOf(southWest.x - bridge_), 0);
     const int east = std::min(cells_.columnOf(northEast.x + bridge_), cells_.columns - 1);
     const int south = std::max(cells_.rowOf(southWest.y - bridge_), 0);

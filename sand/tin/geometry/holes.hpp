@@ -13,9 +13,9 @@ namespace sand::tin {
 /// Raster in a TIN's field, with a sample in the middle of each cell. The part of a cell beyond the field is cut off.
 struct Cells {
     int columns = 0, rows = 0;
-    Place first{};                                    // south-west sample [probe unit]
-    Place spacing{kLatticePerCell, kLatticePerCell};  // distance of columns and of rows [probe unit]
-    std::int32_t width = 0, depth = 0;                // size of the field [probe unit]
+    LatticePoint first{};                                    // south-west sample [probe unit]
+    LatticePoint spacing{kLatticePerCell, kLatticePerCell};  // distance of columns and of rows [probe unit]
+    std::int32_t width = 0, depth = 0;                       // size of the field [probe unit]
     friend bool operator==(const Cells&, const Cells&) = default;
 
     /// Returns the x where the cells of `column` begin [probe unit]. For `columns`, returns where the last column
@@ -63,18 +63,18 @@ public:
     /// Returns whether a cell has no ground. Cells outside the field have no ground.
     [[nodiscard]] bool isHole(int column, int row) const;
     /// Returns whether a place lies in a hole. For a place on a border, the result is unspecified.
-    [[nodiscard]] bool holds(const Place& place) const { return holds(place.x, place.y, 1); }
+    [[nodiscard]] bool holds(const LatticePoint& place) const { return holds(place.x, place.y, 1); }
     /// Returns whether a triangle has no ground. The triangle must lie wholly inside or wholly outside the holes.
-    [[nodiscard]] bool holds(const Place& a, const Place& b, const Place& c) const;
+    [[nodiscard]] bool holds(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) const;
     /// Returns whether the edge between two places runs along the border of a hole. No end of the border may lie
     /// between the two places.
-    [[nodiscard]] bool borders(const Place& a, const Place& b) const;
+    [[nodiscard]] bool borders(const LatticePoint& a, const LatticePoint& b) const;
     /// Returns whether a cell without ground reaches into the rectangle, which includes its sides.
-    [[nodiscard]] bool reachInto(const Place& southWest, const Place& northEast) const;
+    [[nodiscard]] bool reachInto(const LatticePoint& southWest, const LatticePoint& northEast) const;
 
     /// Straight part of a hole's border.
     struct Part {
-        Place from, to;
+        LatticePoint from, to;
     };
     /// Returns the border of all holes except on the field's rim, in parts that are as long as possible.
     [[nodiscard]] const std::vector<Part>& outline() const { return outline_; }
@@ -83,8 +83,8 @@ public:
     template <class Visit>
     void forEachPart(std::int32_t west, std::int32_t south, std::int32_t east, std::int32_t north,
                      const Visit& visit) const {
-        const auto among = [&](std::size_t begin, std::size_t end, std::int32_t Place::*level, std::int32_t first,
-                               std::int32_t last) {
+        const auto among = [&](std::size_t begin, std::size_t end, std::int32_t LatticePoint::*level,
+                               std::int32_t first, std::int32_t last) {
             const auto from = outline_.begin() + static_cast<std::ptrdiff_t>(begin);
             const auto to = outline_.begin() + static_cast<std::ptrdiff_t>(end);
             auto part = std::lower_bound(from, to, first,
@@ -95,8 +95,8 @@ public:
                 }
             }
         };
-        among(0, level_, &Place::y, south, north);
-        among(level_, upright_, &Place::x, west, east);
+        among(0, level_, &LatticePoint::y, south, north);
+        among(level_, upright_, &LatticePoint::x, west, east);
     }
 
     /// Returns whether two cells without ground touch only at the south-west corner of this cell.

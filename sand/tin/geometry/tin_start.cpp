@@ -17,7 +17,7 @@ bool within(std::int32_t number, std::int32_t lowest, std::int32_t highest) {
 }
 
 /// Returns whether two vertices are in one place.
-bool hasTwins(std::vector<Place> places) {
+bool hasTwins(std::vector<LatticePoint> places) {
     std::sort(places.begin(), places.end());
     return std::adjacent_find(places.begin(), places.end()) != places.end();
 }
@@ -60,7 +60,7 @@ void TinStart::encode(base::ByteWriter& writer) const { base::putMember(writer, 
 TinStart TinStart::decode(base::ByteReader& reader) { return base::read<TinStart>(reader); }
 
 std::string TinStart::refusal() const {
-    const std::vector<Place> corners{{0, 0}, {width, 0}, {width, depth}, {0, depth}};
+    const std::vector<LatticePoint> corners{{0, 0}, {width, 0}, {width, depth}, {0, depth}};
     if (places.size() < 4 || !std::equal(corners.begin(), corners.end(), places.begin())) {
         return "a TIN without its field's corners";
     }

@@ -43,7 +43,7 @@ struct Settings {
 /// once. Every replica makes the same triangulation of it.
 struct TinStart {
     std::int32_t width = 0, depth = 0;                   // size [probe unit]
-    std::vector<Place> places;                           // the first four are the corners, in the order of Mesh
+    std::vector<LatticePoint> places;                    // the first four are the corners, in the order of Mesh
     std::vector<std::int32_t> heights;                   // by place [unit]
     std::vector<std::pair<Vertex, Vertex>> constraints;  // each with the smaller vertex first
     std::int32_t meanHeight = 0;                         // of the surface [unit]; devices hover above it
@@ -88,7 +88,7 @@ struct StartVertices {
         start.places.clear();
         start.heights.clear();
         for (std::uint64_t i = 0; i < count; ++i) {
-            Place& place = start.places.emplace_back();
+            LatticePoint& place = start.places.emplace_back();
             base::getMember(reader, place.x);
             base::getMember(reader, place.y);
             base::getMember(reader, start.heights.emplace_back());

@@ -14,11 +14,11 @@ std::array<Vertex, 3> sortedCorners(const Triangle& triangle) {
     return corners;
 }
 
-Located weigh(const Triangles& mesh, std::int32_t slot, const Place& place) {
+Located weigh(const Triangles& mesh, std::int32_t slot, const LatticePoint& place) {
     const Triangle& triangle = mesh.triangles[at(slot)];
-    const Place& a = mesh.places[at(triangle.corner[0])];
-    const Place& b = mesh.places[at(triangle.corner[1])];
-    const Place& c = mesh.places[at(triangle.corner[2])];
+    const LatticePoint& a = mesh.places[at(triangle.corner[0])];
+    const LatticePoint& b = mesh.places[at(triangle.corner[1])];
+    const LatticePoint& c = mesh.places[at(triangle.corner[2])];
     return {slot, {doubledArea(b, c, place), doubledArea(c, a, place), doubledArea(a, b, place)}};
 }
 
@@ -35,7 +35,7 @@ std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre
             if (next == slot) {
                 return first;
             }
-            if (next == kNobody) {
+            if (next == kNoNumber) {
                 break;
             }
             if (sortedCorners(mesh.triangles[at(next)]) < sortedCorners(mesh.triangles[at(first)])) {
@@ -46,7 +46,7 @@ std::int32_t firstAround(const Triangles& mesh, std::int32_t slot, Vertex centre
     return first;
 }
 
-double squaredWay(const Place& a, const Place& b) {
+double squaredWay(const LatticePoint& a, const LatticePoint& b) {
     const double x = a.x - b.x, y = a.y - b.y;
     return x * x + y * y;
 }
@@ -54,7 +54,7 @@ double squaredWay(const Place& a, const Place& b) {
 /// Returns the slot where a walk to `place` begins. That is `slot`, or, if `slot` is far away, a triangle at one of
 /// some vertices all over the mesh (Mücke, Saias and Zhu 1996). Almost every triangle of a walk misses all caches, and
 /// its load waits for the load before. The loads of the vertices do not wait for one another.
-std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const Place& place) {
+std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const LatticePoint& place) {
     constexpr std::size_t kTried = 256;    // most vertices that are tried
     constexpr std::size_t kTogether = 64;  // only one vertex in 64 is tried, because a short walk is as fast
     constexpr std::size_t kLeap = 40503;   // odd, and no multiple of a likely row length of a scene's vertices
@@ -70,12 +70,12 @@ std::int32_t nearer(const Triangles& mesh, std::int32_t slot, const Place& place
             found = vertex;
         }
     }
-    return found < count && mesh.triangleAt[found] != kNobody ? mesh.triangleAt[found] : slot;
+    return found < count && mesh.triangleAt[found] != kNoNumber ? mesh.triangleAt[found] : slot;
 }
 
 }  // namespace
 
-Located locate(const Triangles& mesh, Place place, std::int32_t from) {
+Located locate(const Triangles& mesh, LatticePoint place, std::int32_t from) {
     place = {std::clamp(place.x, 0, mesh.width), std::clamp(place.y, 0, mesh.depth)};
     const bool known = from >= 0 && at(from) < mesh.triangles.size() && mesh.triangles[at(from)].alive();
     std::int32_t slot = nearer(mesh, known ? from : mesh.triangleAt[0], place);
@@ -108,7 +108,7 @@ Located locate(const Triangles& mesh, Place place, std::int32_t from) {
         const std::int32_t next = triangle.neighbour[side];
         if (zeros == 2 && here.weights[side] > 0) {
             first = firstAround(mesh, slot, triangle.corner[side]);
-        } else if (zeros == 1 && here.weights[side] == 0 && next != kNobody &&
+        } else if (zeros == 1 && here.weights[side] == 0 && next != kNoNumber &&
                    sortedCorners(mesh.triangles[at(next)]) < sortedCorners(triangle)) {
             first = next;
         }

@@ -58,8 +58,8 @@ Mesh::Difference ChangeRecord::difference(const Triangles& mesh) const {
     std::sort(now.begin(), now.end());
     // A triangle that has only moved to another slot is in neither list.
     Mesh::Difference difference;
-    std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(difference.went));
-    std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(difference.came));
+    std::set_difference(before.begin(), before.end(), now.begin(), now.end(), std::back_inserter(difference.removed));
+    std::set_difference(now.begin(), now.end(), before.begin(), before.end(), std::back_inserter(difference.added));
     return difference;
 }
 
@@ -85,7 +85,7 @@ Mesh::Change ChangeRecord::takeChange(const Triangles& mesh, bool vertices) {
                  [&mesh](std::int32_t slot) { return alive(slot, mesh); });
     sortOnce(change.triangles);
     const Mesh::Difference difference = vertices ? this->difference(mesh) : Mesh::Difference();
-    for (const auto* pieces : {&difference.went, &difference.came}) {
+    for (const auto* pieces : {&difference.removed, &difference.added}) {
         for (const Mesh::Piece& piece : *pieces) {
             change.vertices.insert(change.vertices.end(), piece.corner.begin(), piece.corner.end());
         }

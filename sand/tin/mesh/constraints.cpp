@@ -10,13 +10,14 @@ namespace sand::tin {
 namespace {
 
 /// Returns whether `ahead` and `to` lie on the same side of `from`. The three places must be on one line.
-bool isAhead(const Place& from, const Place& to, const Place& ahead) {
+bool isAhead(const LatticePoint& from, const LatticePoint& to, const LatticePoint& ahead) {
     return std::int64_t{to.x - from.x} * (ahead.x - from.x) + std::int64_t{to.y - from.y} * (ahead.y - from.y) > 0;
 }
 
 /// Returns the lattice place nearest to the crossing of p–q and c–d, which must cross. It lies in the bounding boxes
 /// of both.
-Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Place& d) {
+LatticePoint nearestToCrossing(const LatticePoint& p, const LatticePoint& q, const LatticePoint& c,
+                               const LatticePoint& d) {
     const auto cross = [](std::int64_t ax, std::int64_t ay, std::int64_t bx, std::int64_t by) {
         return ax * by - ay * bx;
     };
@@ -38,7 +39,7 @@ Place nearestToCrossing(const Place& p, const Place& q, const Place& c, const Pl
 
 /// Returns whether a line from p to q may bend to e. It then bends by at most a unit, and does not turn back along an
 /// axis.
-bool isBeside(const Place& p, const Place& q, const Place& e) {
+bool isBeside(const LatticePoint& p, const LatticePoint& q, const LatticePoint& e) {
     const bool between = std::min(p.x, q.x) <= e.x && e.x <= std::max(p.x, q.x) && std::min(p.y, q.y) <= e.y &&
                          e.y <= std::max(p.y, q.y);
     return between && std::abs(doubledArea(p, q, e)) <= std::max(std::abs(q.x - p.x), std::abs(q.y - p.y));
@@ -49,7 +50,7 @@ bool isBeside(const Place& p, const Place& q, const Place& e) {
 ///
 /// Without the first rule, two almost parallel edges would cross again and again, ever nearer to the place where they
 /// part. One crossing within two rows of the lattice became 100,000 crossings.
-Place meetingPlace(const Place& p, const Place& q, const Place& c, const Place& d) {
+LatticePoint meetingPlace(const LatticePoint& p, const LatticePoint& q, const LatticePoint& c, const LatticePoint& d) {
     if (isBeside(p, q, c)) {
         return c;
     }
@@ -67,8 +68,8 @@ VertexPair ascending(Vertex a, Vertex b) { return std::minmax(a, b); }
 }  // namespace
 
 Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
-    const Place& start = place(from);
-    const Place& end = place(to);
+    const LatticePoint& start = place(from);
+    const LatticePoint& end = place(to);
     Hit hit;
     Side side;  // across which the line leaves the triangle
     around(from, [&](const Side& spoke) {
@@ -86,7 +87,7 @@ Triangulation::Hit Triangulation::follow(Vertex from, Vertex to) const {
         }
         return false;
     });
-    while (hit.vertex == kNobody) {
+    while (hit.vertex == kNoNumber) {
         hit.edge = ends(side);
         if (isConstrained(side)) {
             break;
@@ -153,8 +154,8 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
         const auto [a, b] = wanted.back();
         wanted.pop_back();
         const Hit hit = follow(a, b);
-        if (hit.vertex != kNobody) {
-            if (const Side side = findEdge(a, hit.vertex); side.slot != kNobody && isConstrained(side)) {
+        if (hit.vertex != kNoNumber) {
+            if (const Side side = findEdge(a, hit.vertex); side.slot != kNoNumber && isConstrained(side)) {
                 path.before.push_back(ascending(a, hit.vertex));
             }
             carve(a, hit);
@@ -165,13 +166,13 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             continue;
         }
         const auto [c, d] = hit.edge;
-        const Place crossing = meetingPlace(place(a), place(b), place(c), place(d));
+        const LatticePoint crossing = meetingPlace(place(a), place(b), place(c), place(d));
         const Located where = find(crossing);
         if (cornerAt(where) == 3 && static_cast<std::size_t>(vertexCount_) >= mostVertices) {
             break;  // a state with more vertices could not be decoded
         }
         const VertexPair split = edgeAt(where);  // edge at the crossing, which insertAt() splits too
-        const Vertex middle = insertAt(where, crossing, kNobody);
+        const Vertex middle = insertAt(where, crossing, kNoNumber);
         bend(split.first, split.second, middle);
         wanted.emplace_back(a, b);
         if (middle != a && middle != b) {
@@ -180,7 +181,7 @@ Mesh::Path Triangulation::constrain(Vertex from, Vertex to) {
             wanted.emplace_back(a, middle);
         }
         // Split c–d too, unless insertAt() has just done that.
-        if (middle != c && middle != d && findEdge(c, d).slot != kNobody && isConstrained(findEdge(c, d))) {
+        if (middle != c && middle != d && findEdge(c, d).slot != kNoNumber && isConstrained(findEdge(c, d))) {
             bend(c, d, middle);
             release(c, d);
             wanted.emplace_back(middle, d);

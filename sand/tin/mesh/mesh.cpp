@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int32_t kMaxSide = 1 << 22;
 
-std::string toText(const Place& place) { return std::to_string(place.x) + ", " + std::to_string(place.y); }
+std::string toText(const LatticePoint& place) { return std::to_string(place.x) + ", " + std::to_string(place.y); }
 
 }  // namespace
 
@@ -35,7 +35,7 @@ const std::shared_ptr<const Holes>& Mesh::holes() const { return triangulation_-
 
 int Mesh::vertexCount() const { return triangulation_->vertexCount(); }
 
-void Mesh::requireInside(const Place& place) const {
+void Mesh::requireInside(const LatticePoint& place) const {
     const Triangles& mesh = triangles();
     if (place.x < 0 || place.y < 0 || place.x > mesh.width || place.y > mesh.depth) {
         throw std::invalid_argument("a vertex at " + toText(place) + ", outside the field of " +
@@ -49,17 +49,17 @@ void Mesh::requireAlive(Vertex vertex) const {
     }
 }
 
-Vertex Mesh::insert(Place place) {
+Vertex Mesh::insert(LatticePoint place) {
     requireInside(place);
     return triangulation_->insert(place);
 }
 
-std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
-    std::for_each(places.begin(), places.end(), [this](const Place& place) { requireInside(place); });
+std::vector<Vertex> Mesh::insert(std::span<const LatticePoint> places) {
+    std::for_each(places.begin(), places.end(), [this](const LatticePoint& place) { requireInside(place); });
     const auto [order, first] = spatialOrder(places);
     // First find the vertices that exist already, then give out numbers in the order of `places`, then change the
     // mesh.
-    std::vector<Vertex> numbers(places.size(), kNobody);
+    std::vector<Vertex> numbers(places.size(), kNoNumber);
     for (const std::uint32_t index : order) {
         const Located located = triangulation_->find(places[index]);
         if (const std::size_t corner = cornerAt(located); corner < 3) {
@@ -70,7 +70,7 @@ std::vector<Vertex> Mesh::insert(std::span<const Place> places) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         if (first[i] != i) {
             numbers[i] = numbers[first[i]];
-        } else if (numbers[i] == kNobody) {
+        } else if (numbers[i] == kNoNumber) {
             numbers[i] = triangulation_->takeNumber();
         }
     }
@@ -120,7 +120,7 @@ bool Mesh::hasOutline() const {
         Vertex at = triangles().triangles[static_cast<std::size_t>(located.triangle)].corner[corner];
         while (triangles().places[static_cast<std::size_t>(at)] != part.to) {
             at = triangulation_->nextAlong(at, part.to);
-            if (at == kNobody) {
+            if (at == kNoNumber) {
                 return false;
             }
         }
@@ -144,7 +144,7 @@ void Mesh::release(Vertex a, Vertex b) {
     requireAlive(a);
     requireAlive(b);
     const Side side = triangulation_->findEdge(a, b);
-    if (side.slot != kNobody && !triangulation_->isOutline(side)) {
+    if (side.slot != kNoNumber && !triangulation_->isOutline(side)) {
         triangulation_->release(a, b);
     }
 }
@@ -153,7 +153,7 @@ bool Mesh::isConstrained(Vertex a, Vertex b) const {
     requireAlive(a);
     requireAlive(b);
     const Side side = triangulation_->findEdge(a, b);
-    return side.slot != kNobody && triangulation_->isConstrained(side);
+    return side.slot != kNoNumber && triangulation_->isConstrained(side);
 }
 
 std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
@@ -162,7 +162,7 @@ std::vector<std::pair<Vertex, Vertex>> Mesh::constraints() const {
         for (std::size_t i = 0; i < 3; ++i) {
             const Vertex a = triangle.corner[next(i)];
             const Vertex b = triangle.corner[previous(i)];
-            if (triangle.constrained[i] && triangle.neighbour[i] != kNobody && a < b) {
+            if (triangle.constrained[i] && triangle.neighbour[i] != kNoNumber && a < b) {
                 constraints.emplace_back(a, b);
             }
         }
@@ -180,7 +180,7 @@ Mesh::Difference Mesh::takeDifference() {
     return triangulation_->differences.takeDifference(triangles());
 }
 
-Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
+Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<LatticePoint>> places,
                    std::span<const std::pair<Vertex, Vertex>> constraints, std::shared_ptr<const Holes> holes) {
     Mesh mesh(width, depth, std::move(holes));
     for (std::size_t i = 0; i < 4; ++i) {
@@ -188,7 +188,7 @@ Mesh Mesh::restore(std::int32_t width, std::int32_t depth, std::span<const std::
             throw std::invalid_argument("the first four vertices are not the corners of the field");
         }
     }
-    std::vector<Place> there;
+    std::vector<LatticePoint> there;
     std::vector<Vertex> numbers;
     Triangulation& triangulation = *mesh.triangulation_;
     triangulation.reserveNumbers(places.size());

@@ -18,8 +18,8 @@ namespace sand::tin {
 ///
 /// Flips edges until the circle around every triangle is empty, as far as constraints allow (Lawson 1977). Integer
 /// predicates decide. Vertices 0 to 3 are the rectangle's corners, counter-clockwise from the south-west. If four or
-/// more vertices lie on a circle, the diagonals begin at the first of them in the order of Place. The mesh therefore
-/// depends only on vertices and constraints, not on their history. Not thread-safe.
+/// more vertices lie on a circle, the diagonals begin at the first of them in the order of LatticePoint. The mesh
+/// therefore depends only on vertices and constraints, not on their history. Not thread-safe.
 class Mesh {
 public:
     /// Throws std::invalid_argument unless both sides are within [1, 2^22] [probe unit]. `holes` may be null.
@@ -38,10 +38,10 @@ public:
 
     /// Returns the vertex at `place`, and adds one if the place is free. A vertex on a constrained edge splits the
     /// edge; both halves are constrained. Throws std::invalid_argument if `place` lies outside the field.
-    Vertex insert(Place place);
+    Vertex insert(LatticePoint place);
     /// Returns the vertices at many places, as if they were inserted one after the other, but in less time. The
     /// vertices get their numbers in the order of `places`.
-    std::vector<Vertex> insert(std::span<const Place> places);
+    std::vector<Vertex> insert(std::span<const LatticePoint> places);
     /// Reserves memory for `vertices` vertices in all, so that no insertion up to this number moves the mesh in
     /// memory.
     void reserve(std::size_t vertices);
@@ -91,27 +91,27 @@ public:
     /// A triangle with the places of its corners, counter-clockwise from its smallest vertex.
     struct Piece {
         std::array<Vertex, 3> corner{};
-        std::array<Place, 3> place{};
+        std::array<LatticePoint, 3> place{};
         // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
         friend auto operator<=>(const Piece&, const Piece&) = default;
     };
-    /// Triangles that went and triangles that came since the last call, whatever their slots are. Both lists are in
-    /// ascending order and cover the same ground. Recording begins with the first call, which returns an empty
-    /// Difference. takeChange() and takeDifference() do not affect each other.
+    /// Triangles that were removed and triangles that were added since the last call, whatever their slots are. Both
+    /// lists are in ascending order and cover the same ground. Recording begins with the first call, which returns an
+    /// empty Difference. takeChange() and takeDifference() do not affect each other.
     struct Difference {
-        std::vector<Piece> went, came;
+        std::vector<Piece> removed, added;
     };
     [[nodiscard]] Difference takeDifference();
 
     /// Creates the mesh with these vertices and constraints, from which a restored replica can continue. `places` is
     /// indexed by vertex; nullopt stands for a vertex that does not exist. Throws std::invalid_argument if places and
     /// constraints do not make a mesh.
-    static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<Place>> places,
+    static Mesh restore(std::int32_t width, std::int32_t depth, std::span<const std::optional<LatticePoint>> places,
                         std::span<const std::pair<Vertex, Vertex>> constraints,
                         std::shared_ptr<const Holes> holes = nullptr);
 
 private:
-    void requireInside(const Place& place) const;
+    void requireInside(const LatticePoint& place) const;
     void requireAlive(Vertex vertex) const;
     [[nodiscard]] bool isStraight(Vertex vertex, const std::vector<Vertex>& along) const;
 

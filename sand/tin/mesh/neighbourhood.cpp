@@ -8,7 +8,7 @@
 namespace sand::tin {
 namespace {
 
-Box around(const std::array<Place, 3>& corners) {
+Box around(const std::array<LatticePoint, 3>& corners) {
     const auto& [a, b, c] = corners;
     return {std::min({a.x, b.x, c.x}), std::min({a.y, b.y, c.y}), std::max({a.x, b.x, c.x}), std::max({a.y, b.y, c.y})};
 }
@@ -73,10 +73,10 @@ void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
         return;
     }
     seen_.clear();
-    const Place middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
+    const LatticePoint middle{box.x0 + (box.x1 - box.x0) / 2, box.y0 + (box.y1 - box.y0) / 2};
     const auto slots = static_cast<std::int32_t>(mesh.triangles.size());
     const bool known = last_ >= 0 && last_ < slots && mesh.triangles[static_cast<std::size_t>(last_)].alive();
-    last_ = locate(mesh, middle, known ? last_ : kNobody).triangle;
+    last_ = locate(mesh, middle, known ? last_ : kNoNumber).triangle;
     seen_.reserve(mesh.triangles.size());
     seen_.insert(last_);
     // Writes every candidate, and counts it only if it is new. A branch would be slower, because the CPU could not
@@ -107,7 +107,7 @@ void Neighbourhood::look(const Triangles& mesh, const Box& wanted) {
             const bool own = mesh.triangleAt[static_cast<std::size_t>(triangle.corner[k])] == slot;
             vertices_[count] = triangle.corner[k];
             count += static_cast<std::size_t>(own) & static_cast<std::size_t>(box.holds(places[k]));
-            if (triangle.neighbour[k] != kNobody) {
+            if (triangle.neighbour[k] != kNoNumber) {
                 found_[end] = triangle.neighbour[k];
                 end += static_cast<std::size_t>(seen_.insertReserved(triangle.neighbour[k]));
             }
@@ -141,10 +141,10 @@ void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
     };
     const std::int32_t any = mesh.triangleAt[index(vertex)];
     std::int32_t first = any;  // on the rim, the first triangle counter-clockwise
-    for (std::int32_t slot = beside(any, 2); slot != kNobody && slot != any; slot = beside(slot, 2)) {
+    for (std::int32_t slot = beside(any, 2); slot != kNoNumber && slot != any; slot = beside(slot, 2)) {
         first = slot;
     }
-    link.closed = beside(first, 2) != kNobody;
+    link.closed = beside(first, 2) != kNoNumber;
     first = link.closed ? any : first;
     std::int32_t slot = first;
     do {
@@ -152,23 +152,23 @@ void findLink(const Triangles& mesh, Vertex vertex, Link& link) {
         const std::size_t k = cornerOf(slot), after = (k + 1) % 3;
         link.vertices.push_back(triangle.corner[after]);
         const std::int32_t next = triangle.neighbour[after];
-        if (triangle.constrained[after] && next != kNobody) {
+        if (triangle.constrained[after] && next != kNoNumber) {
             const bool border = triangle.hole != mesh.triangles[index(next)].hole;
             link.bordered = link.bordered || border;
             link.constrained = link.constrained || !border;
         }
-        if (next == kNobody) {
+        if (next == kNoNumber) {
             link.vertices.push_back(triangle.corner[(k + 2) % 3]);
         }
         slot = next;
-    } while (slot != first && slot != kNobody);
+    } while (slot != first && slot != kNoNumber);
     if (link.closed) {
         std::rotate(link.vertices.begin(), std::min_element(link.vertices.begin(), link.vertices.end()),
                     link.vertices.end());
     }
 }
 
-bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance) {
+bool isNear(const LatticePoint& place, const LatticePoint& from, const LatticePoint& to, std::int32_t distance) {
     const auto squared = [](std::int64_t x, std::int64_t y) { return x * x + y * y; };
     const std::int64_t limit = std::int64_t{distance} * distance;
     const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;

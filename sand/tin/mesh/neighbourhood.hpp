@@ -14,7 +14,7 @@ namespace sand::tin {
 struct Box {
     std::int32_t x0 = 0, y0 = 0, x1 = -1, y1 = -1;
     [[nodiscard]] bool empty() const { return x0 > x1 || y0 > y1; }
-    [[nodiscard]] bool holds(const Place& place) const {
+    [[nodiscard]] bool holds(const LatticePoint& place) const {
         return place.x >= x0 && place.x <= x1 && place.y >= y0 && place.y <= y1;
     }
     [[nodiscard]] Box clippedTo(const Triangles& field) const {
@@ -62,7 +62,7 @@ private:
     Box box_;
     std::vector<Vertex> vertices_, stay_, come_;
     std::vector<std::int32_t> triangles_, found_;  // found_ is longer than the list in it, to save resizing
-    std::int32_t last_ = kNobody;                  // triangle at which the next search begins; saves time only
+    std::int32_t last_ = kNoNumber;                // triangle at which the next search begins; saves time only
     base::IndexSet seen_;                          // slots that look() has found
 };
 
@@ -79,6 +79,7 @@ void findLink(const Triangles& mesh, Vertex vertex, Link& link);
 
 /// Returns whether the distance of a place from a segment is less than `distance` [probe unit]. Exact except for the
 /// rounding of one product of doubles.
-[[nodiscard]] bool isNear(const Place& place, const Place& from, const Place& to, std::int32_t distance);
+[[nodiscard]] bool isNear(const LatticePoint& place, const LatticePoint& from, const LatticePoint& to,
+                          std::int32_t distance);
 
 }  // namespace sand::tin

@@ -15,7 +15,8 @@ namespace sand::tin {
 /// The sides of a field are at most 2^22 probe units. Minors and squares then stay within 2^46, and the whole within
 /// 2^94. 128-bit
 /// integers decide if doubles cannot.
-[[nodiscard]] inline int inCircle(const Place& a, const Place& b, const Place& c, const Place& d) {
+[[nodiscard]] inline int inCircle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
+                                  const LatticePoint& d) {
     const std::int64_t ax = a.x - d.x, ay = a.y - d.y;
     const std::int64_t bx = b.x - d.x, by = b.y - d.y;
     const std::int64_t cx = c.x - d.x, cy = c.y - d.y;
@@ -39,10 +40,11 @@ namespace sand::tin {
 
 /// Returns whether the edge b–c between the triangles a, b, c and d, c, b must be flipped to a–d.
 ///
-/// If all four lie on a circle, the diagonal begins at the first of them in the order of Place. This is as if every
-/// vertex were lowered a little on the paraboloid, the first one by far the most. Then no four vertices are on a
+/// If all four lie on a circle, the diagonal begins at the first of them in the order of LatticePoint. This is as if
+/// every vertex were lowered a little on the paraboloid, the first one by far the most. Then no four vertices are on a
 /// circle, the mesh is unique, and flips lead to it from every other mesh.
-[[nodiscard]] inline bool mustFlip(const Place& a, const Place& b, const Place& c, const Place& d) {
+[[nodiscard]] inline bool mustFlip(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
+                                   const LatticePoint& d) {
     const int inside = inCircle(a, b, c, d);
     return inside > 0 || (inside == 0 && std::min(a, d) < std::min(b, c));
 }

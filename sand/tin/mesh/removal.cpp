@@ -62,7 +62,7 @@ void Triangulation::merge(Vertex vertex) {
     // outside[i] lies beyond the edge from o[i] to o[i + 1]. A vertex on the rim may have three neighbours and two
     // triangles. Then outside[2] lies beyond the rim edge that replaces the vertex's two rim edges.
     std::array<Outer, 4> outside{};
-    outside.fill({kNobody, true});
+    outside.fill({kNoNumber, true});
     for (std::size_t i = 0; i < slots.size(); ++i) {
         outside.at(i) = outer({slots[i], cornerOf(triangle(slots[i]), vertex)});
     }
@@ -88,7 +88,7 @@ void Triangulation::remove(Vertex vertex) {
     made_.clear();
     reduce(vertex);
     merge(vertex);
-    mesh_.triangleAt[static_cast<std::size_t>(vertex)] = kNobody;
+    mesh_.triangleAt[static_cast<std::size_t>(vertex)] = kNoNumber;
     --vertexCount_;
     giveBack(vertex);
     improve(made_);
@@ -96,7 +96,7 @@ void Triangulation::remove(Vertex vertex) {
 
 void Triangulation::release(Vertex a, Vertex b) {
     const Side side = findEdge(a, b);
-    if (side.slot == kNobody || onRim(side) || !isConstrained(side)) {
+    if (side.slot == kNoNumber || onRim(side) || !isConstrained(side)) {
         return;
     }
     setConstrained(side, false);

@@ -13,7 +13,7 @@ constexpr unsigned kBits = 23;  // bits of a coordinate
 constexpr std::size_t kRounds = 16;
 
 /// Returns the position of a place along Hilbert's curve. Different places have different positions.
-std::uint64_t hilbert(const Place& place) {
+std::uint64_t hilbert(const LatticePoint& place) {
     // Both tables are indexed by the curve's orientation in this square and by the quarter. kDigit has the digit, and
     // kWithin the orientation in that quarter. Orientations: unchanged, swapped, turned by half, swapped and turned.
     constexpr std::array<std::array<std::uint8_t, 4>, 4> kDigit{
@@ -44,7 +44,7 @@ std::size_t roundOf(std::uint32_t index) {
 
 }  // namespace
 
-SpatialOrder spatialOrder(std::span<const Place> places) {
+SpatialOrder spatialOrder(std::span<const LatticePoint> places) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(places.size());
     for (std::uint32_t index = 0; index < places.size(); ++index) {
         keys[index] = {hilbert(places[index]), index};

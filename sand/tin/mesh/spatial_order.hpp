@@ -18,6 +18,6 @@ struct SpatialOrder {
     std::vector<std::uint32_t> first;
 };
 /// Returns the order for `places`, which may contain equal places.
-[[nodiscard]] SpatialOrder spatialOrder(std::span<const Place> places);
+[[nodiscard]] SpatialOrder spatialOrder(std::span<const LatticePoint> places);
 
 }  // namespace sand::tin

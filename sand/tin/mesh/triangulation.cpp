@@ -18,14 +18,14 @@ Triangulation::Triangulation(std::int32_t width, std::int32_t depth, std::shared
     const std::int32_t north = newSlot();
     // The four corners lie on a circle, so that the diagonal begins at the first one.
     triangle(north).corner = {0, 2, 3};
-    put(south, {0, 1, 2}, {{{kNobody, true}, {north, false}, {kNobody, true}}});
-    put(north, {0, 2, 3}, {{{kNobody, true}, {kNobody, true}, {south, false}}});
+    put(south, {0, 1, 2}, {{{kNoNumber, true}, {north, false}, {kNoNumber, true}}});
+    put(north, {0, 2, 3}, {{{kNoNumber, true}, {kNoNumber, true}, {south, false}}});
 }
 
 Vertex Triangulation::takeNumber() {
     if (freeNumbers_.empty()) {
         mesh_.places.emplace_back();
-        mesh_.triangleAt.push_back(kNobody);
+        mesh_.triangleAt.push_back(kNoNumber);
         return static_cast<Vertex>(mesh_.places.size()) - 1;
     }
     std::pop_heap(freeNumbers_.begin(), freeNumbers_.end(), std::greater<>());
@@ -41,7 +41,7 @@ void Triangulation::giveBack(Vertex number) {
 
 void Triangulation::reserveNumbers(std::size_t count) {
     mesh_.places.resize(count);
-    mesh_.triangleAt.resize(count, kNobody);
+    mesh_.triangleAt.resize(count, kNoNumber);
 }
 
 void Triangulation::reserve(std::size_t vertices) {
@@ -98,7 +98,7 @@ void Triangulation::put(std::int32_t slot, const std::array<Vertex, 3>& corners,
         here.neighbour[i] = sides[i].neighbour;
         here.constrained[i] = sides[i].constrained;
         mesh_.triangleAt[static_cast<std::size_t>(corners[i])] = slot;
-        if (sides[i].neighbour != kNobody) {
+        if (sides[i].neighbour != kNoNumber) {
             Triangle& there = triangle(sides[i].neighbour);
             // In the neighbour, the common side begins at the end of our side. It lies opposite the corner before that
             // one.
@@ -117,7 +117,7 @@ void Triangulation::setConstrained(const Side& side, bool constrained) {
     touch(side.slot);
     triangle(side.slot).constrained[side.opposite] = constrained;
     const Side there = beyond(side);
-    if (there.slot != kNobody) {
+    if (there.slot != kNoNumber) {
         touch(there.slot);
         triangle(there.slot).constrained[there.opposite] = constrained;
     }
@@ -130,7 +130,7 @@ VertexPair Triangulation::ends(const Side& side) const {
 
 Side Triangulation::beyond(const Side& side) const {
     const std::int32_t slot = triangle(side.slot).neighbour[side.opposite];
-    if (slot == kNobody) {
+    if (slot == kNoNumber) {
         return {};
     }
     return {slot, previous(cornerOf(triangle(slot), ends(side).second))};
@@ -157,7 +157,7 @@ Side Triangulation::findEdge(Vertex a, Vertex b) const {
         } else if (here.corner[side.opposite] == b) {
             found = {side.slot, previous(side.opposite)};
         }
-        return found.slot != kNobody;
+        return found.slot != kNoNumber;
     });
     return found;
 }
@@ -182,10 +182,10 @@ std::vector<Vertex> Triangulation::outlineFrom(Vertex vertex) const {
     return others;
 }
 
-Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
-    const Place& from = place(vertex);
+Vertex Triangulation::nextAlong(Vertex vertex, const LatticePoint& to) const {
+    const LatticePoint& from = place(vertex);
     for (const Vertex other : link(vertex)) {
-        const Place& there = place(other);
+        const LatticePoint& there = place(other);
         const auto isBetween = [](std::int32_t a, std::int32_t b, std::int32_t c) {
             return std::min(a, c) <= b && b <= std::max(a, c);
         };
@@ -194,14 +194,14 @@ Vertex Triangulation::nextAlong(Vertex vertex, const Place& to) const {
             return other;
         }
     }
-    return kNobody;
+    return kNoNumber;
 }
 
 void Triangulation::findStar(Vertex centre, Star& star) const {
     // First go back to the rim, if there is one, and then around the vertex.
     const std::int32_t start = mesh_.triangleAt[static_cast<std::size_t>(centre)];
     std::int32_t first = start;
-    for (std::int32_t before = start; before != kNobody;) {
+    for (std::int32_t before = start; before != kNoNumber;) {
         first = before;
         before = triangle(first).neighbour[previous(cornerOf(triangle(first), centre))];
         if (before == start) {
@@ -210,7 +210,7 @@ void Triangulation::findStar(Vertex centre, Star& star) const {
     }
     star.slots.clear();
     star.others.clear();
-    Vertex last = kNobody;
+    Vertex last = kNoNumber;
     std::int32_t slot = first;
     do {
         const Triangle& here = triangle(slot);
@@ -219,8 +219,8 @@ void Triangulation::findStar(Vertex centre, Star& star) const {
         star.others.push_back(here.corner[next(corner)]);
         last = here.corner[previous(corner)];
         slot = here.neighbour[next(corner)];
-    } while (slot != kNobody && slot != first);
-    if (slot == kNobody) {
+    } while (slot != kNoNumber && slot != first);
+    if (slot == kNoNumber) {
         star.others.push_back(last);
     }
 }
@@ -275,12 +275,12 @@ void Triangulation::splitSide(const Side& side, Vertex vertex) {
     const Outer ca = outer({s, next(side.opposite)});
     const Outer ab = outer({s, previous(side.opposite)});
     const std::int32_t s2 = newSlot();
-    if (t == kNobody) {
+    if (t == kNoNumber) {
         touch(s);
         triangle(s).corner = {vertex, a, b};
         triangle(s2).corner = {vertex, c, a};
-        put(s, {vertex, a, b}, {{ab, {kNobody, constrained}, {s2, false}}});
-        put(s2, {vertex, c, a}, {{ca, {s, false}, {kNobody, constrained}}});
+        put(s, {vertex, a, b}, {{ab, {kNoNumber, constrained}, {s2, false}}});
+        put(s2, {vertex, c, a}, {{ca, {s, false}, {kNoNumber, constrained}}});
         stack_ = {s, s2};
         return;
     }
@@ -320,7 +320,7 @@ void Triangulation::improve(std::vector<VertexPair>& suspects) {
         const auto [a, b] = suspects.back();
         suspects.pop_back();
         const Side side = findEdge(a, b);
-        if (side.slot == kNobody || !isWrong(side)) {
+        if (side.slot == kNoNumber || !isWrong(side)) {
             continue;
         }
         const Side there = beyond(side);
@@ -345,17 +345,17 @@ std::size_t cornerAt(const Located& located) {
 VertexPair Triangulation::edgeAt(const Located& located) const {
     const auto* zero = std::find(located.weights.begin(), located.weights.end(), 0);
     if (zero == located.weights.end() || cornerAt(located) < 3) {
-        return {kNobody, kNobody};
+        return {kNoNumber, kNoNumber};
     }
     return ends({located.triangle, static_cast<std::size_t>(zero - located.weights.begin())});
 }
 
-Vertex Triangulation::insertAt(const Located& located, const Place& place, Vertex number) {
+Vertex Triangulation::insertAt(const Located& located, const LatticePoint& place, Vertex number) {
     last_ = located.triangle;
     if (const std::size_t corner = cornerAt(located); corner < 3) {
         return triangle(located.triangle).corner[corner];
     }
-    if (number == kNobody) {
+    if (number == kNoNumber) {
         number = takeNumber();
     }
     mesh_.places[static_cast<std::size_t>(number)] = place;

@@ -14,7 +14,7 @@ namespace sand::tin {
 
 /// An edge as a side of one of its triangles: the side opposite the corner with index `opposite`.
 struct Side {
-    std::int32_t slot = kNobody;
+    std::int32_t slot = kNoNumber;
     std::size_t opposite = 0;
 };
 
@@ -41,8 +41,8 @@ public:
     /// Returns the neighbours of a vertex along the outline of holes. Edges of the rim do not count.
     [[nodiscard]] std::vector<Vertex> outlineFrom(Vertex vertex) const;
     /// Returns the other end of the constraint that leads from `vertex` straight towards `to` and ends at `to` or
-    /// before it. Returns kNobody if there is no such constraint.
-    [[nodiscard]] Vertex nextAlong(Vertex vertex, const Place& to) const;
+    /// before it. Returns kNoNumber if there is no such constraint.
+    [[nodiscard]] Vertex nextAlong(Vertex vertex, const LatticePoint& to) const;
     [[nodiscard]] int vertexCount() const { return vertexCount_; }
 
     /// Returns the smallest free number. It stays in use until giveBack().
@@ -53,14 +53,14 @@ public:
     /// Reserves memory for `vertices` further vertices.
     void reserve(std::size_t vertices);
     /// Returns the vertex at a place within the field. A new vertex gets the number `number`, or a free one if that is
-    /// kNobody.
-    Vertex insert(const Place& place, Vertex number = kNobody) { return insertAt(find(place), place, number); }
+    /// kNoNumber.
+    Vertex insert(const LatticePoint& place, Vertex number = kNoNumber) { return insertAt(find(place), place, number); }
     /// Returns the triangle that contains a place. The search begins where the last change was.
-    [[nodiscard]] Located find(const Place& place) { return locate(mesh_, place, last_); }
-    /// Returns the ends of the edge on which the place lies. Returns kNobody twice if it lies on no edge or at a
+    [[nodiscard]] Located find(const LatticePoint& place) { return locate(mesh_, place, last_); }
+    /// Returns the ends of the edge on which the place lies. Returns kNoNumber twice if it lies on no edge or at a
     /// vertex.
     [[nodiscard]] VertexPair edgeAt(const Located& located) const;
-    Vertex insertAt(const Located& located, const Place& place, Vertex number);
+    Vertex insertAt(const Located& located, const LatticePoint& place, Vertex number);
     /// Removes a vertex, which must not be a corner of the field.
     void remove(Vertex vertex);
     void release(Vertex a, Vertex b);
@@ -69,8 +69,8 @@ public:
 
     /// The first vertex or constraint on the straight line from one vertex to another.
     struct Hit {
-        Vertex vertex = kNobody;         // vertex on the line, possibly its end; kNobody if the line meets a constraint
-        VertexPair edge{};               // the constraint that the line crosses
+        Vertex vertex = kNoNumber;  // vertex on the line, possibly its end; kNoNumber if the line meets a constraint
+        VertexPair edge{};          // the constraint that the line crosses
         std::vector<VertexPair> passed;  // edges that the line crosses before
     };
     [[nodiscard]] Hit follow(Vertex from, Vertex to) const;
@@ -78,10 +78,12 @@ public:
     void carve(Vertex from, const Hit& hit);
     Mesh::Path constrain(Vertex from, Vertex to);
 
-    /// Returns the edge between two vertices. Its slot is kNobody if there is no such edge.
+    /// Returns the edge between two vertices. Its slot is kNoNumber if there is no such edge.
     [[nodiscard]] Side findEdge(Vertex a, Vertex b) const;
     [[nodiscard]] bool isConstrained(const Side& side) const { return triangle(side.slot).constrained[side.opposite]; }
-    [[nodiscard]] bool onRim(const Side& side) const { return triangle(side.slot).neighbour[side.opposite] == kNobody; }
+    [[nodiscard]] bool onRim(const Side& side) const {
+        return triangle(side.slot).neighbour[side.opposite] == kNoNumber;
+    }
 
     /// For Mesh::takeChange() and Mesh::takeDifference(). `noteDifferences` is false before the first
     /// takeDifference().
@@ -95,7 +97,9 @@ private:
         return mesh_.triangles[static_cast<std::size_t>(slot)];
     }
     [[nodiscard]] Triangle& triangle(std::int32_t slot) { return mesh_.triangles[static_cast<std::size_t>(slot)]; }
-    [[nodiscard]] const Place& place(Vertex vertex) const { return mesh_.places[static_cast<std::size_t>(vertex)]; }
+    [[nodiscard]] const LatticePoint& place(Vertex vertex) const {
+        return mesh_.places[static_cast<std::size_t>(vertex)];
+    }
     [[nodiscard]] std::int64_t area(Vertex a, Vertex b, Vertex c) const {
         return doubledArea(place(a), place(b), place(c));
     }
@@ -163,7 +167,7 @@ void Triangulation::around(Vertex centre, const Visit& visit) const {
                 return;
             }
             slot = here.neighbour[turn == 1 ? next(corner) : previous(corner)];
-        } while (slot != start && slot != kNobody);
+        } while (slot != start && slot != kNoNumber);
         if (slot == start) {
             return;
         }

@@ -10,14 +10,16 @@
 namespace sand::tin {
 namespace {
 
-std::int32_t wayBetween(const Place& a, const Place& b) { return std::abs(b.x - a.x) + std::abs(b.y - a.y); }
+std::int32_t wayBetween(const LatticePoint& a, const LatticePoint& b) {
+    return std::abs(b.x - a.x) + std::abs(b.y - a.y);
+}
 
 class BorderMaker {
 public:
     BorderMaker(std::span<const double> heights, const Cells& cells, const Holes* holes, double maxError,
                 const LongestEdges& longest)
         : heights_(heights), cells_(cells), holes_(holes), maxError_(maxError), longest_(longest) {
-        for (const Place& corner : corners()) {
+        for (const LatticePoint& corner : corners()) {
             numbers_.emplace(corner, static_cast<Vertex>(numbers_.size()));
         }
     }
@@ -44,8 +46,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::array<Place, 4> corners() const {
-        return {Place{0, 0}, {cells_.width, 0}, {cells_.width, cells_.depth}, {0, cells_.depth}};
+    [[nodiscard]] std::array<LatticePoint, 4> corners() const {
+        return {LatticePoint{0, 0}, {cells_.width, 0}, {cells_.width, cells_.depth}, {0, cells_.depth}};
     }
     [[nodiscard]] bool isGround(int column, int row) const {
         return column >= 0 && row >= 0 && column < cells_.columns && row < cells_.rows &&
@@ -56,7 +58,7 @@ private:
                         static_cast<std::size_t>(column)];
     }
     /// Returns the mean of the samples of the ground beside a place. Returns not a number if there is no ground.
-    [[nodiscard]] double heightAt(const Place& place) const {
+    [[nodiscard]] double heightAt(const LatticePoint& place) const {
         const int east = cells_.columnOf(2 * std::int64_t{place.x} + 1, 2);
         const int west = cells_.columnOf(2 * std::int64_t{place.x} - 1, 2);
         const int north = cells_.rowOf(2 * std::int64_t{place.y} + 1, 2);
@@ -76,13 +78,13 @@ private:
     /// Both ends of a straight part and the places beside the cell centres between them, in order. `wanted` marks
     /// the places that the border gets.
     struct Chain {
-        std::vector<Place> places;
+        std::vector<LatticePoint> places;
         std::vector<double> heights;
         std::vector<bool> wanted;
     };
-    [[nodiscard]] Chain chainOf(const Place& from, const Place& to) const {
+    [[nodiscard]] Chain chainOf(const LatticePoint& from, const LatticePoint& to) const {
         Chain chain;
-        const auto append = [&](const Place& place) {
+        const auto append = [&](const LatticePoint& place) {
             if (const double height = heightAt(place); !std::isnan(height)) {
                 chain.places.push_back(place);
                 chain.heights.push_back(height);
@@ -137,7 +139,7 @@ private:
     }
 
     /// Adds the straight part between two places to the border. Returns the vertices along it, with both ends.
-    std::vector<Vertex> add(const Place& from, const Place& to, std::int32_t longest) {
+    std::vector<Vertex> add(const LatticePoint& from, const LatticePoint& to, std::int32_t longest) {
         Chain chain = chainOf(from, to);
         std::vector<Vertex> along;
         if (chain.places.empty()) {
@@ -159,19 +161,19 @@ private:
     }
 
     /// Adds a side of the field, part by part from one existing vertex to the next.
-    void addSide(const Place& from, const Place& to) {
-        std::vector<Place> there;
+    void addSide(const LatticePoint& from, const LatticePoint& to) {
+        std::vector<LatticePoint> there;
         for (auto found = numbers_.lower_bound(from); found != numbers_.end() && found->first <= to; ++found) {
             if (doubledArea(from, to, found->first) == 0) {
                 there.push_back(found->first);
             }
         }
         for (std::size_t i = 1; i < there.size(); ++i) {
-            const Place& a = there[i - 1];
-            const Place& b = there[i];
+            const LatticePoint& a = there[i - 1];
+            const LatticePoint& b = there[i];
             // A part has either ground all along or no ground. Look at its middle, because it may be only half a cell
             // long.
-            const Place middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
+            const LatticePoint middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
             if (!std::isnan(heightAt(middle))) {
                 add(a, b, longest_.onRim);
             }
@@ -183,7 +185,7 @@ private:
     const Holes* holes_;
     double maxError_;
     LongestEdges longest_;
-    std::map<Place, Vertex> numbers_;  // of corners and border
+    std::map<LatticePoint, Vertex> numbers_;  // of corners and border
     Border border_;
 };
 

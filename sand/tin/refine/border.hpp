@@ -19,7 +19,7 @@ namespace sand::tin {
 /// The border of a raster's ground. It has points on the field's rim and on the outline of holes, and the edges between
 /// the points of an outline. The field's four corners are not among the points.
 struct Border {
-    std::vector<Place> places;                     // all different
+    std::vector<LatticePoint> places;              // all different
     std::vector<double> heights;                   // [the raster's unit]
     std::vector<std::pair<Vertex, Vertex>> edges;  // vertices 0 to 3 are the corners, 4 is the first place
 };

@@ -15,7 +15,7 @@ constexpr std::size_t kMostAround = 64;  // vertices with more neighbours stay, 
 /// is the origin, so that the sums are of products of small numbers.
 double farthestFromPlane(const VertexSand& layer, Vertex vertex, const Link& link) {
     const auto& places = layer.triangles().places;
-    const Place origin = places[static_cast<std::size_t>(vertex)];
+    const LatticePoint origin = places[static_cast<std::size_t>(vertex)];
     const double base = layer.heights()[static_cast<std::size_t>(vertex)];
     struct Point {
         double x, y, z;
@@ -100,19 +100,19 @@ int Coarsening::step(VertexSand& layer, const DetailRules& rules, Vertex& next, 
             touch(layer.triangles(), around);
             return;
         }
-        known_[index(vertex)] = kInVain;
+        known_[index(vertex)] = kFailed;
         for (const Vertex other : around) {
-            known_[index(other)] &= static_cast<std::uint8_t>(~kNoneInVain);
+            known_[index(other)] &= static_cast<std::uint8_t>(~kNoneFailed);
         }
     };
     return coarsenBut(
-        layer, rules, next, keepOut, [this](Vertex vertex) { return (known_[index(vertex)] & kInVain) != 0; }, looked);
+        layer, rules, next, keepOut, [this](Vertex vertex) { return (known_[index(vertex)] & kFailed) != 0; }, looked);
 }
 
 void Coarsening::lookAgain(const Triangle& triangle) {
     for (const Vertex corner : triangle.corner) {
         if (index(corner) < known_.size()) {
-            known_[index(corner)] &= static_cast<std::uint8_t>(~kInVain);
+            known_[index(corner)] &= static_cast<std::uint8_t>(~kFailed);
         }
     }
 }
@@ -121,9 +121,9 @@ void Coarsening::touch(const Triangles& mesh, std::span<const Vertex> vertices) 
     known_.resize(std::max(known_.size(), mesh.triangleAt.size()), 0);
     for (const Vertex vertex : vertices) {
         // A vertex that is removed and comes back has only new triangles.
-        if ((known_[index(vertex)] & kNoneInVain) == 0 && mesh.alive(vertex)) {
+        if ((known_[index(vertex)] & kNoneFailed) == 0 && mesh.alive(vertex)) {
             aroundVertex(mesh, vertex, [&](std::int32_t slot, int) { lookAgain(mesh.triangles[index(slot)]); });
-            known_[index(vertex)] |= kNoneInVain;
+            known_[index(vertex)] |= kNoneFailed;
         }
     }
 }

@@ -42,11 +42,11 @@ private:
     /// Makes step() examine the corners of a triangle again.
     void lookAgain(const Triangle& triangle);
 
-    // Bits by vertex; a vertex beyond the end has none. If a vertex has kNoneInVain, neither it nor a vertex around it
-    // has kInVain. The bits outlast their vertex. This does no harm, because a vertex that comes back has only new
+    // Bits by vertex; a vertex beyond the end has none. If a vertex has kNoneFailed, neither it nor a vertex around it
+    // has kFailed. The bits outlast their vertex. This does no harm, because a vertex that comes back has only new
     // triangles.
-    static constexpr std::uint8_t kInVain = 1;  // removal failed, and nothing around the vertex has changed since
-    static constexpr std::uint8_t kNoneInVain = 2;
+    static constexpr std::uint8_t kFailed = 1;  // removal failed, and nothing around the vertex has changed since
+    static constexpr std::uint8_t kNoneFailed = 2;
     std::vector<std::uint8_t> known_;
 };
 

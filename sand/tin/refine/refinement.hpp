@@ -25,7 +25,7 @@ struct DetailRules {
 };
 
 /// Edges near which new vertices would make slivers.
-using Edges = std::vector<std::pair<Place, Place>>;
+using Edges = std::vector<std::pair<LatticePoint, LatticePoint>>;
 
 /// Adds a vertex in the middle of each square of the lattice in `box` that fulfils three conditions. `wanted` must be
 /// true for the middle. The square must contain no place of `there`. The middle must be at least a quarter of the
@@ -33,18 +33,18 @@ using Edges = std::vector<std::pair<Place, Place>>;
 ///
 /// Goes from square to square, beginning in the south-west, until the mesh has rules.maxVertices. Returns the number
 /// of added vertices.
-int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
-           std::span<const Place> there, const Edges& edges);
+int refine(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const LatticePoint&)>& wanted,
+           std::span<const LatticePoint> there, const Edges& edges);
 
 /// Adds a vertex on the field's rim beside the middle of each square that reaches the rim within `box`. `wanted` must
 /// be true for the place on the rim. The square's part of the rim must contain no place of `there`. Stops when the
 /// mesh has rules.maxVertices. Returns the number of added vertices. Without vertices on the rim, sand would neither
 /// fall over an open rim nor lie against a closed one as in a mirror.
-int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
-              std::span<const Place> there);
+int refineRim(Mesh& mesh, const DetailRules& rules, const Box& box,
+              const std::function<bool(const LatticePoint&)>& wanted, std::span<const LatticePoint> there);
 
 /// Does the same on the borders of the mesh's holes, at least a quarter of the spacing away from their corners.
-int refineHoles(Mesh& mesh, const DetailRules& rules, const Box& box, const std::function<bool(const Place&)>& wanted,
-                std::span<const Place> there);
+int refineHoles(Mesh& mesh, const DetailRules& rules, const Box& box,
+                const std::function<bool(const LatticePoint&)>& wanted, std::span<const LatticePoint> there);
 
 }  // namespace sand::tin

@@ -21,7 +21,7 @@ std::int64_t ceilDivided(std::int64_t value, std::int64_t by) { return -floorDiv
 struct Worst {
     double error = 0;
     std::int64_t sample = kNone;
-    std::int32_t slot = kNobody;
+    std::int32_t slot = kNoNumber;
     std::uint32_t version = 0;  // of the slot when the error was measured; a newer version makes it invalid
     /// Orders a heap: the largest error is on top, and of equal errors the first sample.
     friend bool operator<(const Worst& a, const Worst& b) {
@@ -76,7 +76,7 @@ public:
 private:
     /// Corners from the smallest number on, not as in the slot. The rounding of heights then depends only on the mesh.
     struct Corners {
-        std::array<Place, 3> places;
+        std::array<LatticePoint, 3> places;
         std::array<double, 3> heights;
     };
     [[nodiscard]] Corners cornersOf(std::int32_t slot) const {
@@ -113,7 +113,7 @@ private:
         const std::int64_t y = raster_.first.y + row * raster_.spacing.y;
         std::int64_t first = 0, last = raster_.columns - 1;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Place &a = corners.places[k], &b = corners.places[(k + 1) % 3];
+            const LatticePoint &a = corners.places[k], &b = corners.places[(k + 1) % 3];
             const std::int64_t rise = std::int64_t{b.y} - a.y, run = std::int64_t{b.x} - a.x;
             // x = a.x + run (y - a.y) / rise, in columns, with one quotient.
             const std::int64_t way = (a.x - raster_.first.x) * rise + run * (y - a.y);
@@ -133,7 +133,7 @@ private:
         }
         const auto& p = corners.places;
         const std::int64_t start = row * raster_.columns + first;
-        const Place place = raster_.placeOf(static_cast<std::size_t>(start));
+        const LatticePoint place = raster_.placeOf(static_cast<std::size_t>(start));
         // Doubled areas are below 2^45 and exact in a double. Gradients are not used, because those of slivers are
         // huge.
         double w0 = static_cast<double>(doubledArea(place, p[1], p[2]));
@@ -180,11 +180,11 @@ void check(std::int32_t width, std::int32_t depth, const Raster& raster) {
 }
 
 /// Returns the height of the nearest sample with data. If two are equally near, the first counts.
-double nearestHeight(const Raster& raster, const Place& place) {
+double nearestHeight(const Raster& raster, const LatticePoint& place) {
     std::int64_t nearest = std::numeric_limits<std::int64_t>::max();
     double height = 0;
     for (std::size_t i = 0; i < raster.heights.size(); ++i) {
-        const Place sample = raster.placeOf(i);
+        const LatticePoint sample = raster.placeOf(i);
         const std::int64_t dx = std::int64_t{sample.x} - place.x, dy = std::int64_t{sample.y} - place.y;
         if (!std::isnan(raster.heights[i]) && dx * dx + dy * dy < nearest) {
             nearest = dx * dx + dy * dy;
@@ -198,7 +198,7 @@ double nearestHeight(const Raster& raster, const Place& place) {
 }
 
 /// Returns the sample at a place, or kNone.
-std::int64_t sampleAt(const Raster& raster, const Place& place) {
+std::int64_t sampleAt(const Raster& raster, const LatticePoint& place) {
     const std::int64_t x = std::int64_t{place.x} - raster.first.x, y = std::int64_t{place.y} - raster.first.y;
     const bool on = x >= 0 && y >= 0 && x % raster.spacing.x == 0 && y % raster.spacing.y == 0 &&
                     x / raster.spacing.x < raster.columns && y / raster.spacing.y < raster.rows;
@@ -217,7 +217,7 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
     Simplified result;
     Errors errors(raster, mesh, result.heights, goal.reports);
     for (Vertex corner = 0; corner < 4; ++corner) {
-        const Place place = mesh.triangles().places[static_cast<std::size_t>(corner)];
+        const LatticePoint place = mesh.triangles().places[static_cast<std::size_t>(corner)];
         result.places.push_back(place);
         result.heights.push_back(nearestHeight(raster, place));
         if (const std::int64_t sample = sampleAt(raster, place);
@@ -229,7 +229,7 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
     for (const auto& [a, b] : given.edges) {
         mesh.constrain(a, b);
     }
-    for (const Place& place : given.places) {
+    for (const LatticePoint& place : given.places) {
         if (const std::int64_t sample = sampleAt(raster, place); sample != kNone) {
             errors.use(sample);
         }
@@ -256,7 +256,7 @@ Simplified simplify(std::int32_t width, std::int32_t depth, const Raster& raster
     return result;
 }
 
-Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster, std::span<const Place> places,
+Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster, std::span<const LatticePoint> places,
                     std::span<const double> heights) {
     check(width, depth, raster);
     Mesh mesh(width, depth);

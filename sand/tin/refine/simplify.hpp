@@ -15,10 +15,10 @@ namespace sand::tin {
 struct Raster {
     std::span<const double> heights;  // row by row from the south, columns from the west
     int columns = 0, rows = 0;
-    Place first;
-    Place spacing{256, 256};  // of columns and of rows [probe unit]
+    LatticePoint first;
+    LatticePoint spacing{256, 256};  // of columns and of rows [probe unit]
 
-    [[nodiscard]] Place placeOf(std::size_t sample) const {
+    [[nodiscard]] LatticePoint placeOf(std::size_t sample) const {
         const auto width = static_cast<std::size_t>(columns);
         return {first.x + spacing.x * static_cast<std::int32_t>(sample % width),
                 first.y + spacing.y * static_cast<std::int32_t>(sample / width)};
@@ -34,7 +34,8 @@ struct SimplifyGoal {
 
 /// A choice of a raster's samples whose triangulation is close to all samples.
 struct Simplified {
-    std::vector<Place> places;    // the field's corners, the given points, then samples in the order of their choice
+    std::vector<LatticePoint>
+        places;                   // the field's corners, the given points, then samples in the order of their choice
     std::vector<double> heights;  // [the raster's unit]
     double maxError = 0, rmsError = 0;  // vertical, over all samples with data [the raster's unit]
 };
@@ -56,6 +57,6 @@ struct Simplified {
 
 /// Returns the surface through these points with its vertical errors, as simplify() reports them, for comparison.
 [[nodiscard]] Simplified measured(std::int32_t width, std::int32_t depth, const Raster& raster,
-                                  std::span<const Place> places, std::span<const double> heights);
+                                  std::span<const LatticePoint> places, std::span<const double> heights);
 
 }  // namespace sand::tin

@@ -31,13 +31,14 @@ std::int32_t meanHeight(const TinStart& start) {
     return nearestHeight(static_cast<double>(layer.volume()) / static_cast<double>(layer.ground()));
 }
 
-std::size_t nearest(const std::vector<Place>& places, const Place& to) {
-    const auto squared = [&](const Place& place) {
+std::size_t nearest(const std::vector<LatticePoint>& places, const LatticePoint& to) {
+    const auto squared = [&](const LatticePoint& place) {
         const std::int64_t x = std::int64_t{place.x} - to.x, y = std::int64_t{place.y} - to.y;
         return x * x + y * y;
     };
-    const auto found = std::min_element(places.begin(), places.end(),
-                                        [&](const Place& a, const Place& b) { return squared(a) < squared(b); });
+    const auto found =
+        std::min_element(places.begin(), places.end(),
+                         [&](const LatticePoint& a, const LatticePoint& b) { return squared(a) < squared(b); });
     return static_cast<std::size_t>(found - places.begin());
 }
 
@@ -157,20 +158,22 @@ double addChosen(const HeightField& field, const Ground* walls, Rim rim, TinStar
 }
 
 /// Places of a start with their heights [unit].
-struct MorePlaces {
-    std::vector<Place> places;
+struct MorePoints {
+    std::vector<LatticePoint> places;
     std::vector<std::int32_t> heights;
 };
 
 /// Returns vertices on the sides of the field that leave no edge along them longer than `longest` [probe unit]. Each
 /// has the height of the edge there.
-MorePlaces rimDivision(std::int32_t longest, const TinStart& start) {
-    MorePlaces more;
-    const std::array<std::function<bool(const Place&)>, 4> sides{
-        [](const Place& place) { return place.y == 0; }, [&](const Place& place) { return place.x == start.width; },
-        [&](const Place& place) { return place.y == start.depth; }, [](const Place& place) { return place.x == 0; }};
+MorePoints rimDivision(std::int32_t longest, const TinStart& start) {
+    MorePoints more;
+    const std::array<std::function<bool(const LatticePoint&)>, 4> sides{
+        [](const LatticePoint& place) { return place.y == 0; },
+        [&](const LatticePoint& place) { return place.x == start.width; },
+        [&](const LatticePoint& place) { return place.y == start.depth; },
+        [](const LatticePoint& place) { return place.x == 0; }};
     for (const auto& isOnSide : sides) {
-        std::map<Place, std::int32_t> along;  // heights by place
+        std::map<LatticePoint, std::int32_t> along;  // heights by place
         for (std::size_t i = 0; i < start.places.size(); ++i) {
             if (isOnSide(start.places[i])) {
                 along.emplace(start.places[i], start.heights[i]);
@@ -197,10 +200,10 @@ void divideRim(Rim rim, TinStart& start) {
     const auto most = static_cast<std::size_t>(start.settings.mostVertices);
     const std::size_t there = start.places.size();
     std::int32_t longest = rimSpacing(start.settings);
-    MorePlaces more = rimDivision(longest, start);
+    MorePoints more = rimDivision(longest, start);
     while (rim == Rim::closed && there <= most && there + more.places.size() > most) {
         longest = widerSpacing(longest, start.width, start.depth);
-        more = longest > 0 ? rimDivision(longest, start) : MorePlaces{};
+        more = longest > 0 ? rimDivision(longest, start) : MorePoints{};
     }
     start.places.insert(start.places.end(), more.places.begin(), more.places.end());
     start.heights.insert(start.heights.end(), more.heights.begin(), more.heights.end());
@@ -248,12 +251,13 @@ TinStart join(const TinStart& given, Rim rim) {
     start.width = given.width;
     start.depth = given.depth;
     start.settings = given.settings;
-    for (const Place& corner :
-         std::array{Place{0, 0}, Place{given.width, 0}, Place{given.width, given.depth}, Place{0, given.depth}}) {
+    for (const LatticePoint& corner :
+         std::array{LatticePoint{0, 0}, LatticePoint{given.width, 0}, LatticePoint{given.width, given.depth},
+                    LatticePoint{0, given.depth}}) {
         start.places.push_back(corner);
         start.heights.push_back(given.heights[nearest(given.places, corner)]);
     }
-    std::map<Place, Vertex> numbers;
+    std::map<LatticePoint, Vertex> numbers;
     for (Vertex corner = 0; corner < 4; ++corner) {
         numbers.emplace(start.places[static_cast<std::size_t>(corner)], corner);
     }
@@ -284,7 +288,7 @@ TinStart startOf(const VertexSand& layer, const Settings& settings) {
     start.depth = mesh.depth;
     start.settings = settings;
     start.holes = layer.mesh().holes();
-    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNobody);
+    std::vector<Vertex> numberOf(mesh.triangleAt.size(), kNoNumber);
     for (std::size_t i = 0; i < mesh.triangleAt.size(); ++i) {
         if (mesh.alive(static_cast<Vertex>(i))) {
             numberOf[i] = static_cast<Vertex>(start.places.size());

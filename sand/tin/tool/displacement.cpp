@@ -15,15 +15,15 @@ constexpr std::int32_t kWay = 16 * kProbePerCell;
 /// Shortest way between two presses [probe unit]. A hand that is sampled often moves less, and every press costs time.
 constexpr std::int32_t kNoWay = kProbePerCell / 4;
 
-Offset offsetOf(const Place& place, const ProbePoint& at) {
-    return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+Offset offsetOf(const LatticePoint& place, const ProbePoint& probe) {
+    return {std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
 }
 
 Box boxOf(const CellRect& cells) {
     return {cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell, cells.y1 * kProbePerCell};
 }
 
-Box boxOf(const Place& a, const Place& b) {
+Box boxOf(const LatticePoint& a, const LatticePoint& b) {
     return {std::min(a.x, b.x), std::min(a.y, b.y), std::max(a.x, b.x), std::max(a.y, b.y)};
 }
 
@@ -55,17 +55,19 @@ Displacement::Displacement(const Tool& tool, const DetailRules& rules, std::shar
       outline_(Outline::of(tool)),
       neighbourhood_(std::move(neighbourhood)) {}
 
-Underside Displacement::underside(const ProbePoint& at) const {
-    return [shape = turned_, at](const Place& place) { return shape.underside(at.z, offsetOf(place, at)); };
+Underside Displacement::underside(const ProbePoint& probe) const {
+    return [shape = turned_, probe](const LatticePoint& place) {
+        return shape.underside(probe.z, offsetOf(place, probe));
+    };
 }
 
-Box Displacement::reach(const ProbePoint& at) const { return boxOf(turned_.cellsChanged(at.x, at.y)); }
+Box Displacement::reach(const ProbePoint& probe) const { return boxOf(turned_.cellsChanged(probe.x, probe.y)); }
 
 Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path) {
     Work done;
     Chunk chunk;
     const auto add = [&](const Press& press) {
-        const Box box = reach(press.at);
+        const Box box = reach(press.probe);
         if (!overlaps(box, layer.triangles())) {
             return;
         }
@@ -82,9 +84,10 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
     Press last{path.front(), {0, 0}}, pending = last;
     bool waits = path.size() == 1;
     for (std::size_t i = 1; i < path.size(); ++i) {
-        forEachSubstep(path[i - 1], path[i], [&](const ProbePoint& at, const Offset& ahead) {
-            pending = {at, ahead};
-            waits = std::max({std::abs(at.x - last.at.x), std::abs(at.y - last.at.y), last.at.z - at.z}) < kNoWay;
+        forEachSubstep(path[i - 1], path[i], [&](const ProbePoint& probe, const Offset& ahead) {
+            pending = {probe, ahead};
+            waits = std::max({std::abs(probe.x - last.probe.x), std::abs(probe.y - last.probe.y),
+                              last.probe.z - probe.z}) < kNoWay;
             if (!waits) {
                 add(pending);
                 last = pending;
@@ -95,10 +98,10 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
         add(pending);
     }
     if (!chunk.presses.empty()) {
-        chunk.last = chunk.presses.back().at == path.back();
+        chunk.last = chunk.presses.back().probe == path.back();
         work(layer, imprint, rim, chunk, done);
     }
-    if (imprint.stand && imprint.stand->at != path.back()) {  // the tool has moved out of the field
+    if (imprint.pose && imprint.pose->probe != path.back()) {  // the tool has moved out of the field
         leave(layer, imprint);
     }
     sortOnce(done.touched);
@@ -108,22 +111,23 @@ Displacement::Work Displacement::drag(VertexSand& layer, Imprint& imprint, Rim r
 }
 
 void Displacement::leave(VertexSand& layer, Imprint& imprint) {
-    if (imprint.stand && !rules_.keepsConstraints) {
-        const ProbePoint at = imprint.stand->at;
-        const Box box = reach(at);
+    if (imprint.pose && !rules_.keepsConstraints) {
+        const ProbePoint probe = imprint.pose->probe;
+        const Box box = reach(probe);
         if (rules_.spacing > 0) {  // otherwise the neighbourhood is not used
             neighbourhood_->look(layer.triangles(), box);
         }
-        changeMesh(layer, imprint, {{{at, {0, 0}}}, box, false});
+        changeMesh(layer, imprint, {{{probe, {0, 0}}}, box, false});
     }
     imprint = {};
 }
 
 void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& done) {
     neighbourhood_->look(layer.triangles(), chunk.box);
-    const Imprint::Stand here{chunk.presses.back().at, tool_};
-    const bool still = imprint.stand == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
-                                                            [&](const Press& press) { return press.at == here.at; });
+    const Imprint::Pose here{chunk.presses.back().probe, tool_};
+    const bool still =
+        imprint.pose == here && std::all_of(chunk.presses.begin(), chunk.presses.end(),
+                                            [&](const Press& press) { return press.probe == here.probe; });
     if (!still) {
         if (!reachesSand(layer, chunk)) {
             leave(layer, imprint);
@@ -140,9 +144,9 @@ void Displacement::work(VertexSand& layer, Imprint& imprint, Rim rim, const Chun
 }
 
 bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) const {
-    std::int64_t lowest = chunk.presses.front().at.z;
+    std::int64_t lowest = chunk.presses.front().probe.z;
     for (const Press& press : chunk.presses) {
-        lowest = std::min<std::int64_t>(lowest, press.at.z);
+        lowest = std::min<std::int64_t>(lowest, press.probe.z);
     }
     constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
     const auto underside = static_cast<double>((lowest - tool_.radius) * kUnitsPerProbe);
@@ -154,9 +158,10 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
 }
 
 std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const {
-    const ProbePoint at = chunk.presses.back().at;
+    const ProbePoint probe = chunk.presses.back().probe;
     const Holes* const holes = isNearHole(layer, chunk.box) ? layer.mesh().holes().get() : nullptr;
-    const PlacedOutline outline = chunk.last ? placed(outline_, at.x, at.y, layer.triangles(), holes) : PlacedOutline{};
+    const PlacedOutline outline =
+        chunk.last ? placed(outline_, probe.x, probe.y, layer.triangles(), holes) : PlacedOutline{};
     Edges edges;
     if (rules_.spacing > 0) {  // otherwise the edges are not used
         edges = edgesThatStay(layer.triangles(), imprint);
@@ -165,7 +170,7 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
     return layer.edit([&](Mesh& mesh) {
         imprint.takeOutOf(mesh);
         thin(mesh, outline);
-        std::vector<Place> there = outline.points;
+        std::vector<LatticePoint> there = outline.points;
         for (std::size_t i = 0; rules_.spacing > 0 && i < neighbourhood_->vertices().size(); ++i) {
             const Vertex vertex = neighbourhood_->vertices()[i];
             if (mesh.triangles().alive(vertex)) {
@@ -173,19 +178,19 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
             }
         }
         if (chunk.last) {
-            imprint.stand = {at, tool_};
+            imprint.pose = {probe, tool_};
             imprint.putInto(mesh, outline, rules_.maxVertices);
         }
-        const auto wanted = [&](const Place& place) {
+        const auto wanted = [&](const LatticePoint& place) {
             return isNearTool(place, chunk.presses) && (holes == nullptr || !holes->holds(place));
         };
         refine(mesh, rules_, chunk.box, wanted, there, edges);
         if (holes != nullptr) {
-            const auto wantedOnBorder = [&](const Place& place) { return isNearTool(place, chunk.presses); };
+            const auto wantedOnBorder = [&](const LatticePoint& place) { return isNearTool(place, chunk.presses); };
             refineHoles(mesh, rules_, chunk.box, wantedOnBorder, there);
         }
         if (chunk.last || !rules_.keepsRim) {  // a rim that keeps its vertices needs none when the tool leaves
-            const auto wantedOnRim = [&](const Place& place) {
+            const auto wantedOnRim = [&](const LatticePoint& place) {
                 // Holes::holds() returns true for every place that is not inside the field.
                 const Triangles& field = mesh.triangles();
                 return wanted({std::min(place.x, field.width - 1), std::min(place.y, field.depth - 1)});
@@ -197,10 +202,10 @@ std::vector<Vertex> Displacement::changeMesh(VertexSand& layer, Imprint& imprint
 
 /// Returns whether the tool takes or lays down sand at a place or one square farther. All vertices that take sand
 /// should have equal and small shares of the ground.
-bool Displacement::isNearTool(const Place& place, const std::vector<Press>& presses) const {
+bool Displacement::isNearTool(const LatticePoint& place, const std::vector<Press>& presses) const {
     const std::int64_t step = rules_.spacing;
     for (const Press& press : presses) {
-        const Offset offset = offsetOf(place, press.at);
+        const Offset offset = offsetOf(place, press.probe);
         for (const auto& [x, y] : {std::pair{0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
             const Offset beside{offset.x + x * step, offset.y + y * step};
             if (turned_.takes(beside) || turned_.covers(beside)) {
@@ -223,7 +228,7 @@ Edges Displacement::edgesThatStay(const Triangles& mesh, const Imprint& imprint)
         const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
         for (std::size_t k = 0; k < 3; ++k) {
             const Vertex a = triangle.corner[(k + 1) % 3], b = triangle.corner[(k + 2) % 3];
-            if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNobody &&
+            if (a < b && triangle.constrained[k] && triangle.neighbour[k] != kNoNumber &&
                 !std::binary_search(ours.begin(), ours.end(), std::pair(a, b))) {
                 edges.emplace_back(mesh.places[static_cast<std::size_t>(a)], mesh.places[static_cast<std::size_t>(b)]);
             }
@@ -239,7 +244,7 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
         return;
     }
     Box around;
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         around = around.joinedWith({place.x, place.y, place.x, place.y});
     }
     around = around.grownBy(distance);
@@ -247,7 +252,7 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     // near.
     const std::int32_t band = std::max((around.y1 - around.y0) / kBands, distance) + 1;
     std::vector<Edges> near(static_cast<std::size_t>((around.y1 - around.y0) / band) + 1);
-    const auto put = [&](const Place& a, const Place& b) {
+    const auto put = [&](const LatticePoint& a, const LatticePoint& b) {
         const std::int32_t first = std::min(a.y, b.y) - distance - around.y0;
         const std::int32_t last = std::max(a.y, b.y) + distance - around.y0;
         for (std::int32_t i = first / band; i <= last / band; ++i) {
@@ -257,12 +262,12 @@ void Displacement::thin(Mesh& mesh, const PlacedOutline& outline) const {
     for (const auto& [a, b] : outline.edges) {
         put(a, b);
     }
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         put(place, place);
     }
     Link link;
     for (const Vertex vertex : neighbourhood_->vertices()) {
-        const Place place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
+        const LatticePoint place = mesh.triangles().places[static_cast<std::size_t>(vertex)];
         if (!mesh.triangles().alive(vertex) || !around.holds(place)) {
             continue;
         }

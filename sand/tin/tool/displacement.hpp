@@ -59,15 +59,15 @@ public:
     /// or is removed.
     void leave(VertexSand& layer, Imprint& imprint);
 
-    /// Returns the underside of the tool at `at`, for sand that flows while the tool is there.
-    [[nodiscard]] Underside underside(const ProbePoint& at) const;
-    /// Returns the area in which the tool at `at` takes sand out or lays it down, and a little more [probe unit]. It
+    /// Returns the underside of the tool at `probe`, for sand that flows while the tool is there.
+    [[nodiscard]] Underside underside(const ProbePoint& probe) const;
+    /// Returns the area in which the tool at `probe` takes sand out or lays it down, and a little more [probe unit]. It
     /// may reach beyond the field.
-    [[nodiscard]] Box reach(const ProbePoint& at) const;
+    [[nodiscard]] Box reach(const ProbePoint& probe) const;
 
 private:
     struct Press {
-        ProbePoint at;
+        ProbePoint probe;
         Offset ahead;
     };
     /// Presses near each other, for which the mesh is changed only once.
@@ -81,9 +81,9 @@ private:
         std::int64_t taken;
     };
     struct Receiver {
-        Vertex vertex;  // kNobody: beyond the rim
+        Vertex vertex;  // kNoNumber: beyond the rim
         double weight;
-        Place place;  // only beyond the rim
+        LatticePoint place;  // only beyond the rim
         Volume share = 0;
     };
 
@@ -93,25 +93,25 @@ private:
     std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;
     [[nodiscard]] Edges edgesThatStay(const Triangles& mesh, const Imprint& imprint) const;
-    [[nodiscard]] bool isNearTool(const Place& place, const std::vector<Press>& presses) const;
+    [[nodiscard]] bool isNearTool(const LatticePoint& place, const std::vector<Press>& presses) const;
 
     void press(VertexSand& layer, Rim rim, const Press& press, Work& work);
     /// Does the work of press() part by part, beside a hole.
     void pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& work);
     [[nodiscard]] bool isNearHole(const VertexSand& layer, const Box& box) const;
-    [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& at);
+    [[nodiscard]] bool findCut(const VertexSand& layer, const ProbePoint& probe);
     void addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere);
     void addBeyond(const VertexSand& layer, const Press& press, bool everywhere);
-    void addNeighbours(const VertexSand& layer, const ProbePoint& at, const std::function<bool(Vertex)>& isOurs);
+    void addNeighbours(const VertexSand& layer, const ProbePoint& probe, const std::function<bool(Vertex)>& isOurs);
     /// Shares the sand of `cut_` out among `receivers_`. With `toSome`, those that would rise above a limit get none.
     /// Returns false, and leaves the sand as it is, if no receiver is left or if one of them would rise above a limit.
     bool deal(VertexSand& layer, bool toSome, Work& work);
     void shareOut();
     [[nodiscard]] bool hasRoom(const VertexSand& layer, const Receiver& receiver) const;
     [[nodiscard]] bool isWithinAllSand(const VertexSand& layer) const;
-    void findParts(const VertexSand& layer, const ProbePoint& at);
+    void findParts(const VertexSand& layer, const ProbePoint& probe);
     void forgetParts();
-    /// Returns the first vertex of a vertex's part, or kNobody if it is in no part.
+    /// Returns the first vertex of a vertex's part, or kNoNumber if it is in no part.
     [[nodiscard]] Vertex partOf(Vertex vertex);
     [[nodiscard]] Vertex partOf(const VertexSand& layer, const Receiver& receiver);
 
@@ -125,7 +125,7 @@ private:
     Volume taken_ = 0;
     std::vector<Receiver> receivers_;
     std::vector<Vertex> inParts_;  // vertices in parts, ascending
-    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNobody outside all parts
+    std::vector<Vertex> up_;       // by vertex: an earlier vertex of its part, or itself; kNoNumber outside all parts
 };
 
 }  // namespace sand::tin

@@ -31,18 +31,18 @@ std::uint64_t decodeCount(base::ByteReader& reader, std::size_t bytesEach, std::
     return count;
 }
 
-Imprint::Stand decodeStand(base::ByteReader& reader) {
-    Imprint::Stand stand;
-    stand.at.x = reader.get<std::int32_t>();
-    stand.at.y = reader.get<std::int32_t>();
-    stand.at.z = reader.get<std::int32_t>();
-    stand.tool = base::read<Tool>(reader);
-    const bool near = std::min({stand.at.x, stand.at.y, stand.at.z}) >= -kMaxProbe &&
-                      std::max({stand.at.x, stand.at.y, stand.at.z}) <= kMaxProbe;
+Imprint::Pose decodePose(base::ByteReader& reader) {
+    Imprint::Pose pose;
+    pose.probe.x = reader.get<std::int32_t>();
+    pose.probe.y = reader.get<std::int32_t>();
+    pose.probe.z = reader.get<std::int32_t>();
+    pose.tool = base::read<Tool>(reader);
+    const bool near = std::min({pose.probe.x, pose.probe.y, pose.probe.z}) >= -kMaxProbe &&
+                      std::max({pose.probe.x, pose.probe.y, pose.probe.z}) <= kMaxProbe;
     if (!near) {
         throw base::FormatError("an imprint with a tool out of range");
     }
-    return stand;
+    return pose;
 }
 
 /// Returns the other ends of the constraints at a vertex, except those on the rim and those in `ours`, which must be
@@ -53,7 +53,7 @@ std::vector<Vertex> othersAt(const Triangles& mesh, Vertex vertex, const std::ve
         const Triangle& triangle = mesh.triangles[index(slot)];
         const Vertex end = triangle.corner[static_cast<std::size_t>(corner + 1) % 3];
         const std::size_t side = static_cast<std::size_t>(corner + 2) % 3;
-        if (triangle.constrained[side] && triangle.neighbour[side] != kNobody &&
+        if (triangle.constrained[side] && triangle.neighbour[side] != kNoNumber &&
             !std::binary_search(ours.begin(), ours.end(), std::pair<Vertex, Vertex>(std::minmax(vertex, end)))) {
             others.push_back(end);
         }
@@ -68,14 +68,14 @@ void Imprint::putInto(Mesh& mesh, const PlacedOutline& outline, int maxVertices)
         return;
     }
     std::vector<Vertex> vertices;
-    for (const Place& place : outline.points) {
+    for (const LatticePoint& place : outline.points) {
         const int before = mesh.vertexCount();
         vertices.push_back(mesh.insert(place));
         if (mesh.vertexCount() > before) {
             points.push_back({vertices.back(), place});
         }
     }
-    const auto vertexAt = [&](const Place& place) {
+    const auto vertexAt = [&](const LatticePoint& place) {
         return vertices[static_cast<std::size_t>(std::find(outline.points.begin(), outline.points.end(), place) -
                                                  outline.points.begin())];
     };
@@ -126,12 +126,12 @@ void Imprint::takeOutOf(Mesh& mesh) {
 }
 
 void Imprint::encode(base::ByteWriter& writer) const {
-    writer.put(static_cast<std::uint8_t>(stand ? 1 : 0));
-    if (!stand) {
+    writer.put(static_cast<std::uint8_t>(pose ? 1 : 0));
+    if (!pose) {
         return;
     }
-    encodePoint(stand->at, writer);
-    base::putMember(writer, stand->tool);
+    encodePoint(pose->probe, writer);
+    base::putMember(writer, pose->tool);
     writer.putVarint(points.size());
     for (const Point& point : points) {
         writer.put(point.vertex);
@@ -150,7 +150,7 @@ Imprint Imprint::decode(base::ByteReader& reader, std::size_t most) {
     if (!base::read<bool>(reader)) {
         return imprint;
     }
-    imprint.stand = decodeStand(reader);
+    imprint.pose = decodePose(reader);
     for (std::uint64_t count = decodeCount(reader, 12, most); count > 0; --count) {
         Point point{};
         point.vertex = reader.get<Vertex>();

@@ -20,16 +20,16 @@ namespace sand::tin {
 struct Imprint {
     struct Point {
         Vertex vertex;
-        Place place;  // shows whether the number has passed to another vertex
+        LatticePoint place;  // shows whether the number has passed to another vertex
         friend bool operator==(const Point&, const Point&) = default;
     };
     /// Position of the outline, and the tool that it belongs to.
-    struct Stand {
-        ProbePoint at;
+    struct Pose {
+        ProbePoint probe;
         Tool tool;
-        friend bool operator==(const Stand&, const Stand&) = default;
+        friend bool operator==(const Pose&, const Pose&) = default;
     };
-    std::optional<Stand> stand;                    // nullopt if no tool is in the sand
+    std::optional<Pose> pose;                      // nullopt if no tool is in the sand
     std::vector<Point> points;                     // that were not vertices before
     std::vector<std::pair<Vertex, Vertex>> edges;  // that were not constrained before
 

@@ -100,8 +100,8 @@ std::int32_t rounded(double value) { return static_cast<std::int32_t>(value < 0 
 class Drawing {
 public:
     int point(const Own& own) {
-        const Place place{rounded(own.along), rounded(own.across)};
-        const auto same = std::find_if(outline_.points.begin(), outline_.points.end(), [&](const Place& other) {
+        const LatticePoint place{rounded(own.along), rounded(own.across)};
+        const auto same = std::find_if(outline_.points.begin(), outline_.points.end(), [&](const LatticePoint& other) {
             return std::abs(other.x - place.x) <= kMerging && std::abs(other.y - place.y) <= kMerging;
         });
         if (same == outline_.points.end()) {
@@ -235,20 +235,21 @@ std::int32_t scaled(std::int64_t way, std::int64_t numerator, std::int64_t denom
 
 /// Returns the part of an edge that lies in the rectangle, with its ends rounded to the lattice. Returns nullopt if no
 /// part does, or if the part lies along the rim.
-std::optional<std::pair<Place, Place>> clipped(Place a, Place b, std::int32_t width, std::int32_t depth) {
+std::optional<std::pair<LatticePoint, LatticePoint>> clipped(LatticePoint a, LatticePoint b, std::int32_t width,
+                                                             std::int32_t depth) {
     for (int side = 0; side < 4; ++side) {
         const bool alongX = side < 2;
         const std::int32_t limit = side % 2 == 0 ? 0 : (alongX ? width : depth);
-        const auto beyond = [&](const Place& p) {
+        const auto beyond = [&](const LatticePoint& p) {
             const std::int32_t value = alongX ? p.x : p.y;
             return side % 2 == 0 ? value < limit : value > limit;
         };
         if (beyond(a) && beyond(b)) {
             return std::nullopt;
         }
-        const auto cut = [&](const Place& out, const Place& in) {
-            return alongX ? Place{limit, out.y + scaled(in.y - out.y, limit - out.x, in.x - out.x)}
-                          : Place{out.x + scaled(in.x - out.x, limit - out.y, in.y - out.y), limit};
+        const auto cut = [&](const LatticePoint& out, const LatticePoint& in) {
+            return alongX ? LatticePoint{limit, out.y + scaled(in.y - out.y, limit - out.x, in.x - out.x)}
+                          : LatticePoint{out.x + scaled(in.x - out.x, limit - out.y, in.y - out.y), limit};
         };
         if (beyond(a)) {
             a = cut(a, b);
@@ -268,7 +269,7 @@ Outline Outline::of(const Tool& tool) {
         return outline;
     }
     const double x = tool.heading.x, y = tool.heading.y, scale = 1 / std::sqrt(x * x + y * y);
-    for (Place& point : outline.points) {
+    for (LatticePoint& point : outline.points) {
         const double along = point.x, across = tool.heading.mirrored ? -point.y : point.y;
         point = {rounded((along * x - across * y) * scale), rounded((along * y + across * x) * scale)};
     }
@@ -291,7 +292,8 @@ void forEachLine(std::int32_t from, std::int32_t to, int first, int last, const 
 
 /// Returns the parts of an edge that lie on ground. Each end between the ends of the edge is on the border of a hole.
 /// Returns no parts if the edge comes near a place where two cells without ground touch at a corner.
-std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, const Holes& holes) {
+std::vector<std::pair<LatticePoint, LatticePoint>> onGround(const LatticePoint& a, const LatticePoint& b,
+                                                            const Holes& holes) {
     const Cells& cells = holes.cells();
     const int west = cells.columnOf(std::min(a.x, b.x) - holes.bridge());
     const int east = cells.columnOf(std::max(a.x, b.x) + holes.bridge());
@@ -304,7 +306,7 @@ std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, co
             }
         }
     }
-    std::vector<std::pair<double, Place>> crossings;  // of borders, with their shares of the edge
+    std::vector<std::pair<double, LatticePoint>> crossings;  // of borders, with their shares of the edge
     const auto along = [](std::int32_t from, std::int32_t to, double share) {
         return rounded(from + share * (static_cast<double>(to) - from));
     };
@@ -313,7 +315,7 @@ std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, co
     forEachLine(
         a.x, b.x, column(a.x), column(b.x), [&](int number) { return cells.west(number); },
         [&](double share, std::int32_t x, int number) {
-            const Place place{x, along(a.y, b.y, share)};
+            const LatticePoint place{x, along(a.y, b.y, share)};
             if (holes.isHole(number - 1, row(place.y)) != holes.isHole(number, row(place.y))) {
                 crossings.emplace_back(share, place);
             }
@@ -321,16 +323,16 @@ std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, co
     forEachLine(
         a.y, b.y, row(a.y), row(b.y), [&](int number) { return cells.south(number); },
         [&](double share, std::int32_t y, int number) {
-            const Place place{along(a.x, b.x, share), y};
+            const LatticePoint place{along(a.x, b.x, share), y};
             if (holes.isHole(column(place.x), number - 1) != holes.isHole(column(place.x), number)) {
                 crossings.emplace_back(share, place);
             }
         });
     std::sort(crossings.begin(), crossings.end());
-    std::vector<std::pair<Place, Place>> parts;
-    Place from = a;
+    std::vector<std::pair<LatticePoint, LatticePoint>> parts;
+    LatticePoint from = a;
     bool ground = !holes.holds(a);
-    const auto end = [&](const Place& place) {
+    const auto end = [&](const LatticePoint& place) {
         if (ground && from != place) {
             parts.emplace_back(from, place);
         }
@@ -349,15 +351,15 @@ std::vector<std::pair<Place, Place>> onGround(const Place& a, const Place& b, co
 PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, const Triangles& field,
                      const Holes* holes) {
     PlacedOutline result;
-    const auto add = [&](const Place& place) {
+    const auto add = [&](const LatticePoint& place) {
         if (std::find(result.points.begin(), result.points.end(), place) == result.points.end()) {
             result.points.push_back(place);
         }
     };
-    std::vector<Place> places;
-    for (const Place& offset : outline.points) {
+    std::vector<LatticePoint> places;
+    for (const LatticePoint& offset : outline.points) {
         places.push_back({x + offset.x, y + offset.y});
-        const Place& place = places.back();
+        const LatticePoint& place = places.back();
         const bool inside = place.x >= 0 && place.y >= 0 && place.x <= field.width && place.y <= field.depth;
         if (inside && (holes == nullptr || !holes->holds(place))) {
             add(place);
@@ -366,7 +368,7 @@ PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y, con
     for (const auto& [from, to] : outline.edges) {
         const auto part = clipped(places[static_cast<std::size_t>(from)], places[static_cast<std::size_t>(to)],
                                   field.width, field.depth);
-        const auto isNearHole = [&](const Place& a, const Place& b) {
+        const auto isNearHole = [&](const LatticePoint& a, const LatticePoint& b) {
             return holes != nullptr &&
                    holes->reachInto({std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)});
         };

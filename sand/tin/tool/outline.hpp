@@ -19,7 +19,7 @@ namespace sand::tin {
 /// points without edges lie inside. Every point is below the tool as defined by TurnedShape, two probe units within
 /// the outline.
 struct Outline {
-    std::vector<Place> points;               // offsets from the tool's centre [probe unit], all different
+    std::vector<LatticePoint> points;        // offsets from the tool's centre [probe unit], all different
     std::vector<std::pair<int, int>> edges;  // indices of points
 
     /// Returns the outline of a tool. It depends only on the arguments, and uses only whole numbers and IEEE
@@ -31,8 +31,8 @@ struct Outline {
 /// hole ends there. Edges near a place where two cells without ground touch at a corner are left out. So no constraint
 /// crosses a hole's outline.
 struct PlacedOutline {
-    std::vector<Place> points;                   // in the mesh's coordinates, all different
-    std::vector<std::pair<Place, Place>> edges;  // no edge runs along the rim
+    std::vector<LatticePoint> points;                          // in the mesh's coordinates, all different
+    std::vector<std::pair<LatticePoint, LatticePoint>> edges;  // no edge runs along the rim
 };
 /// Returns the outline of a tool whose centre is at (x, y) [probe unit].
 [[nodiscard]] PlacedOutline placed(const Outline& outline, std::int32_t x, std::int32_t y,

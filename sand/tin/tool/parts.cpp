@@ -11,8 +11,8 @@
 namespace sand::tin {
 
 Vertex Displacement::partOf(Vertex vertex) {
-    if (index(vertex) >= up_.size() || up_[index(vertex)] == kNobody) {
-        return kNobody;
+    if (index(vertex) >= up_.size() || up_[index(vertex)] == kNoNumber) {
+        return kNoNumber;
     }
     while (up_[index(vertex)] != vertex) {
         vertex = up_[index(vertex)] = up_[index(up_[index(vertex)])];  // shortens the path for the next call
@@ -23,26 +23,26 @@ Vertex Displacement::partOf(Vertex vertex) {
 /// Returns the part of a receiver. A place beyond the rim belongs to the part of the nearest vertex. If several are as
 /// near, the southernmost counts, and then the westernmost.
 Vertex Displacement::partOf(const VertexSand& layer, const Receiver& receiver) {
-    if (receiver.vertex != kNobody) {
+    if (receiver.vertex != kNoNumber) {
         return partOf(receiver.vertex);
     }
     const auto key = [&](Vertex vertex) {
-        const Place& place = layer.triangles().places[index(vertex)];
+        const LatticePoint& place = layer.triangles().places[index(vertex)];
         const std::int64_t x = std::int64_t{place.x} - receiver.place.x, y = std::int64_t{place.y} - receiver.place.y;
         return std::tuple(x * x + y * y, place.y, place.x);
     };
     const auto nearest =
         std::min_element(inParts_.begin(), inParts_.end(), [&](Vertex a, Vertex b) { return key(a) < key(b); });
-    return nearest == inParts_.end() ? kNobody : partOf(*nearest);
+    return nearest == inParts_.end() ? kNoNumber : partOf(*nearest);
 }
 
 /// Finds the vertices that the tool covers or that may take sand, and joins those with a common edge on ground.
-void Displacement::findParts(const VertexSand& layer, const ProbePoint& at) {
+void Displacement::findParts(const VertexSand& layer, const ProbePoint& probe) {
     const Triangles& mesh = layer.triangles();
-    up_.resize(std::max(up_.size(), mesh.places.size()), kNobody);
+    up_.resize(std::max(up_.size(), mesh.places.size()), kNoNumber);
     for (const Vertex vertex : neighbourhood_->vertices()) {
-        const Place& place = mesh.places[index(vertex)];
-        const Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+        const LatticePoint& place = mesh.places[index(vertex)];
+        const Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
         if (layer.stars()[index(vertex)] > 0 && (turned_.takes(offset) || turned_.covers(offset))) {
             up_[index(vertex)] = vertex;
             inParts_.push_back(vertex);
@@ -52,7 +52,7 @@ void Displacement::findParts(const VertexSand& layer, const ProbePoint& at) {
         const Triangle& triangle = mesh.triangles[index(slot)];
         for (std::size_t k = 0; !triangle.hole && k < 3; ++k) {
             const Vertex one = partOf(triangle.corner[k]), other = partOf(triangle.corner[(k + 1) % 3]);
-            if (one != kNobody && other != kNobody) {
+            if (one != kNoNumber && other != kNoNumber) {
                 up_[index(std::max(one, other))] = std::min(one, other);
             }
         }
@@ -61,13 +61,13 @@ void Displacement::findParts(const VertexSand& layer, const ProbePoint& at) {
 
 void Displacement::forgetParts() {
     for (const Vertex vertex : inParts_) {
-        up_[index(vertex)] = kNobody;
+        up_[index(vertex)] = kNoNumber;
     }
     inParts_.clear();
 }
 
 void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, Work& done) {
-    findParts(layer, press.at);
+    findParts(layer, press.probe);
     const std::vector<Cut> cuts = std::exchange(cut_, {});
     const auto receiversOf = [&](bool everywhere) {
         receivers_.clear();
@@ -104,7 +104,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         }
         takeOurs(*around);
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
-            addNeighbours(layer, press.at, [&](Vertex vertex) { return partOf(vertex) == part; });
+            addNeighbours(layer, press.probe, [&](Vertex vertex) { return partOf(vertex) == part; });
         }
         deal(layer, true, done);
     }

@@ -11,8 +11,8 @@ namespace {
 constexpr Volume kMostOfVertex = (Volume{1} << 62) - 1;  // of one vertex, of either sign
 constexpr int kSquaresBeyond = 16;  // lattice squares per tool radius, for the ground beyond an open rim
 
-Offset offsetFrom(const Place& place, const ProbePoint& at) {
-    return {std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+Offset offsetFrom(const LatticePoint& place, const ProbePoint& probe) {
+    return {std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
 }
 
 Volume floorDivided(Volume value, Volume by) { return value / by - (value % by < 0 ? 1 : 0); }
@@ -21,19 +21,19 @@ Volume floorDivided(Volume value, Volume by) { return value / by - (value % by <
 
 /// Finds the sand that the tool takes out. Returns false if there is no such sand, or if a number would leave its
 /// range.
-bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
+bool Displacement::findCut(const VertexSand& layer, const ProbePoint& probe) {
     cut_.clear();
     taken_ = 0;
-    const CellRect cells = turned_.cellsAround(at.x, at.y, 0);
+    const CellRect cells = turned_.cellsAround(probe.x, probe.y, 0);
     const Box box{cells.x0 * kProbePerCell, cells.y0 * kProbePerCell, cells.x1 * kProbePerCell,
                   cells.y1 * kProbePerCell};
     for (const Vertex vertex : neighbourhood_->vertices()) {
         const auto index = static_cast<std::size_t>(vertex);
-        const Place place = layer.triangles().places[index];
+        const LatticePoint place = layer.triangles().places[index];
         if (!box.holds(place)) {
             continue;
         }
-        const std::int32_t underside = turned_.underside(at.z, offsetFrom(place, at));
+        const std::int32_t underside = turned_.underside(probe.z, offsetFrom(place, probe));
         if (underside == TurnedShape::kFree) {
             continue;
         }
@@ -56,7 +56,7 @@ bool Displacement::findCut(const VertexSand& layer, const ProbePoint& at) {
 void Displacement::addReceivers(const VertexSand& layer, Rim rim, const Press& press, bool everywhere) {
     for (const Vertex vertex : neighbourhood_->vertices()) {
         const auto index = static_cast<std::size_t>(vertex);
-        const Offset offset = offsetFrom(layer.triangles().places[index], press.at);
+        const Offset offset = offsetFrom(layer.triangles().places[index], press.probe);
         if (!turned_.takes(offset) || turned_.covers(offset)) {
             continue;
         }
@@ -72,7 +72,7 @@ void Displacement::addReceivers(const VertexSand& layer, Rim rim, const Press& p
 
 /// Adds the ground beyond the rim as receivers, as if the field continued there with vertices on a lattice.
 void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool everywhere) {
-    const Box box = reach(press.at);
+    const Box box = reach(press.probe);
     if (box.clippedTo(layer.triangles()) == box) {
         return;
     }
@@ -84,24 +84,24 @@ void Displacement::addBeyond(const VertexSand& layer, const Press& press, bool e
     };
     for (std::int64_t y = first(box.y0); y <= box.y1; y += step) {
         for (std::int64_t x = first(box.x0); x <= box.x1; x += step) {
-            const Place place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
-            const Offset offset = offsetFrom(place, press.at);
+            const LatticePoint place{static_cast<std::int32_t>(x), static_cast<std::int32_t>(y)};
+            const Offset offset = offsetFrom(place, press.probe);
             if (field.holds(place) || !turned_.takes(offset) || turned_.covers(offset)) {
                 continue;
             }
             const std::int64_t part = everywhere ? 1 : turned_.share(offset, press.ahead);
             if (part > 0) {
-                receivers_.push_back({kNobody, static_cast<double>(part) * share, place});
+                receivers_.push_back({kNoNumber, static_cast<double>(part) * share, place});
             }
         }
     }
 }
 
 /// Adds the neighbours of the vertices below the tool for which `isOurs` is true.
-void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& at,
+void Displacement::addNeighbours(const VertexSand& layer, const ProbePoint& probe,
                                  const std::function<bool(Vertex)>& isOurs) {
     const auto isCovered = [&](Vertex vertex) {
-        return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], at));
+        return turned_.covers(offsetFrom(layer.triangles().places[static_cast<std::size_t>(vertex)], probe));
     };
     neighbourhood_->look(layer.triangles(), neighbourhood_->box());  // after follow() it has no triangles()
     std::vector<Vertex> beside;
@@ -144,7 +144,7 @@ void Displacement::shareOut() {
 
 /// Returns whether the sand of a receiver stays within its limits when it gets its share.
 bool Displacement::hasRoom(const VertexSand& layer, const Receiver& receiver) const {
-    if (receiver.vertex == kNobody) {
+    if (receiver.vertex == kNoNumber) {
         return true;
     }
     const Volume raised = layer.volumes()[index(receiver.vertex)] + receiver.share;
@@ -163,7 +163,7 @@ bool Displacement::isWithinAllSand(const VertexSand& layer) const {
         magnitude += grown(cut.vertex, -Volume{cut.taken});
     }
     for (const Receiver& receiver : receivers_) {
-        magnitude += receiver.vertex == kNobody ? 0 : grown(receiver.vertex, receiver.share);
+        magnitude += receiver.vertex == kNoNumber ? 0 : grown(receiver.vertex, receiver.share);
     }
     return magnitude <= kMostSand;
 }
@@ -189,7 +189,7 @@ bool Displacement::deal(VertexSand& layer, bool toSome, Work& done) {
         done.touched.push_back(cut.vertex);
     }
     for (const Receiver& receiver : receivers_) {
-        if (receiver.vertex == kNobody) {
+        if (receiver.vertex == kNoNumber) {
             done.outflow += receiver.share;
         } else {
             layer.add(receiver.vertex, static_cast<std::int64_t>(receiver.share));
@@ -205,10 +205,10 @@ bool Displacement::isNearHole(const VertexSand& layer, const Box& box) const {
 }
 
 void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& done) {
-    if (!findCut(layer, press.at)) {
+    if (!findCut(layer, press.probe)) {
         return;
     }
-    if (isNearHole(layer, reach(press.at))) {
+    if (isNearHole(layer, reach(press.probe))) {
         pressInParts(layer, rim, press, done);
         return;
     }
@@ -221,7 +221,7 @@ void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& d
     receivers_.clear();
     addReceivers(layer, rim, press, true);
     if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
-        addNeighbours(layer, press.at, [](Vertex) { return true; });
+        addNeighbours(layer, press.probe, [](Vertex) { return true; });
     }
     deal(layer, true, done);  // if no vertex can take the sand, it stays, and the tool passes through it
 }

@@ -25,8 +25,8 @@ std::int64_t areaOf(const Mesh::Piece& piece) { return doubledArea(piece.place[0
 
 /// A vertex by number and place. Within one change, a number may pass from one vertex to another.
 struct Key {
-    Vertex vertex = kNobody;
-    Place place;
+    Vertex vertex = kNoNumber;
+    LatticePoint place;
     // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
     friend auto operator<=>(const Key&, const Key&) = default;
 };
@@ -57,8 +57,8 @@ private:
 };
 
 struct Node {
-    Vertex vertex = kNobody;
-    Place place;
+    Vertex vertex = kNoNumber;
+    LatticePoint place;
     std::uint32_t part = 0;  // first node of its piece
     bool before = false, now = false;
     std::int64_t star = 0;  // in the current mesh [probe unit²]
@@ -101,7 +101,7 @@ public:
     /// Returns the first triangle of the list for which visit(piece) is true, or null. Visits only triangles that may
     /// contain the place.
     template <class Visit>
-    [[nodiscard]] const Mesh::Piece* first(const Place& place, const Visit& visit) const {
+    [[nodiscard]] const Mesh::Piece* first(const LatticePoint& place, const Visit& visit) const {
         const std::size_t at = strip(place.x);
         if (place.x < west_ || at >= strips_.size()) {
             return nullptr;
@@ -155,7 +155,7 @@ private:
 
     void gatherNodes() {
         std::vector<Key> found;
-        Nodes nodes(3 * (difference_.went.size() + difference_.came.size()));
+        Nodes nodes(3 * (difference_.removed.size() + difference_.added.size()));
         const auto cornersOf = [&](const Mesh::Piece& piece) {
             Corners corners{};
             for (std::size_t i = 0; i < 3; ++i) {
@@ -163,8 +163,8 @@ private:
             }
             return corners;
         };
-        std::transform(difference_.went.begin(), difference_.went.end(), std::back_inserter(went_), cornersOf);
-        std::transform(difference_.came.begin(), difference_.came.end(), std::back_inserter(came_), cornersOf);
+        std::transform(difference_.removed.begin(), difference_.removed.end(), std::back_inserter(went_), cornersOf);
+        std::transform(difference_.added.begin(), difference_.added.end(), std::back_inserter(came_), cornersOf);
         std::vector<std::uint32_t> order(found.size()), rank(found.size());
         std::iota(order.begin(), order.end(), 0U);
         std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return found[a] < found[b]; });
@@ -187,13 +187,13 @@ private:
         for (std::size_t i = 0; i < went_.size(); ++i) {
             for (const std::uint32_t corner : went_[i]) {
                 Node& node = nodes_[corner];
-                node.star += (node.before ? 0 : stars_[indexOf(node.vertex)]) - areaOf(difference_.went[i]);
+                node.star += (node.before ? 0 : stars_[indexOf(node.vertex)]) - areaOf(difference_.removed[i]);
                 node.before = true;
             }
         }
         for (std::size_t i = 0; i < came_.size(); ++i) {
             for (const std::uint32_t corner : came_[i]) {
-                nodes_[corner].star += areaOf(difference_.came[i]);
+                nodes_[corner].star += areaOf(difference_.added[i]);
                 nodes_[corner].now = true;
             }
         }
@@ -232,15 +232,15 @@ private:
             part.moves = part.moves || moving_[indexOf(nodes_[i].vertex)] != 0;
         }
         for (std::size_t i = 0; i < came_.size(); ++i) {
-            parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.came[i]);
+            parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.added[i]);
         }
     }
 
     /// Returns the height of the previous surface at `place` [unit]. If several triangles share the place, the first
     /// one counts.
-    [[nodiscard]] double oldHeight(const Place& place) {
+    [[nodiscard]] double oldHeight(const LatticePoint& place) {
         if (!strips_) {
-            strips_.emplace(difference_.went);
+            strips_.emplace(difference_.removed);
         }
         std::array<std::int64_t, 3> weight{};
         const Mesh::Piece* piece = strips_->first(place, [&](const Mesh::Piece& one) {
@@ -293,7 +293,7 @@ private:
         Remapped result;
         for (const Node& node : nodes_) {
             if (!node.now) {
-                result.died.push_back(node.vertex);
+                result.removed.push_back(node.vertex);
                 continue;
             }
             const Wide unit = left[node.part] > 0 ? 1 : 0;

@@ -13,7 +13,7 @@ namespace sand::tin {
 /// Volumes of the vertices after a change of the mesh.
 struct Remapped {
     struct Share {
-        Vertex vertex = kNobody;
+        Vertex vertex = kNoNumber;
         std::int64_t star = 0;    // [probe unit²]
         Wide volume = 0;          // [unit / 6 · probe unit²]
         double before = 0;        // height of the previous surface there [unit]
@@ -21,8 +21,8 @@ struct Remapped {
         std::uint32_t piece = 0;  // equal for all vertices of a piece, and for no others
         bool moves = false;       // whether its sand moves
     };
-    std::vector<Share> shares;  // in ascending order of vertices
-    std::vector<Vertex> died;   // vertices that no longer exist
+    std::vector<Share> shares;    // in ascending order of vertices
+    std::vector<Vertex> removed;  // vertices that no longer exist
 };
 
 /// Makes the sand level in every piece that has a share for which `fits` is false. The volume of the piece is kept

@@ -110,7 +110,7 @@ std::vector<Vertex> VertexSand::stopMoving() {
     return stopped;
 }
 
-Vertex VertexSand::insert(Place place) {
+Vertex VertexSand::insert(LatticePoint place) {
     const Vertex vertex = mesh_.insert(place);
     remap();
     return vertex;
@@ -153,10 +153,10 @@ void VertexSand::remap() {
         const auto isHole = [holes](const Mesh::Piece& piece) {
             return holes->holds(piece.place[0], piece.place[1], piece.place[2]);
         };
-        std::erase_if(difference.went, isHole);
-        std::erase_if(difference.came, isHole);
+        std::erase_if(difference.removed, isHole);
+        std::erase_if(difference.added, isHole);
     }
-    if (difference.came.empty()) {
+    if (difference.added.empty()) {
         return;
     }
     Remapped result = remapVolumes(difference, {volumes_, stars_, heights_, moving_});
@@ -166,7 +166,7 @@ void VertexSand::remap() {
     stars_.resize(count, 0);
     heights_.resize(count, 0);
     moving_.resize(count, 0);
-    for (const Vertex vertex : result.died) {
+    for (const Vertex vertex : result.removed) {
         setVolume(vertex, 0);
         stars_[at(vertex)] = 0;
         heights_[at(vertex)] = 0;

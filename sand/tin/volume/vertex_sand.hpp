@@ -17,10 +17,10 @@ struct Remapped;  // sand/tin/volume/remap.hpp
 
 /// All data that make up a VertexSand. They do not depend on its history.
 struct VertexSandParts {
-    static constexpr Place kNowhere{-1, -1};  // place of a number without a vertex
+    static constexpr LatticePoint kNowhere{-1, -1};  // place of a number without a vertex
 
     std::int32_t width = 0, depth = 0;                   // size of the field [probe unit]
-    std::vector<Place> places;                           // by vertex
+    std::vector<LatticePoint> places;                    // by vertex
     std::vector<std::int64_t> volumes;                   // by vertex [volume unit]
     std::vector<std::uint8_t> moving;                    // by vertex: 1 if its sand moves, else 0
     std::vector<std::pair<Vertex, Vertex>> constraints;  // in the order of Mesh::constraints()
@@ -86,7 +86,7 @@ public:
     /// the same height. It is the volume between the previous surface and the current one, divided by the sum of the
     /// vertices' stars. A remainder that integers cannot share is given out one unit each, in the order of the
     /// vertices' numbers.
-    Vertex insert(Place place);
+    Vertex insert(LatticePoint place);
     bool remove(Vertex vertex);
     std::vector<Vertex> constrain(Vertex from, Vertex to);
     void release(Vertex a, Vertex b);

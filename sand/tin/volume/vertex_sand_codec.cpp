@@ -13,7 +13,7 @@ using base::FormatError;
 
 constexpr std::size_t kEdgesPerVertex = 3;  // a mesh of n vertices has fewer than 3 n edges
 
-std::size_t livingEnd(const std::vector<Place>& places) {
+std::size_t livingEnd(const std::vector<LatticePoint>& places) {
     std::size_t end = places.size();
     while (end > 0 && places[end - 1] == VertexSandParts::kNowhere) {
         --end;
@@ -68,7 +68,7 @@ VertexSandParts VertexSand::parts() const {
     const Triangles& mesh = triangles();
     VertexSandParts parts{mesh.width, mesh.depth, mesh.places, volumes_, moving_, mesh_.constraints(), mesh_.holes()};
     for (std::size_t i = 0; i < parts.places.size(); ++i) {
-        if (mesh.triangleAt[i] == kNobody) {
+        if (mesh.triangleAt[i] == kNoNumber) {
             parts.places[i] = VertexSandParts::kNowhere;
         }
     }
@@ -112,7 +112,7 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
         throw FormatError("a TIN of " + std::to_string(count) + " vertices; this field has at most " +
                           std::to_string(most));
     }
-    std::vector<std::optional<Place>> places(count);
+    std::vector<std::optional<LatticePoint>> places(count);
     std::vector<std::int64_t> volumes(places.size(), 0);
     std::vector<std::uint8_t> moving(places.size(), 0);
     for (std::size_t i = 0; i < places.size(); ++i) {
@@ -120,7 +120,7 @@ VertexSand VertexSand::decode(base::ByteReader& reader, const std::shared_ptr<co
         if (first > 0) {
             moving[i] = static_cast<std::uint8_t>((first - 1) % 2);
             const std::int32_t x = getCoordinate((first - 1) / 2);
-            places[i] = Place{x, getCoordinate(reader.getVarint())};
+            places[i] = LatticePoint{x, getCoordinate(reader.getVarint())};
             volumes[i] = reader.getSigned();
         }
     }

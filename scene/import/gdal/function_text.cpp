@@ -19,8 +19,8 @@ namespace {
 /// Throws base::InputError about a position in the text. Users count characters from 1, muParser counts from 0. The
 /// position in muParser's own message is removed.
 [[noreturn]] void failAt(const std::string& text, int position, std::string message) {
-    for (const char* said : {" found at position", " at position"}) {
-        message.erase(std::min(message.find(said), message.size()));
+    for (const char* part : {" found at position", " at position"}) {
+        message.erase(std::min(message.find(part), message.size()));
     }
     if (position < 0) {
         fail(text, message);

@@ -18,11 +18,11 @@ using namespace test;
 using samples::withNumber;
 
 TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
-    FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
-        if (linkUp(guest)) {
-            guest.send(stepOf(1, 11));
-            guest.send(stepOf(1, 12));
-            guest.send(std::span<const std::uint8_t>(encode(stepOf(1, 13))).first(9));
+    FakeServer server(toTheFirst([](FakeServer::Connection& connection) {
+        if (linkUp(connection)) {
+            connection.send(stepOf(1, 11));
+            connection.send(stepOf(1, 12));
+            connection.send(std::span<const std::uint8_t>(encode(stepOf(1, 13))).first(9));
         }
     }));
     Client client(server.address(), kOffer);
@@ -35,13 +35,13 @@ TEST(Client, KeepsTheStepsBeforeHalfAMessage) {
 }
 
 TEST(Client, LeavesOutLateDoubledAndForeignSteps) {
-    FakeServer server([](FakeServer::Guest& guest) {
-        if (linkUp(guest)) {
+    FakeServer server([](FakeServer::Connection& connection) {
+        if (linkUp(connection)) {
             for (const auto& [epoch, number] : std::vector<std::pair<std::uint32_t, std::uint64_t>>{
                      {4, 8}, {4, 8}, {3, 9}, {4, 7}, {4, 9}, {5, 10}, {4, 10}}) {
-                guest.send(stepOf(epoch, number));
+                connection.send(stepOf(epoch, number));
             }
-            guest.await<Bye>();
+            connection.await<Bye>();
         }
     });
     Client client(server.address(), kOffer);
@@ -61,14 +61,14 @@ TEST(Client, LeavesOutLateDoubledAndForeignSteps) {
 
 TEST(Client, GivesUpTheLinkOverAMissingStep) {
     std::atomic<bool> seen = false;
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (server.guests() > 1) {
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (server.connections() > 1) {
             eventually([&] { return seen.load(); });  // a greeting would replace the message
         }
-        if (linkUp(guest)) {
-            guest.send(stepOf(1, 1));
-            guest.send(stepOf(1, 3));
-            guest.await<Bye>();
+        if (linkUp(connection)) {
+            connection.send(stepOf(1, 1));
+            connection.send(stepOf(1, 3));
+            connection.await<Bye>();
         }
     });
     Client client(server.address(), kOffer);
@@ -95,11 +95,11 @@ TEST(Client, EndsTheLinkOverAnEditThatItHasNotAskedFor) {
     const std::array<sand::Edit, 2> edits{withNumber(1, sand::Edit::loaded(base::Bytes(60'000, 7))),
                                           withNumber(2, sand::Edit::settle)};
     for (const sand::Edit& edit : edits) {
-        FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
-            if (linkUp(guest)) {
-                guest.send(stepOf(1, 1));
-                guest.send(editOf(2, edit));
-                guest.await<Bye>();
+        FakeServer server(toTheFirst([&](FakeServer::Connection& connection) {
+            if (linkUp(connection)) {
+                connection.send(stepOf(1, 1));
+                connection.send(editOf(2, edit));
+                connection.await<Bye>();
             }
         }));
         Client client(server.address(), kOffer);
@@ -115,14 +115,14 @@ TEST(Client, TakesALoadOnceByItsNumberAndKeepsOneCopyOfItsSand) {
     const sand::Edit load = withNumber(41, sand::Edit::loaded(base::Bytes(1'000'000, 7)));
     const sand::Edit again = withNumber(42, sand::Edit::loaded(base::Bytes(1'000'000, 7)));
     const sand::Edit answer = withNumber(41, sand::Edit::load), answerToAgain = withNumber(42, sand::Edit::load);
-    FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
-        guest.reader.expectLoads(true);
-        if (linkUp(guest) && guest.await<EditRequest>()) {
-            guest.send(editOf(1, answer));
-            guest.await<EditRequest>();
-            guest.send(editOf(2, answerToAgain));
-            guest.send(editOf(3, answerToAgain));
-            guest.await<Bye>();
+    FakeServer server(toTheFirst([&](FakeServer::Connection& connection) {
+        connection.reader.expectLoads(true);
+        if (linkUp(connection) && connection.await<EditRequest>()) {
+            connection.send(editOf(1, answer));
+            connection.await<EditRequest>();
+            connection.send(editOf(2, answerToAgain));
+            connection.send(editOf(3, answerToAgain));
+            connection.await<Bye>();
         }
     }));
     Client client(server.address(), kOffer);
@@ -143,11 +143,11 @@ TEST(Client, TakesALoadOnceByItsNumberAndKeepsOneCopyOfItsSand) {
 // The master has the sand of a load, so no server sends it back.
 TEST(Client, EndsTheLinkOverAStepAsLongAsALoad) {
     const sand::Edit load = withNumber(1, sand::Edit::loaded(base::Bytes(100'000, 7)));
-    FakeServer server(toTheFirst([&](FakeServer::Guest& guest) {
-        guest.reader.expectLoads(true);
-        if (linkUp(guest) && guest.await<EditRequest>()) {
-            guest.send(editOf(1, load));
-            guest.await<Bye>();
+    FakeServer server(toTheFirst([&](FakeServer::Connection& connection) {
+        connection.reader.expectLoads(true);
+        if (linkUp(connection) && connection.await<EditRequest>()) {
+            connection.send(editOf(1, load));
+            connection.await<Bye>();
         }
     }));
     Client client(server.address(), kOffer);
@@ -161,23 +161,23 @@ TEST(Client, EndsTheLinkOverAStepAsLongAsALoad) {
 TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
     std::atomic<bool> received = false;
     std::atomic<int> framesBefore = -1;
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (!linkUp(guest)) {
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (!linkUp(connection)) {
             return;
         }
-        guest.send(stepOf(1, 1));
-        guest.send(stepOf(1, 2));
-        guest.send(TimingTest{5, 40});
-        guest.send(stepOf(1, 3));
-        received = guest.await<TimingEcho>() == TimingEcho{5, Leg::received};
-        for (int frames = 0; const auto message = guest.next();) {
+        connection.send(stepOf(1, 1));
+        connection.send(stepOf(1, 2));
+        connection.send(TimingTest{5, 40});
+        connection.send(stepOf(1, 3));
+        received = connection.await<TimingEcho>() == TimingEcho{5, Leg::received};
+        for (int frames = 0; const auto message = connection.next();) {
             frames += std::holds_alternative<Shown>(*message) ? 1 : 0;
             if (*message == Message(TimingEcho{5, Leg::shown})) {
                 framesBefore = frames;
                 break;
             }
         }
-        guest.await<Bye>();
+        connection.await<Bye>();
     });
     Client client(server.address(), kOffer);
     grantWhenOffered(client, 1, 0);
@@ -195,12 +195,12 @@ TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
 
 TEST(Client, HoldsAFloodBackAndLosesNothing) {
     constexpr std::uint64_t kSteps = 5000;
-    FakeServer server([](FakeServer::Guest& guest) {
-        if (linkUp(guest)) {
+    FakeServer server([](FakeServer::Connection& connection) {
+        if (linkUp(connection)) {
             for (std::uint64_t number = 1; number <= kSteps; ++number) {
-                guest.send(stepOf(1, number));
+                connection.send(stepOf(1, number));
             }
-            guest.await<Bye>();
+            connection.await<Bye>();
         }
     });
     Client client(server.address(), kOffer);

@@ -37,17 +37,17 @@ TEST(Client, SaysThatNobodyAnswersAndStopsAtOnce) {
 }
 
 TEST(Client, StopsWhileAServerStaysSilent) {
-    FakeServer server([](FakeServer::Guest& guest) { guest.await<Bye>(); });
+    FakeServer server([](FakeServer::Connection& connection) { connection.await<Bye>(); });
     Client client(server.address(), kOffer);
-    ASSERT_TRUE(eventually([&] { return server.guests() == 1; }));
+    ASSERT_TRUE(eventually([&] { return server.connections() == 1; }));
     client.stop();
 }
 
 // TLS is not established yet, so the client cannot send a goodbye.
 TEST(Client, StopsWhileAServerStaysSilentBeforeTls) {
-    FakeServer server([](FakeServer::Guest& guest) {
+    FakeServer server([](FakeServer::Connection& connection) {
         std::array<std::uint8_t, 4096> chunk{};
-        while (recv(guest.socket, chunk.data(), chunk.size(), 0) > 0) {
+        while (recv(connection.socket, chunk.data(), chunk.size(), 0) > 0) {
         }
     });
     LinkSecurity security;
@@ -55,16 +55,16 @@ TEST(Client, StopsWhileAServerStaysSilentBeforeTls) {
     security.secrets.move = "0123456789abcdef";
     security.tls = security.functions->tlsClient();
     Client client(server.address(), kOffer, security);
-    ASSERT_TRUE(eventually([&] { return server.guests() == 1; }));
+    ASSERT_TRUE(eventually([&] { return server.connections() == 1; }));
     client.stop();
     EXPECT_EQ(client.link().link, Link::stopped);
 }
 
 TEST(Client, CountsByKindHowOftenItWasRefused) {
-    FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
-        guest.await<Hello>();
-        guest.send(Refusal{RefusalCode::busy, "another wall is linked"});
-        guest.await<Bye>();
+    FakeServer server(toTheFirst([](FakeServer::Connection& connection) {
+        connection.await<Hello>();
+        connection.send(Refusal{RefusalCode::busy, "another wall is linked"});
+        connection.await<Bye>();
     }));
     const Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::refused)) << client.link().message;
@@ -81,10 +81,10 @@ TEST(Client, RefusesAServerOfAnotherVersionOrScene) {
         other.protocol += which == 0 ? 1 : 0;
         other.algorithm += which == 1 ? 1 : 0;
         other.rulesDigest += which == 2 ? 1 : 0;
-        FakeServer server([&](FakeServer::Guest& guest) {
-            guest.await<Hello>();
-            guest.send(Welcome{other, 60});
-            guest.await<Bye>();
+        FakeServer server([&](FakeServer::Connection& connection) {
+            connection.await<Hello>();
+            connection.send(Welcome{other, 60});
+            connection.await<Bye>();
         });
         const Client client(server.address(), kOffer);
         ASSERT_TRUE(reaches(client, Link::refused)) << client.link().message;
@@ -95,24 +95,24 @@ TEST(Client, RefusesAServerOfAnotherVersionOrScene) {
 }
 
 TEST(Client, RefusesGarbageAndTriesAgain) {
-    FakeServer server([](FakeServer::Guest& guest) {
+    FakeServer server([](FakeServer::Connection& connection) {
         const std::string banner = "SSH-2.0-OpenSSH_9.2\r\n";
-        guest.send({reinterpret_cast<const std::uint8_t*>(banner.data()), banner.size()});
-        guest.await<Bye>();
+        connection.send({reinterpret_cast<const std::uint8_t*>(banner.data()), banner.size()});
+        connection.await<Bye>();
     });
     const Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::refused));
     EXPECT_NE(client.link().message.find("it sent a message of"), std::string::npos) << client.link().message;
-    EXPECT_TRUE(eventually([&] { return server.guests() >= 2; })) << "the client must try again";
+    EXPECT_TRUE(eventually([&] { return server.connections() >= 2; })) << "the client must try again";
 }
 
 TEST(Client, TakesPositionsFromAServerWithoutSand) {
-    FakeServer server(toTheFirst([](FakeServer::Guest& guest) {
-        guest.send(PositionGreeting{kProtocolVersion, "glove"});  // sent without reading the Hello
+    FakeServer server(toTheFirst([](FakeServer::Connection& connection) {
+        connection.send(PositionGreeting{kProtocolVersion, "glove"});  // sent without reading the Hello
         for (int i = 0; i < 3; ++i) {
-            guest.send(Position{i, 0.1 * i, 0, 0, true});
+            connection.send(Position{i, 0.1 * i, 0, 0, true});
         }
-        guest.await<Bye>();
+        connection.await<Bye>();
     }));
     Client client(server.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::streaming)) << client.link().message;
@@ -129,11 +129,11 @@ TEST(Client, TakesPositionsFromAServerWithoutSand) {
 }
 
 TEST(Client, HoldsAFloodOfPositionsBack) {
-    FakeServer server([](FakeServer::Guest& guest) {
-        guest.send(PositionGreeting{kProtocolVersion, "hose"});
+    FakeServer server([](FakeServer::Connection& connection) {
+        connection.send(PositionGreeting{kProtocolVersion, "hose"});
         const base::Bytes many = positions(1000);
         for (int i = 0; i < 400; ++i) {
-            guest.send(std::span<const std::uint8_t>(many));
+            connection.send(std::span<const std::uint8_t>(many));
         }
     });
     Client client(server.address(), kOffer);
@@ -153,15 +153,15 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
     // The client checks the link every half second. This check and the stop both become due while the network thread is
     // busy with a large state, the stop first. The check must not delay the end.
     std::atomic<bool> needed = false, over = false;
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (!guest.await<Hello>()) {
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (!connection.await<Hello>()) {
             return;
         }
         const auto welcomed = std::chrono::steady_clock::now();
-        guest.send(Welcome{kIdentity, 60});
-        guest.await<Start>();
+        connection.send(Welcome{kIdentity, 60});
+        connection.await<Start>();
         std::this_thread::sleep_until(welcomed + 470ms);
-        guest.send(NeedState{});
+        connection.send(NeedState{});
         needed = true;
         eventually([&] { return over.load(); });  // reads no more messages
     });
@@ -177,17 +177,17 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
 }
 
 TEST(Client, RefusesPositionsOfAnotherVersionOrOutOfTurn) {
-    FakeServer other([](FakeServer::Guest& guest) {
-        guest.send(PositionGreeting{kProtocolVersion + 1, "glove"});
-        guest.await<Bye>();
+    FakeServer other([](FakeServer::Connection& connection) {
+        connection.send(PositionGreeting{kProtocolVersion + 1, "glove"});
+        connection.await<Bye>();
     });
     const Client client(other.address(), kOffer);
     ASSERT_TRUE(reaches(client, Link::refused));
     EXPECT_NE(client.link().message.find("protocol version"), std::string::npos) << client.link().message;
-    FakeServer turncoat(toTheFirst([](FakeServer::Guest& guest) {
-        if (linkUp(guest)) {
-            guest.send(PositionGreeting{kProtocolVersion, "glove"});
-            guest.await<Bye>();
+    FakeServer turncoat(toTheFirst([](FakeServer::Connection& connection) {
+        if (linkUp(connection)) {
+            connection.send(PositionGreeting{kProtocolVersion, "glove"});
+            connection.await<Bye>();
         }
     }));
     Client linked(turncoat.address(), kOffer);

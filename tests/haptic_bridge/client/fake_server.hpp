@@ -26,7 +26,7 @@ namespace test {
 /// A listening socket. Each connection gets one conversation, on a thread of the server's own.
 class FakeServer {
 public:
-    struct Guest {
+    struct Connection {
         int socket;
         haptic_bridge::MessageReader reader;
 
@@ -57,7 +57,7 @@ public:
         }
     };
 
-    explicit FakeServer(std::function<void(Guest&)> talk) : talk_(std::move(talk)) {
+    explicit FakeServer(std::function<void(Connection&)> talk) : talk_(std::move(talk)) {
         socket_ = socket(AF_INET, SOCK_STREAM, 0);
         sockaddr_in address{};
         address.sin_family = AF_INET;
@@ -78,42 +78,42 @@ public:
     FakeServer& operator=(const FakeServer&) = delete;
 
     [[nodiscard]] haptic_bridge::Address address() const { return {"127.0.0.1", port_}; }
-    [[nodiscard]] int guests() const { return guests_; }
+    [[nodiscard]] int connections() const { return connections_; }
 
 private:
     void serve() {
         while (true) {
-            Guest guest{accept(socket_, nullptr, nullptr), {}};
-            if (guest.socket < 0) {
+            Connection connection{accept(socket_, nullptr, nullptr), {}};
+            if (connection.socket < 0) {
                 return;
             }
             const timeval patience{.tv_sec = 5, .tv_usec = 0};
-            setsockopt(guest.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-            ++guests_;
-            talk_(guest);
+            setsockopt(connection.socket, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+            ++connections_;
+            talk_(connection);
             // Closing with an unread Ping would reset the connection, and the client would lose the last messages.
-            shutdown(guest.socket, SHUT_WR);
-            guest.ignoreTheRest();
-            close(guest.socket);
+            shutdown(connection.socket, SHUT_WR);
+            connection.ignoreTheRest();
+            close(connection.socket);
         }
     }
 
-    std::function<void(Guest&)> talk_;
+    std::function<void(Connection&)> talk_;
     int socket_ = -1;
     std::uint16_t port_ = 0;
-    std::atomic<int> guests_{0};
+    std::atomic<int> connections_{0};
     std::thread thread_;
 };
 
 /// Talks only on the first connection. Later connections get silence until they end. For tests of the end of one
 /// conversation, because the client connects again, and a second conversation would change the result.
-inline std::function<void(FakeServer::Guest&)> toTheFirst(std::function<void(FakeServer::Guest&)> talk) {
-    return [talk = std::move(talk), first = true](FakeServer::Guest& guest) mutable {
+inline std::function<void(FakeServer::Connection&)> toTheFirst(std::function<void(FakeServer::Connection&)> talk) {
+    return [talk = std::move(talk), first = true](FakeServer::Connection& connection) mutable {
         if (std::exchange(first, false)) {
-            talk(guest);
+            talk(connection);
             return;
         }
-        guest.ignoreTheRest();
+        connection.ignoreTheRest();
     };
 }
 

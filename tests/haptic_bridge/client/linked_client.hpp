@@ -25,15 +25,15 @@ inline haptic_bridge::StepMessage stepOf(std::uint32_t epoch, std::uint64_t numb
 }
 
 /// Welcomes the client and takes over the numbering of steps.
-inline bool linkUp(FakeServer::Guest& guest) {
-    if (!guest.await<haptic_bridge::Hello>()) {
+inline bool linkUp(FakeServer::Connection& connection) {
+    if (!connection.await<haptic_bridge::Hello>()) {
         return false;
     }
-    guest.send(haptic_bridge::Welcome{kIdentity, 60});
-    if (!guest.await<haptic_bridge::Start>()) {
+    connection.send(haptic_bridge::Welcome{kIdentity, 60});
+    if (!connection.await<haptic_bridge::Start>()) {
         return false;
     }
-    guest.send(haptic_bridge::Ready{});
+    connection.send(haptic_bridge::Ready{});
     return true;
 }
 

@@ -21,15 +21,15 @@ namespace test {
 class SandServer {
 public:
     /// Returns the hash to send with a step of link number `link`, from 1 on; `hash` is the right one.
-    using Say = std::function<std::uint64_t(int link, std::uint64_t step, std::uint64_t hash)>;
+    using HashToSend = std::function<std::uint64_t(int link, std::uint64_t step, std::uint64_t hash)>;
     static std::uint64_t truth(int /*link*/, std::uint64_t /*step*/, std::uint64_t hash) { return hash; }
 
-    explicit SandServer(const scene::Scene& scene, Say say = truth)
+    explicit SandServer(const scene::Scene& scene, HashToSend hashToSend = truth)
         : identity_{haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name},
           stepsPerSecond_(static_cast<std::uint32_t>(scene.rules.stepsPerSecond)),
-          say_(std::move(say)),
+          hashToSend_(std::move(hashToSend)),
           sand_(scene),
-          server_([this](FakeServer::Guest& guest) { talk(guest); }) {}
+          server_([this](FakeServer::Connection& connection) { talk(connection); }) {}
 
     [[nodiscard]] haptic_bridge::Address address() const { return server_.address(); }
     [[nodiscard]] int links() const { return links_; }            // links on which it was granted the steps
@@ -54,25 +54,25 @@ public:
 private:
     static constexpr std::uint64_t kWindow = 8;  // [step], as docs/protocol.md has it
 
-    void talk(FakeServer::Guest& guest) {
-        if (!guest.await<haptic_bridge::Hello>()) {
+    void talk(FakeServer::Connection& connection) {
+        if (!connection.await<haptic_bridge::Hello>()) {
             return;
         }
-        guest.send(haptic_bridge::Welcome{identity_, stepsPerSecond_});
-        const auto start = guest.await<haptic_bridge::Start>();
-        if (!start || !reach(guest, *start)) {
+        connection.send(haptic_bridge::Welcome{identity_, stepsPerSecond_});
+        const auto start = connection.await<haptic_bridge::Start>();
+        if (!start || !reach(connection, *start)) {
             return;
         }
         keepShare(start->force);
         const int link = ++links_;
         std::uint64_t shown = start->stepNumber;
         edit_.reset();
-        guest.send(haptic_bridge::Ready{});
+        connection.send(haptic_bridge::Ready{});
         while (true) {
             while (sand_.stepNumber() < shown + kWindow) {
-                makeStep(guest, start->epoch, link);
+                makeStep(connection, start->epoch, link);
             }
-            const auto message = guest.next();
+            const auto message = connection.next();
             if (!message) {
                 return;
             }
@@ -80,26 +80,26 @@ private:
                 shown = std::max(shown, frame->stepNumber);
                 shown_ = shown;
             }
-            obey(guest, *message);
+            obey(connection, *message);
             if (const auto leaving = leaving_.exchange(haptic_bridge::Audited::no);
                 leaving != haptic_bridge::Audited::no) {
-                sayGoodbye(guest, leaving);
+                sendGoodbye(connection, leaving);
                 lied_ = true;
                 return;
             }
         }
     }
 
-    static void sayGoodbye(const FakeServer::Guest& guest, haptic_bridge::Audited audited) {
+    static void sendGoodbye(const FakeServer::Connection& connection, haptic_bridge::Audited audited) {
         haptic_bridge::Report last;
         last.audited = audited;
-        guest.send(last);
-        guest.send(haptic_bridge::Bye{"enough"});
+        connection.send(last);
+        connection.send(haptic_bridge::Bye{"enough"});
     }
 
-    void obey(const FakeServer::Guest& guest, const haptic_bridge::Message& message) {
+    void obey(const FakeServer::Connection& connection, const haptic_bridge::Message& message) {
         if (const auto* ping = std::get_if<haptic_bridge::Ping>(&message)) {
-            guest.send(haptic_bridge::Pong{ping->masterNs, 1});
+            connection.send(haptic_bridge::Pong{ping->masterNs, 1});
         } else if (const auto* request = std::get_if<haptic_bridge::EditRequest>(&message)) {
             ++requests_;
             crowded_ = crowded_ || edit_;
@@ -107,7 +107,7 @@ private:
         } else if (const auto* share = std::get_if<haptic_bridge::ForceShare>(&message)) {
             keepShare(*share);
         } else if (std::holds_alternative<haptic_bridge::Bye>(message) && answer_) {
-            sayGoodbye(guest, *answer_);
+            sendGoodbye(connection, *answer_);
         }
     }
 
@@ -121,14 +121,14 @@ private:
     }
 
     /// Gets the sand that the master begins with.
-    bool reach(FakeServer::Guest& guest, const haptic_bridge::Start& start) {
+    bool reach(FakeServer::Connection& connection, const haptic_bridge::Start& start) {
         if (!lied_ && isAt(start)) {
             return true;
         }
         const std::uint64_t step = links_ > 0 ? claimed_.value_or(sand_.stepNumber()) : sand_.stepNumber();
-        guest.reader.expectState(true);
-        guest.send(haptic_bridge::NeedState{step, said_.contains(step) ? said_[step] : sand_.stateHash()});
-        while (const auto message = guest.next()) {
+        connection.reader.expectState(true);
+        connection.send(haptic_bridge::NeedState{step, sent_.contains(step) ? sent_[step] : sand_.stateHash()});
+        while (const auto message = connection.next()) {
             if (const auto* state = std::get_if<haptic_bridge::State>(&*message)) {
                 ++states_;
                 sand_.decodeState(state->bytes);
@@ -137,13 +137,13 @@ private:
             }
             if (const auto* steps = std::get_if<haptic_bridge::CatchUp>(&*message); steps != nullptr && steps->last) {
                 ++catchUps_;
-                guest.send(haptic_bridge::NeedState{});  // asks for the whole sand
+                connection.send(haptic_bridge::NeedState{});  // asks for the whole sand
             }
         }
         return false;
     }
 
-    void makeStep(const FakeServer::Guest& guest, std::uint32_t epoch, int link) {
+    void makeStep(const FakeServer::Connection& connection, std::uint32_t epoch, int link) {
         haptic_bridge::StepMessage message;
         message.serverTimeNs = 1;
         message.step.epoch = epoch;
@@ -153,17 +153,17 @@ private:
         }
         sand_.apply(message.step);
         const std::uint64_t hash = sand_.stateHash();
-        message.stateHash = said_[message.step.number] = say_(link, message.step.number, hash);
+        message.stateHash = sent_[message.step.number] = hashToSend_(link, message.step.number, hash);
         lied_ = lied_ || message.stateHash != hash;
-        guest.send(message);
+        connection.send(message);
     }
 
     const haptic_bridge::Identity identity_;
     const std::uint32_t stepsPerSecond_;
-    const Say say_;
+    const HashToSend hashToSend_;
     // For the server thread only.
     sand::Replica sand_;
-    std::map<std::uint64_t, std::uint64_t> said_;  // hashes that were sent, by step
+    std::map<std::uint64_t, std::uint64_t> sent_;  // hashes that were sent, by step
     std::optional<sand::Edit> edit_;               // edit for the next step
     bool lied_ = false;                            // sent a wrong hash; its sand counts as wrong until it gets a state
 

@@ -69,9 +69,9 @@ TEST(Shelf, ATestIsInTheFrameThatTakesTheStepsBeforeIt) {
 
 TEST(Shelf, AnOfferIsTakenOnceAndDropsStepsOfTheLinkBefore) {
     Shelf shelf;
-    shelf.tell(Link::connecting, "a");
+    shelf.setStatus(Link::connecting, "a");
     EXPECT_FALSE(shelf.beginGranting());
-    shelf.tell(Link::offered, "b");
+    shelf.setStatus(Link::offered, "b");
     (void)shelf.add(timed(1));
     EXPECT_TRUE(shelf.beginGranting());
     EXPECT_EQ(shelf.link(), Link::granting);
@@ -82,11 +82,11 @@ TEST(Shelf, AnOfferIsTakenOnceAndDropsStepsOfTheLinkBefore) {
 
 TEST(Shelf, AStatusThatSaysTheSameIsNoChange) {
     Shelf shelf;
-    shelf.tell(Link::connecting, "nobody");
+    shelf.setStatus(Link::connecting, "nobody");
     const std::uint64_t changes = shelf.status().changes;
-    shelf.tell(Link::connecting, "nobody");
+    shelf.setStatus(Link::connecting, "nobody");
     EXPECT_EQ(shelf.status().changes, changes);
-    shelf.tell(Link::connecting, "somebody");
+    shelf.setStatus(Link::connecting, "somebody");
     EXPECT_EQ(shelf.status().changes, changes + 1);
 }
 

@@ -193,7 +193,7 @@ TEST_F(Mapped, RefusesAHeightThatFollowsTheSurface) {
 
 TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
     TroubleCounts counts;
-    TroubleTeller teller("device Touch");
+    TroubleReporter teller("device Touch");
     EXPECT_TRUE(teller.lines(counts, 0).empty());
     int told = 0;
     std::string first;
@@ -212,7 +212,7 @@ TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
 
 TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
     TroubleCounts counts;
-    TroubleTeller teller("device Touch");
+    TroubleReporter teller("device Touch");
     std::vector<std::string> told;
     const auto run = [&](int from, int to, bool away) {  // [tick]
         for (int tick = from; tick < to; ++tick) {

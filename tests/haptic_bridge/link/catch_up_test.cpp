@@ -20,27 +20,27 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
     const auto own = [&](int steps) {  // as a master that numbers its own steps
         ++wall.epoch;
         for (int i = 0; i < steps; ++i) {
-            sand::Step step{wall.epoch, wall.terrain.stepNumber() + 1, false, {}};
+            sand::Step step{wall.epoch, wall.replica.stepNumber() + 1, false, {}};
             step.edit = i == 0 ? sand::Edit(sand::Edit::settle) : sand::Edit();
-            wall.terrain.apply(step);
+            wall.replica.apply(step);
             ring.add(step);
-            ring.reached(step.number, wall.terrain.stateHash());
+            ring.reached(step.number, wall.replica.stateHash());
         }
     };
     const auto follow = [&](const StepRing& recent) {
         Client client(server.address(), offerOf(scene_));
         EXPECT_TRUE(eventually([&] { return client.link().link == Link::offered; })) << client.link().message;
-        client.grant(++wall.epoch, wall.terrain.stepNumber(), wall.terrain.stateHash(), wall.terrain.encodeState(),
+        client.grant(++wall.epoch, wall.replica.stepNumber(), wall.replica.stateHash(), wall.replica.encodeState(),
                      recent);
-        const std::uint64_t until = wall.terrain.stepNumber() + 60;
+        const std::uint64_t until = wall.replica.stepNumber() + 60;
         EXPECT_TRUE(eventually([&] {
-            for (const auto& timed : client.drain(until - wall.terrain.stepNumber())) {
+            for (const auto& timed : client.drain(until - wall.replica.stepNumber())) {
                 wall.apply(timed);
                 ring.add(timed.step);
                 ring.reached(timed.step.number, timed.serverHash);
             }
-            client.shown(wall.terrain.stepNumber(), 16'666'667);
-            return wall.terrain.stepNumber() >= until;
+            client.shown(wall.replica.stepNumber(), 16'666'667);
+            return wall.replica.stepNumber() >= until;
         })) << client.link().message
             << server.errors();
         // The server made a step that this wall never applies, so the server has another history from here on.
@@ -48,7 +48,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
         return std::pair{client.counters().catchUps, client.counters().snapshots};
     };
     using Counts = std::pair<std::uint64_t, std::uint64_t>;
-    ring.reached(0, wall.terrain.stateHash());
+    ring.reached(0, wall.replica.stateHash());
     own(40);
     EXPECT_EQ(follow(ring), Counts(1, 0)) << "from the first step on";
     // The server made a step in its last session that this wall does not have.
@@ -56,7 +56,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
     EXPECT_EQ(follow(ring), Counts(0, 1));
     own(10);
     StepRing forgetful;
-    forgetful.reached(wall.terrain.stepNumber(), wall.terrain.stateHash());
+    forgetful.reached(wall.replica.stepNumber(), wall.replica.stateHash());
     EXPECT_EQ(follow(forgetful), Counts(0, 1));
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
 }

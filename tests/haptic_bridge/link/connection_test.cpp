@@ -53,7 +53,7 @@ protected:
                             },
                             true, [this] { ++ready_; }});
     }
-    void say(const base::Bytes& bytes) { asio::write(other_, asio::buffer(bytes)); }
+    void sendBytes(const base::Bytes& bytes) { asio::write(other_, asio::buffer(bytes)); }
     template <class Done>
     bool runUntil(const Done& done) {
         return eventually([&] {
@@ -75,15 +75,15 @@ TEST_F(ConnectionTest, ASealThatFailsClosesAndIsReadyOnce) {
     serve(std::make_unique<FalseTls>());
     int messages = 0;
     start([&](Message&&) { ++messages; });
-    say({22});
+    sendBytes({22});
     ASSERT_TRUE(runUntil([&] { return ready_ == 1; }));
     EXPECT_EQ(connection_->binding(), (base::Bytes{1, 2, 3}));
-    say({'b'});
+    sendBytes({'b'});
     ASSERT_TRUE(runUntil([&] { return connection_->bytesIn() == 2; }));
-    say({'e'});
+    sendBytes({'e'});
     ASSERT_TRUE(runUntil([&] { return connection_->bytesIn() == 3; }));
     EXPECT_EQ(ready_, 1) << "not at every message of the handshake";
-    say({'b'});
+    sendBytes({'b'});
     ASSERT_TRUE(runUntil([&] { return connection_->bytesIn() == 4; }));
     EXPECT_NO_THROW(connection_->send(Ready{}));
     EXPECT_EQ(why_, "TLS failed: cannot be sealed");
@@ -103,7 +103,7 @@ TEST_F(ConnectionTest, SendsNothingOverTlsThatIsNotAgreedOn) {
 TEST_F(ConnectionTest, RefusesWhoDoesNotReadOnce) {
     serve()->setMaxUnsent(10);
     start();
-    say({255, 255, 255, 255, 1});
+    sendBytes({255, 255, 255, 255, 1});
     ASSERT_TRUE(runUntil([&] { return closed_ > 0; }));
     EXPECT_EQ(closed_, 1);
     EXPECT_EQ(fault_, RefusalCode::limit) << why_;
@@ -117,10 +117,10 @@ TEST_F(ConnectionTest, CutsOffWhoSendsMoreThanItMay) {
         const base::Bytes ping = encode(Ping{7});
         pings.insert(pings.end(), ping.begin(), ping.end());
     }
-    say(pings);
+    sendBytes(pings);
     ASSERT_TRUE(runUntil([&] { return connection_->bytesIn() == pings.size(); }));
     EXPECT_EQ(closed_, 0);
-    say(pings);
+    sendBytes(pings);
     ASSERT_TRUE(runUntil([&] { return closed_ > 0; }));
     EXPECT_EQ(why_, "its greeting is too long");
     EXPECT_EQ(fault_, RefusalCode::limit);
@@ -133,7 +133,7 @@ TEST_F(ConnectionTest, ReadsMoreSlowlyFromWhoSendsRecordsAndNoMessages) {
     start();
     base::Bytes records(64 * 1024, 3);
     records[0] = 22;
-    say(records);
+    sendBytes(records);
     EXPECT_TRUE(runUntil([&] { return connection_->throttled() > 0; }));
     EXPECT_EQ(closed_, 0) << why_;
 }
@@ -143,17 +143,17 @@ class TlsEnds : public testing::Test {
 protected:
     void SetUp() override {
         base::Bytes there, back, plain;
-        guest_->begin(there);
+        clientEnd_->begin(there);
         while (!there.empty() || !back.empty()) {
             const base::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
-            host_->receive(forth, plain, back);
-            guest_->receive(answers, plain, there);
+            serverEnd_->receive(forth, plain, back);
+            clientEnd_->receive(answers, plain, there);
         }
-        ASSERT_TRUE(host_->established() && guest_->established());
+        ASSERT_TRUE(serverEnd_->established() && clientEnd_->established());
     }
     const Security& security_ = loadSecurity("test");
     std::unique_ptr<TlsContext> server_ = security_.tlsServer("", ""), client_ = security_.tlsClient();
-    std::unique_ptr<TlsSession> host_ = server_->open(), guest_ = client_->open();
+    std::unique_ptr<TlsSession> serverEnd_ = server_->open(), clientEnd_ = client_->open();
 };
 
 TEST_F(TlsEnds, CarryMuchInRecordsOfSixteenKibibytes) {
@@ -161,8 +161,8 @@ TEST_F(TlsEnds, CarryMuchInRecordsOfSixteenKibibytes) {
     for (std::size_t i = 0; i < much.size(); ++i) {
         much[i] = static_cast<std::uint8_t>(i * 7 + i / 1000);
     }
-    host_->seal(much, sealed);
-    guest_->receive(sealed, plain, reply);
+    serverEnd_->seal(much, sealed);
+    clientEnd_->receive(sealed, plain, reply);
     EXPECT_EQ(plain, much);
 }
 

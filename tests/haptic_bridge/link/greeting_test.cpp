@@ -189,15 +189,15 @@ TEST_F(Greeting, AServerThatMayOnlyWatchNumbersNoSteps) {
 
 // An attacker in between ends TLS on both sides with a certificate of its own, and forwards the decrypted messages.
 TEST_F(Greeting, TlsIsBoundToTheProofSoThatNobodyStandsBetween) {
-    const auto shake = [](TlsSession& guest, TlsSession& host) {
+    const auto shake = [](TlsSession& client, TlsSession& peer) {
         base::Bytes there, back, plain;
-        guest.begin(there);
+        client.begin(there);
         while (!there.empty() || !back.empty()) {
             const base::Bytes forth = std::exchange(there, {}), answers = std::exchange(back, {});
-            host.receive(forth, plain, back);
-            guest.receive(answers, plain, there);
+            peer.receive(forth, plain, back);
+            client.receive(answers, plain, there);
         }
-        EXPECT_TRUE(guest.established() && host.established());
+        EXPECT_TRUE(client.established() && peer.established());
     };
     const auto serverTls = server_.functions->tlsServer("", ""), middleTls = server_.functions->tlsServer("", "");
     const auto clientTls = server_.functions->tlsClient();

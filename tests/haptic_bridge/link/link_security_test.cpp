@@ -19,9 +19,9 @@ struct Capture {
     std::mutex mutex;
     base::Bytes there, back;
     ImpairedLink::Tap tap() {
-        return [this](std::span<const std::uint8_t> bytes, bool fromGuest) {
+        return [this](std::span<const std::uint8_t> bytes, bool fromClient) {
             const std::lock_guard lock(mutex);
-            base::Bytes& all = fromGuest ? there : back;
+            base::Bytes& all = fromClient ? there : back;
             all.insert(all.end(), bytes.begin(), bytes.end());
         };
     }
@@ -145,7 +145,7 @@ TEST_F(LinkSecurityTest, UnderTlsACaptureShowsNoProbePosition) {
                     wall.apply(timed);
                     steps.push_back(timed.step);
                 }
-                link.shown(wall.terrain.stepNumber(), 16'666'667);
+                link.shown(wall.replica.stepNumber(), 16'666'667);
                 return steps.size() >= 100;
             }));
             EXPECT_EQ(wall.divergences, 0);

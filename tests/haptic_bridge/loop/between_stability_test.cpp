@@ -51,11 +51,11 @@ TEST(BetweenStability, EveryArmRestsInMovingSandHoweverTheForceIsHeld) {
 TEST(BetweenStability, ALateStepLowersTheForceAndTheArmRestsAgain) {
     forEachHand({Between::hold, Between::interpolate}, [&](DiggingHand& hand) {
         const double before = expectRest(hand);
-        hand.loop().stands = true;
+        hand.loop().paused = true;
         (void)hand.run(0.15);
         EXPECT_LT(hand.sent(), 0.13 * before);
         EXPECT_GT(hand.sent(), 0.1 * before);
-        hand.loop().stands = false;
+        hand.loop().paused = false;
         (void)expectRest(hand);
     });
 }

@@ -33,7 +33,7 @@ public:
     [[nodiscard]] const std::array<std::uint64_t, haptic_bridge::kGuards>& all() const { return counts_; }
     [[nodiscard]] std::uint64_t ticks() const { return ticks_; }
     /// Prints one line, if the environment asks for a number of sequences.
-    void tell(const char* variable, const char* fuzzer, unsigned count, unsigned seed) const {
+    void print(const char* variable, const char* fuzzer, unsigned count, unsigned seed) const {
         if (std::getenv(variable) == nullptr) {
             return;
         }

@@ -40,7 +40,7 @@ void runSequences(const char* fuzzer, const std::vector<Guard>& guards, const Se
     for (const Guard guard : guards) {
         EXPECT_TRUE(counts.of(guard) > 0 || count < kSequences) << base::nameOf(guard);
     }
-    counts.tell(kGateCount, fuzzer, count, seed);
+    counts.print(kGateCount, fuzzer, count, seed);
 }
 
 TEST(GateFuzz, EveryForceThatPassesKeepsTheBounds) {

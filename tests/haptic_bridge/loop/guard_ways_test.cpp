@@ -168,7 +168,7 @@ TEST_F(WayAround, SandWithoutStepsFadesAndComesBackWhenStepsHaveComeForASecond) 
     server_->run(4);
     const double whole = force();
     ASSERT_GT(whole, 1);
-    server_->wallStands = true;
+    server_->sandIsStopped = true;
     server_->run(8.0 / 60 + 0.2);
     EXPECT_NEAR(force(), whole, 0.05 * whole) << "a hiccup of the wall";
     server_->run(0.2);
@@ -177,7 +177,7 @@ TEST_F(WayAround, SandWithoutStepsFadesAndComesBackWhenStepsHaveComeForASecond) 
     EXPECT_EQ(greatest(8), 0);
     EXPECT_EQ(server_->counted(Guard::stale), 0U) << "the thread that makes steps still copies its sand";
     EXPECT_GT(server_->counted(Guard::frozen), 8000U);
-    server_->wallStands = false;
+    server_->sandIsStopped = false;
     server_->run(0.99);
     EXPECT_EQ(greatest(0.9), 0) << "steps must come for a second";
     server_->run(0.3);
@@ -323,10 +323,10 @@ TEST_F(WayAround, TheClutchAndAPauseHaveRampsOfTheirOwnAndAreNoFaults) {
     clutch = false;
     server_->run(0.55);
     EXPECT_NEAR(force(), whole, 0.05 * whole) << "half a second";
-    server_->wallStands = true;
+    server_->sandIsStopped = true;
     server_->run(1);
     EXPECT_EQ(force(), 0);
-    server_->wallStands = false;
+    server_->sandIsStopped = false;
     server_->run(1.6);
     EXPECT_NEAR(force(), whole, 0.05 * whole);
     EXPECT_EQ(server_->counted(Guard::missed) + server_->counted(Guard::lost) + server_->counted(Guard::stale), 0U);

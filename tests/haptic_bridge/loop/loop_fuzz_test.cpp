@@ -170,8 +170,8 @@ private:
         if (dice_.chance(0.0004 * trouble_)) {
             server_.unlink();
         }
-        if (dice_.chance(server_.wallStands ? 0.003 : 0.0005 * trouble_)) {
-            server_.wallStands = !server_.wallStands;
+        if (dice_.chance(server_.sandIsStopped ? 0.003 : 0.0005 * trouble_)) {
+            server_.sandIsStopped = !server_.sandIsStopped;
         }
         if (dice_.chance(server_.sandThreadHangs ? 0.02 : 0.0005 * trouble_)) {
             server_.sandThreadHangs = !server_.sandThreadHangs;
@@ -239,7 +239,7 @@ TEST(LoopFuzz, EveryPushOfARandomServerKeepsTheBoundsAndIsOnRecord) {
         }
         ASSERT_FALSE(HasFailure()) << test::again(seed + i);
     }
-    counts.tell(kLoopCount, "loop", count, seed);
+    counts.print(kLoopCount, "loop", count, seed);
 }
 
 }  // namespace

@@ -75,8 +75,8 @@ public:
         reading_.engaged = dice_.chance(0.08) ? !reading_.engaged : reading_.engaged;
         reading_.share = dice_.chance(0.04) ? dice_.oneOf({0.0, 0.0, 0.3, 1.0, 1.0}) : reading_.share;
         // A wall that stands still now and then, so that the newest step grows old.
-        stands_ = dice_.chance(0.04) ? !stands_ : stands_;
-        reading_.stepAge = stands_ ? reading_.stepAge + span_ : dice_.between(0, limits_.stepSeconds);
+        paused_ = dice_.chance(0.04) ? !paused_ : paused_;
+        reading_.stepAge = paused_ ? reading_.stepAge + span_ : dice_.between(0, limits_.stepSeconds);
         reading_.surfaceAge = dice_.chance(0.01) ? dice_.between(0, 0.1) : dice_.between(0, 0.01);
         if (dice_.chance(0.1)) {
             press();
@@ -161,7 +161,7 @@ private:
     Dice& dice_;
     const haptic_bridge::ForceLimits& limits_;
     double span_;  // [s]
-    bool stands_ = false;
+    bool paused_ = false;
     haptic_bridge::Guards::Reading reading_;
 };
 

@@ -163,7 +163,7 @@ TEST(GuardedLoop, FallsSilentWithItsSandAndWithItsDevice) {
 class MovingSand {
 public:
     MovingSand(const scene::Scene& scene, ArmSession& hand)
-        : scene_(scene), terrain_(scene), hand_(hand), path_(kStepsPerSecond) {
+        : scene_(scene), replica_(scene), hand_(hand), path_(kStepsPerSecond) {
         publish();
     }
 
@@ -176,9 +176,9 @@ public:
         path_.add(hand_.sample());
         ++ticks_;
         if (ticks_ * kStepsPerSecond / 1000 != (ticks_ - 1) * kStepsPerSecond / 1000) {
-            sand::Step step{1, terrain_.stepNumber() + 1, false, {}};
+            sand::Step step{1, replica_.stepNumber() + 1, false, {}};
             (void)path_.take(step);
-            terrain_.apply(step);
+            replica_.apply(step);
             publish();
         }
         return fresh;
@@ -188,13 +188,13 @@ private:
     static constexpr int kStepsPerSecond = 60;
 
     void publish() {
-        hand_.surface().patch = {samples::fieldOf(terrain_), terrain_.probe(), scene_.toolRadius()};
-        hand_.surface().step = terrain_.stepNumber();
+        hand_.surface().patch = {samples::fieldOf(replica_), replica_.probe(), scene_.toolRadius()};
+        hand_.surface().step = replica_.stepNumber();
         stepTime_ = hand_.time();
         fresh_ = true;
     }
     const scene::Scene& scene_;
-    sand::Replica terrain_;
+    sand::Replica replica_;
     ArmSession& hand_;
     PathBuilder path_;
     long ticks_ = 0;

@@ -41,7 +41,7 @@ scene::Scene ramp() {
 class Recorded : public testing::Test {
 protected:
     void open(const std::string& file) {
-        open(file, [this](const std::string& line) { told_.push_back(line); });
+        open(file, [this](const std::string& line) { printed_.push_back(line); });
     }
     void open(const std::string& file, std::function<void(const std::string&)> log) {
         hand_ = std::make_unique<HapticTick>(
@@ -55,9 +55,9 @@ protected:
         hand_->restart();
         recorder_->begin();
         PathBuilder path(scene_.rules.stepsPerSecond);
-        path.restart(terrain_.probe());
+        path.restart(replica_.probe());
         for (int i = 0; i < steps; ++i) {
-            takeSurface(terrain_, hand_->probe(), surface_);
+            takeSurface(replica_, hand_->probe(), surface_);
             for (int tick = 0; tick < 16; ++tick) {
                 ++ticks_;
                 const double turn = 1.2 + static_cast<double>(ticks_) * 0.004;
@@ -73,9 +73,9 @@ protected:
                 engaged_ += hand_->lastTick().engaged ? 1 : 0;
             }
             sand::Step& step = steps_.emplace_back();
-            step.number = terrain_.stepNumber() + 1;
+            step.number = replica_.stepNumber() + 1;
             (void)path.take(step);
-            terrain_.apply(step);
+            replica_.apply(step);
         }
         recorder_->flush();
         for (base::Bytes& piece : recorder_->takePieces()) {
@@ -83,12 +83,12 @@ protected:
         }
     }
     std::string replayed(TickReplay& replay, std::size_t steps) {
-        sand::Replica terrain(scene_);
+        sand::Replica replica(scene_);
         std::string rows = tickTitles();
-        replay.feel(terrain, rows);
+        replay.feel(replica, rows);
         for (std::size_t i = 0; i < steps; ++i) {
-            terrain.apply(steps_[i]);
-            replay.feel(terrain, rows);
+            replica.apply(steps_[i]);
+            replay.feel(replica, rows);
         }
         return rows;
     }
@@ -100,11 +100,11 @@ protected:
     std::unique_ptr<HapticTick> hand_;
     FirstFailure failure_;
     std::unique_ptr<TickRecorder> recorder_;
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
     FeltSand surface_;
     std::vector<sand::Step> steps_;
     std::vector<base::Bytes> pieces_;
-    std::vector<std::string> told_;
+    std::vector<std::string> printed_;
     std::int64_t ticks_ = 0;
     int engaged_ = 0;
 };
@@ -121,7 +121,7 @@ TEST_F(Recorded, ReplaysToTheSameRowsByteForByte) {
     EXPECT_EQ(rows, written());
     EXPECT_EQ(replay.left(), 0U);
     EXPECT_NE(rows.find(",1\n"), std::string::npos);
-    EXPECT_TRUE(told_.empty());
+    EXPECT_TRUE(printed_.empty());
 }
 
 TEST_F(Recorded, LeavesOutTicksOfStepsThatWereNotShown) {
@@ -153,7 +153,7 @@ TEST_F(Recorded, ThePiecesOfALongPauseFitIntoOneSend) {
     open(folder_.file("ticks.csv"));
     hand_->restart();
     recorder_->begin();
-    takeSurface(terrain_, hand_->probe(), surface_);
+    takeSurface(replica_, hand_->probe(), surface_);
     for (int tick = 0; tick < 60'000; ++tick) {
         (void)hand_->tick(1e-3 * tick, 1'000'003 * static_cast<std::int64_t>(tick), surface_);
         recorder_->add();
@@ -193,10 +193,10 @@ TEST_F(Recorded, AFullDiskEndsTheRowsAndNotTheTrack) {
         open(file);
         sit(20);
         recorder_.reset();
-        ASSERT_EQ(told_.size(), 1U);
-        EXPECT_EQ(told_[0], "--record " + file +
-                                ": cannot be written (No space left on device); the file ends here, and the session "
-                                "continues");
+        ASSERT_EQ(printed_.size(), 1U);
+        EXPECT_EQ(printed_[0], "--record " + file +
+                                   ": cannot be written (No space left on device); the file ends here, and the session "
+                                   "continues");
         const std::string written = folder_.read("ticks.csv");
         EXPECT_TRUE(written.empty() || written.ends_with('\n')) << "a whole row";
         TickReplay replay(scene_, pieces_);

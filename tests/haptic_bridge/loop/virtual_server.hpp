@@ -52,8 +52,8 @@ public:
         share(std::nullopt);
         maker_.release();
     }
-    void share(const std::optional<haptic_bridge::ForceShare>& told) {
-        hand_->shareForce(haptic_bridge::feltShare(ceiling_, told));
+    void share(const std::optional<haptic_bridge::ForceShare>& sent) {
+        hand_->shareForce(haptic_bridge::feltShare(ceiling_, sent));
     }
     void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
 
@@ -101,7 +101,7 @@ public:
     }
 
     std::vector<Push> pushes;      // that the arm got
-    bool wallStands = false;       // the wall shows no steps: a pause, a full disk, a master that hangs
+    bool sandIsStopped = false;    // the wall shows no steps: a pause, a full disk, a master that hangs
     bool sandThreadHangs = false;  // the thread that makes steps does nothing
     std::function<void(const base::Bytes& stepMessage)> onStep;
 
@@ -119,7 +119,7 @@ private:
         maker_.collect();
         if (maker_.running() && now_ >= maker_.due()) {
             maker_.makeStep();
-            if (!wallStands) {
+            if (!sandIsStopped) {
                 maker_.shown({maker_.sand().stepNumber(), 16'666'667}, now_);
             }
         }

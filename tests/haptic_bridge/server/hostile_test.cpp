@@ -48,7 +48,7 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
             for (const auto& timed : client.drain(100)) {
                 wall.apply(timed);
             }
-            client.shown(wall.terrain.stepNumber(), 16'666'667);
+            client.shown(wall.replica.stepNumber(), 16'666'667);
             return over.load();
         },
         240000ms);
@@ -60,7 +60,7 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
     EXPECT_GT(done.refusals, 0U);
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
     EXPECT_EQ(client.counters().reconnects, 0U);
-    EXPECT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 60)) << client.link().message << server.errors();
+    EXPECT_TRUE(wall.follow(client, wall.replica.stepNumber() + 60)) << client.link().message << server.errors();
     client.stop();
     ASSERT_TRUE(client.report());
     EXPECT_GT(total(client.report()->refused), done.connections / 4) << "each refusal is counted";

@@ -171,10 +171,10 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     ASSERT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
     // The wall reports after every frame which step it shows, so the reset comes soon.
     ASSERT_TRUE(eventually([&] {
-        client.shown(wall.terrain.stepNumber(), 16'666'667);
+        client.shown(wall.replica.stepNumber(), 16'666'667);
         return link.resets() == 1;
     }));
-    const std::uint64_t then = wall.terrain.stepNumber();
+    const std::uint64_t then = wall.replica.stepNumber();
     const int engaged = wall.engaged;
     ASSERT_TRUE(wall.follow(client, then + 100)) << client.link().message << "\n" << server.errors();
     EXPECT_EQ(wall.epoch, 2U);
@@ -182,7 +182,7 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.outOfOrder, 0);
     EXPECT_GT(wall.engaged, engaged) << "the hand continues";
-    EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
+    EXPECT_EQ(samples::fieldOf(wall.replica).volume() + wall.replica.outflow(), scene_.terrain.volume());
 }
 
 }  // namespace

@@ -32,10 +32,10 @@ std::shared_ptr<Someone> comeTo(Roster<Someone>& roster, const std::string& from
     return one;
 }
 
-TEST(Roster, TheOldestGuestMakesRoom) {
+TEST(Roster, TheOldestUnauthenticatedConnectionMakesRoom) {
     Roster<Someone> roster;
     const auto first = comeTo(roster, "127.0.0.1"), second = comeTo(roster, "127.0.0.1");
-    for (std::size_t i = 2; i < kMaxGuests; ++i) {
+    for (std::size_t i = 2; i < kMaxUnauthenticated; ++i) {
         (void)comeTo(roster, "127.0.0.1");
     }
     EXPECT_FALSE(first->left);
@@ -43,19 +43,19 @@ TEST(Roster, TheOldestGuestMakesRoom) {
     (void)comeTo(roster, "127.0.0.1");
     EXPECT_TRUE(first->left);
     EXPECT_FALSE(second->left);
-    EXPECT_EQ(roster.guests().size(), kMaxGuests);
+    EXPECT_EQ(roster.unauthenticated().size(), kMaxUnauthenticated);
 }
 
-TEST(Roster, OneAddressHasFourGuests) {
+TEST(Roster, OneAddressHasFourUnauthenticatedConnections) {
     Roster<Someone> roster;
-    std::vector<std::shared_ptr<Someone>> guests;
-    for (int i = 0; i < kMaxGuestsOfOne; ++i) {
+    std::vector<std::shared_ptr<Someone>> connections;
+    for (int i = 0; i < kMaxUnauthenticatedOfOne; ++i) {
         EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")));
-        guests.push_back(comeTo(roster, "192.0.2.1"));
+        connections.push_back(comeTo(roster, "192.0.2.1"));
     }
     EXPECT_FALSE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")));
     EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.2")));
-    (void)roster.promoteToMaster(guests[0]);
+    (void)roster.promoteToMaster(connections[0]);
     EXPECT_TRUE(roster.hasRoomFor(boost::asio::ip::make_address("192.0.2.1")))
         << "a welcomed peer does not count as an unauthenticated connection";
 }
@@ -68,7 +68,7 @@ TEST(Roster, HasOneMasterAtATimeAndNumbersTheirSessions) {
     roster.promoteToWatcher(watcher);
     EXPECT_EQ(roster.master(), master);
     EXPECT_EQ(roster.watchers(), std::vector{watcher});
-    EXPECT_TRUE(roster.guests().empty());
+    EXPECT_TRUE(roster.unauthenticated().empty());
     EXPECT_FALSE(roster.remove(watcher));
     EXPECT_EQ(roster.master(), master) << "a watcher that leaves does not remove the master";
     EXPECT_TRUE(roster.remove(master));

@@ -157,7 +157,7 @@ private:
 
 /// A master without a wall. Its replica applies the steps from the client, and it reports them as shown at once.
 struct Wall {
-    explicit Wall(const scene::Scene& scene) : terrain(scene) {}
+    explicit Wall(const scene::Scene& scene) : replica(scene) {}
 
     /// Grants the steps when the link is offered. Follows until `steps` is reached or the time is over. Counts hashes
     /// that differ.
@@ -168,21 +168,21 @@ struct Wall {
                     for (const auto& left : client.drain(1000)) {
                         apply(left);
                     }
-                    client.grant(++epoch, terrain.stepNumber(), terrain.stateHash(), terrain.encodeState());
+                    client.grant(++epoch, replica.stepNumber(), replica.stateHash(), replica.encodeState());
                 }
-                for (const auto& timed : client.drain(steps - terrain.stepNumber())) {
+                for (const auto& timed : client.drain(steps - replica.stepNumber())) {
                     apply(timed);
                 }
-                client.shown(terrain.stepNumber(), 16'666'667);
-                return terrain.stepNumber() >= steps;
+                client.shown(replica.stepNumber(), 16'666'667);
+                return replica.stepNumber() >= steps;
             },
             60000ms);
     }
     void apply(const haptic_bridge::TimedStep& timed) {
-        if (timed.step.epoch == epoch && timed.step.number == terrain.stepNumber() + 1) {
-            strokes += timed.step.engaged && !terrain.engaged() ? 1 : 0;
-            terrain.apply(timed.step);
-            divergences += terrain.stateHash() != timed.serverHash ? 1 : 0;
+        if (timed.step.epoch == epoch && timed.step.number == replica.stepNumber() + 1) {
+            strokes += timed.step.engaged && !replica.engaged() ? 1 : 0;
+            replica.apply(timed.step);
+            divergences += replica.stateHash() != timed.serverHash ? 1 : 0;
             longest = std::max(longest, timed.step.path.size());
             engaged += timed.step.engaged ? 1 : 0;
             turns += timed.step.heading ? 1 : 0;
@@ -194,7 +194,7 @@ struct Wall {
         }
     }
 
-    sand::Replica terrain;
+    sand::Replica replica;
     std::uint32_t epoch = 0;
     int divergences = 0, outOfOrder = 0, engaged = 0, strokes = 0, turns = 0;
     std::size_t longest = 0;

@@ -37,9 +37,9 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
         EXPECT_EQ(wall.strokes, 3);
         EXPECT_EQ(wall.engaged, 167);
         EXPECT_EQ(wall.longest, 30U);
-        EXPECT_FALSE(wall.terrain.engaged()) << "the three letters must be complete within 240 steps";
-        EXPECT_EQ(samples::fieldOf(wall.terrain).volume() + wall.terrain.outflow(), scene_.terrain.volume());
-        hashes.push_back(wall.terrain.stateHash());
+        EXPECT_FALSE(wall.replica.engaged()) << "the three letters must be complete within 240 steps";
+        EXPECT_EQ(samples::fieldOf(wall.replica).volume() + wall.replica.outflow(), scene_.terrain.volume());
+        hashes.push_back(wall.replica.stateHash());
         client.stop();
         ASSERT_TRUE(client.report().has_value());
         EXPECT_GE(client.report()->steps, 240U);
@@ -63,10 +63,10 @@ TEST_F(HapticServer, WritesWithARecordedHand) {
     ASSERT_TRUE(wall.follow(client, 380)) << client.link().message << "\n" << server.errors();
     EXPECT_EQ(wall.divergences, 0);
     EXPECT_EQ(wall.strokes, 3) << "G, I and S";
-    EXPECT_FALSE(wall.terrain.engaged()) << "a finished recording hovers";
+    EXPECT_FALSE(wall.replica.engaged()) << "a finished recording hovers";
     // The I is in the middle of the field, and the sand between I and S is untouched.
-    EXPECT_LT(samples::fieldOf(wall.terrain).height(64, 64), scene_.terrain.height(64, 64));
-    EXPECT_EQ(samples::fieldOf(wall.terrain).height(78, 48), scene_.terrain.height(78, 48));
+    EXPECT_LT(samples::fieldOf(wall.replica).height(64, 64), scene_.terrain.height(64, 64));
+    EXPECT_EQ(samples::fieldOf(wall.replica).height(78, 48), scene_.terrain.height(78, 48));
 }
 
 // A hand that turns its tool sends the heading when it changes. A ball gets no heading, because it would make no
@@ -88,7 +88,7 @@ TEST_F(HapticServer, TurnsTheToolThatHasAHeading) {
         EXPECT_EQ(wall.divergences, 0);
         EXPECT_EQ(wall.strokes, 2);
         EXPECT_EQ(wall.turns, shape == "sphere" ? 0 : 2) << "east as the scene has it, north, and 200 degrees";
-        EXPECT_EQ(wall.terrain.heading(), shape == "sphere" ? sand::Heading{} : *sand::headingOf(200, true));
+        EXPECT_EQ(wall.replica.heading(), shape == "sphere" ? sand::Heading{} : *sand::headingOf(200, true));
     }
 }
 
@@ -137,7 +137,7 @@ TEST_F(HapticServer, GetsFewerStepsThroughASlowWallAndLosesNone) {
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(client, 5));
     // The wall shows no frame until the window of 8 steps is full and the server has withheld some more steps.
-    const std::uint64_t before = wall.terrain.stepNumber();
+    const std::uint64_t before = wall.replica.stepNumber();
     ASSERT_TRUE(eventually([&] { return client.counters().stepsIn >= before + 8; })) << client.counters().stepsIn;
     std::this_thread::sleep_for(1000ms);
     EXPECT_LE(client.counters().stepsIn, before + 8);
@@ -191,7 +191,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
         withNumber(14, sand::Edit::loaded(sand::Replica(scene_).copySand()->encode()))};
     for (const sand::Edit& edit : asked) {
         client.request(edit);
-        ASSERT_TRUE(wall.follow(client, wall.terrain.stepNumber() + 40)) << client.link().message;
+        ASSERT_TRUE(wall.follow(client, wall.replica.stepNumber() + 40)) << client.link().message;
     }
     EXPECT_EQ(wall.edits, asked);
     EXPECT_EQ(wall.divergences, 0);
@@ -200,7 +200,7 @@ TEST_F(HapticServer, DoesWhatAnOperatorAsksAndTakesTheWallsMaterialWhenItComesBa
     server = nullptr;
     server = std::make_unique<ServerProcess>(folder_, ServerProcess::usual(sceneFile_, folder_, port));
     ASSERT_TRUE(wall.follow(client, 240)) << client.link().message << "\n" << server->errors();
-    EXPECT_EQ(wall.terrain.rules().tuning, tuning);
+    EXPECT_EQ(wall.replica.rules().tuning, tuning);
     EXPECT_EQ(wall.divergences, 0) << "the server computes with the operator's settings";
 }
 

@@ -20,10 +20,10 @@ public:
             add(sample);
         }
     }
-    void publish(const sand::Replica& terrain, bool withEdit) override {
-        felt.push_back(terrain.stepNumber());
+    void publish(const sand::Replica& replica, bool withEdit) override {
+        felt.push_back(replica.stepNumber());
         if (withEdit) {
-            edited.push_back(terrain.stepNumber());
+            edited.push_back(replica.stepNumber());
         }
     }
     void refresh(const sand::Replica&) override { ++refreshes; }

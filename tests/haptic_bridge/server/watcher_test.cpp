@@ -61,7 +61,7 @@ TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
             for (const auto& timed : master.drain(100)) {
                 wall.apply(timed);
             }
-            master.shown(wall.terrain.stepNumber(), 16'666'667);
+            master.shown(wall.replica.stepNumber(), 16'666'667);
             const std::string told = folder_.read("watch");
             return told.find("steps/s", told.find("steps/s") + 1) != std::string::npos ||
                    (told.find("127.0.0.1") != std::string::npos && told.ends_with('\n'));
@@ -93,7 +93,7 @@ TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
             watcher.send(Ping{});
             pingedNs = host::monotonicNs();
         }
-        ASSERT_TRUE(wall.follow(master, wall.terrain.stepNumber() + 100)) << master.link().message;
+        ASSERT_TRUE(wall.follow(master, wall.replica.stepNumber() + 100)) << master.link().message;
     }
     EXPECT_TRUE(cutOff()) << server.errors();
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);

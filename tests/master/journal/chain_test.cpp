@@ -60,12 +60,12 @@ TEST_F(Chain, APartOfAnotherPastOfTheSameSessionIsRefused) {
     ASSERT_TRUE(showFrame());
     keeper_.reset();
     const base::Bytes common = contentOf(journal());
-    const base::Bytes state = terrain_.encodeState();
+    const base::Bytes state = replica_.encodeState();
     const std::uint64_t frame = frame_;
     const auto past = [&](unsigned seed) {
         fs::remove(second());
         put(journal(), common);
-        terrain_.decodeState(state);
+        replica_.decodeState(state);
         frame_ = frame;
         random_.seed(seed);
         const auto resumed = master::readSession(journal(), "");
@@ -113,7 +113,7 @@ TEST_F(Chain, APartOfAnotherSessionBehindTheLastRecordIsNoPartOfThisOne) {
     goOnUntil(2);
     keeper_.reset();
     const base::Bytes earlier = contentOf(second());
-    terrain_ = sand::Replica(scene_);
+    replica_ = sand::Replica(scene_);
     begin({.checkpointSeconds = 0});
     ASSERT_TRUE(showFrame());
     keeper_.reset();

@@ -24,34 +24,34 @@ protected:
         constexpr std::uint64_t kMostSteps = 20'000;
         Steps steps;
         while (steps.size() < count) {
-            if (terrain_.stepNumber() == kMostSteps || !showFrame()) {
-                ADD_FAILURE() << steps.size() << " checkpoints have begun after step " << terrain_.stepNumber();
+            if (replica_.stepNumber() == kMostSteps || !showFrame()) {
+                ADD_FAILURE() << steps.size() << " checkpoints have begun after step " << replica_.stepNumber();
                 return Steps(count);
             }
             if (keeper_->copyMs().size() > steps.size()) {
-                steps.push_back(terrain_.stepNumber());
+                steps.push_back(replica_.stepNumber());
             }
             std::this_thread::yield();
         }
         return steps;
     }
     void end() {
-        keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+        keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
         keeper_.reset();
     }
     /// Shows frames with a step up to step `step`.
     void showUntil(std::uint64_t step) {
-        while (terrain_.stepNumber() < step) {
+        while (replica_.stepNumber() < step) {
             ASSERT_TRUE(showFrame());
         }
     }
-    void keepCheckpoint(sand::Replica& terrain) const {
+    void keepCheckpoint(sand::Replica& replica) const {
         master::writeCheckpoint(journal(),
                                 {master::JournalReader(journal()).header().session, "test", scene_.rules.digest(),
-                                 terrain.stepNumber(), frame_, 1, terrain.stateHash(), terrain.encodeState()},
+                                 replica.stepNumber(), frame_, 1, replica.stateHash(), replica.encodeState()},
                                 3);
     }
-    [[nodiscard]] master::JournalEnd here() { return {terrain_.stepNumber(), terrain_.stateHash()}; }
+    [[nodiscard]] master::JournalEnd here() { return {replica_.stepNumber(), replica_.stateHash()}; }
 };
 
 // The newest two may be damaged.
@@ -62,14 +62,14 @@ TEST_F(Checkpoints, OfFourTheNewestThreeAreKept) {
     EXPECT_EQ(master::checkpointsOf(journal()), (Steps{four[3], four[2], four[1]}));
     for (const std::size_t damaged : {3U, 2U}) {
         std::filesystem::resize_file(master::checkpointFile(journal(), four[damaged]), 20);
-        EXPECT_EQ(master::restoreSand(journal(), terrain_.stepNumber()).checkpointStep, four[damaged - 1]);
+        EXPECT_EQ(master::restoreSand(journal(), replica_.stepNumber()).checkpointStep, four[damaged - 1]);
     }
 }
 
 TEST_F(Checkpoints, OneOfTheStepAtWhichTheSessionResumesStays) {
     begin({.checkpointSeconds = kAlways});
     const Steps two = begun(2);
-    ASSERT_EQ(two[1], terrain_.stepNumber()) << "it is of the last step";
+    ASSERT_EQ(two[1], replica_.stepNumber()) << "it is of the last step";
     end();
     for (const char* resume : {"the first", "the second"}) {
         const auto resumed = master::readSession(journal(), "");
@@ -138,7 +138,7 @@ TEST_F(Checkpoints, OneIsDueAtOnceAfterADoubtAndAfterAResume) {
 TEST_F(Checkpoints, OneOfTheStepsThatAMajorityDecidedIsNotUsed) {
     begin({.checkpointSeconds = 0});
     showUntil(70);
-    sand::Replica wrong = terrain_;
+    sand::Replica wrong = replica_;
     wrong.corrupt(20, 15, 12);
     wrong.audit(wrong.hashTiles().tileCount());
     keeper_->doubt({frame_, {wrong.stepNumber(), wrong.stateHash()}});
@@ -149,7 +149,7 @@ TEST_F(Checkpoints, OneOfTheStepsThatAMajorityDecidedIsNotUsed) {
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->step, 75U);
     EXPECT_EQ(resumed->checkpointStep, 0U);
-    EXPECT_EQ(resumed->hash, terrain_.stateHash());
+    EXPECT_EQ(resumed->hash, replica_.stateHash());
     ASSERT_TRUE(resumed->outvoted.has_value());
     EXPECT_EQ(resumed->outvoted->majority.sand.hash, wrong.stateHash());
 }
@@ -159,7 +159,7 @@ TEST_F(Checkpoints, NoneOfTheSixtyStepsBeforeADoubtIsUsedUntilTheDoubtHasEnded) 
     begin({.checkpointSeconds = 0});
     for (const std::uint64_t step : {4U, 5U, 40U}) {
         showUntil(step);
-        keepCheckpoint(terrain_);
+        keepCheckpoint(replica_);
     }
     showUntil(64);
     keeper_->doubt({frame_, here()});

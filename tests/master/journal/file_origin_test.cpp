@@ -55,14 +55,14 @@ protected:
     }
     /// Writes a whole file as this release does, and returns its bytes.
     [[nodiscard]] base::Bytes writeWhole(std::uint32_t magic) const {
-        sand::Replica terrain(scene_);
-        const std::uint64_t hash = terrain.stateHash();
+        sand::Replica replica(scene_);
+        const std::uint64_t hash = replica.stateHash();
         if (magic == kJournal) {
             const master::JournalWriter writer(nameOf(magic), scene_, "test");
         } else if (magic == kSand) {
-            master::writeSavedSand(nameOf(magic), {place_, 0, hash, terrain.copySand()->encode()});
+            master::writeSavedSand(nameOf(magic), {place_, 0, hash, replica.copySand()->encode()});
         } else {
-            write(magic, master::Checkpoint{1, "test", 2, 0, 0, 1, hash, terrain.encodeState()}.encode());
+            write(magic, master::Checkpoint{1, "test", 2, 0, 0, 1, hash, replica.encodeState()}.encode());
         }
         std::ifstream stream(nameOf(magic), std::ios::binary);
         return {std::istreambuf_iterator<char>(stream), {}};

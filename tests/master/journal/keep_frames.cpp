@@ -16,23 +16,23 @@ namespace {
 
 int keepFrames(const std::filesystem::path& folder, const std::string& policy) {
     std::ofstream log(std::getenv("SANDWALL_SYNC_LOG"), std::ios::app);
-    const auto say = [&](const std::string& line) { log << line << std::endl; };
+    const auto print = [&](const std::string& line) { log << line << std::endl; };
     const scene::Scene scene = samples::flatScene(40, 30);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     master::JournalKeeper keeper(
         folder, {.policy = base::valueNamed<master::JournalPolicy>(policy).value(), .checkpointSeconds = 0}, scene,
         nullptr, "", "test");
-    say("made");
+    print("made");
     for (std::uint64_t frame = 1; frame <= 3; ++frame) {
         const sand::Step step{1, frame, false, {}};
         try {
-            keeper.keep({frame, terrain.stateHash(), {step}}, {});
+            keeper.keep({frame, replica.stateHash(), {step}}, {});
         } catch (const master::DiskFailure&) {
-            say("refused");
+            print("refused");
             return 3;
         }
-        say(fmt::format("kept {} {}", std::filesystem::file_size(folder / "session.journal"), keeper.state()));
-        terrain.apply(step);
+        print(fmt::format("kept {} {}", std::filesystem::file_size(folder / "session.journal"), keeper.state()));
+        replica.apply(step);
     }
     return 0;
 }

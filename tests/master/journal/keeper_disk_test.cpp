@@ -43,7 +43,7 @@ TEST_F(KeeperDisk, ARequiredJournalThatCannotBeWrittenEndsTheSession) {
     ASSERT_TRUE(showFrame());
     const FileLimit limit(std::filesystem::file_size(journal()) + 9);
     EXPECT_THROW(showFrame(), master::DiskFailure);
-    EXPECT_EQ(terrain_.stepNumber(), 1U) << "a step that is not on disk is not applied";
+    EXPECT_EQ(replica_.stepNumber(), 1U) << "a step that is not on disk is not applied";
     expectWhole(1);
 }
 
@@ -55,7 +55,7 @@ TEST_F(KeeperDisk, WithBestEffortTheSessionGoesOnWithoutAJournal) {
         EXPECT_TRUE(showFrame());
     }
     EXPECT_TRUE(showFrame());
-    EXPECT_EQ(terrain_.stepNumber(), 3U);
+    EXPECT_EQ(replica_.stepNumber(), 3U);
     EXPECT_EQ(keeper_->state(), "failed");
     EXPECT_EQ(master::readJournal(journal()).frames.size(), 1U);
 }
@@ -74,17 +74,17 @@ TEST_F(KeeperDisk, AFullDiskStopsTheSandUntilThereIsRoom) {
         EXPECT_GT(frames, 2);
         EXPECT_EQ(keeper_->state(), "no_room");
         EXPECT_FALSE(showFrame()) << "the sand is stopped";
-        expectWhole(terrain_.stepNumber());
+        expectWhole(replica_.stepNumber());
         keeper_->force({0.25});  // is written when there is room, and switching forces off does not wait for it
-        const std::uint64_t stood = terrain_.stepNumber();
+        const std::uint64_t stood = replica_.stepNumber();
         std::filesystem::remove(folder_ / "filler");
         while (!showFrame()) {  // the keeper tries the disk about once per second
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         EXPECT_EQ(keeper_->state(), "written");
-        EXPECT_EQ(keeper_->stands(), 1U);
-        EXPECT_EQ(terrain_.stepNumber(), stood + 1);
-        expectWhole(terrain_.stepNumber());
+        EXPECT_EQ(keeper_->stops(), 1U);
+        EXPECT_EQ(replica_.stepNumber(), stood + 1);
+        expectWhole(replica_.stepNumber());
         keeper_.reset();
         EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0.25);
     });
@@ -100,7 +100,7 @@ TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
         while (showFrame(large)) {
             ASSERT_LT(++frames, 1000);
         }
-        const auto place = [this] { return master::JournalEnd{terrain_.stepNumber(), terrain_.stateHash()}; };
+        const auto place = [this] { return master::JournalEnd{replica_.stepNumber(), replica_.stateHash()}; };
         EXPECT_FALSE(keeper_->hasRoomFor(0, place())) << "a command right after the stop";
         const auto filled = std::filesystem::file_size(folder_ / "filler");
         std::filesystem::resize_file(folder_ / "filler", filled - (256 << 10));  // more than the steps of a frame need
@@ -113,7 +113,7 @@ TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
         while (!showFrame()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
-        EXPECT_EQ(keeper_->stands(), 1U);
+        EXPECT_EQ(keeper_->stops(), 1U);
         EXPECT_TRUE(keeper_->hasRoomFor(1 << 10, place()));
         keeper_.reset();
     });
@@ -122,10 +122,10 @@ TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
 TEST_F(KeeperDisk, SandThatDoesNotFitStopsNothing) {
     support::testOnSmallDisk(folder_, "size=4m", [this] {
         begin({.checkpointSeconds = 0});
-        EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, terrain_.stateHash()}));
+        EXPECT_FALSE(keeper_->hasRoomFor(8 << 20, {0, replica_.stateHash()}));
         EXPECT_EQ(keeper_->state(), "written");
         EXPECT_TRUE(showFrame());
-        EXPECT_EQ(keeper_->stands(), 0U);
+        EXPECT_EQ(keeper_->stops(), 0U);
         keeper_.reset();
     });
 }

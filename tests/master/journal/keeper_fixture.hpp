@@ -23,27 +23,27 @@ protected:
     }
     /// Shows a frame with a step. Returns false if the keeper does not allow a step.
     bool showFrame(const sand::Edit& edit = {}) {
-        if (!keeper_->mayTake(1 << 16, {terrain_.stepNumber(), terrain_.stateHash()})) {
+        if (!keeper_->mayTake(1 << 16, {replica_.stepNumber(), replica_.stateHash()})) {
             return false;
         }
-        sand::Step step = samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_);
+        sand::Step step = samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_);
         step.edit = edit;
-        keeper_->keep({++frame_, terrain_.stateHash(), {step}}, {});
-        terrain_.apply(step);
-        keeper_->shown(terrain_, frame_, 1, terrain_.stateHash());
+        keeper_->keep({++frame_, replica_.stateHash(), {step}}, {});
+        replica_.apply(step);
+        keeper_->shown(replica_, frame_, 1, replica_.stateHash());
         return true;
     }
     [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
     void expectWhole(std::uint64_t steps) {
         master::RestoredSand restored = master::restoreSand(journal(), steps);
-        EXPECT_EQ(restored.terrain.stateHash(), terrain_.stateHash());
+        EXPECT_EQ(restored.replica.stateHash(), replica_.stateHash());
         const master::Journal journal = master::readJournal(this->journal());
         EXPECT_EQ(journal.frames.size(), steps);
         EXPECT_EQ(journal.tornBytes, 0);
     }
 
     scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
     std::mt19937 random_{61};
     std::uint64_t frame_ = 0;
     std::optional<master::JournalKeeper> keeper_;

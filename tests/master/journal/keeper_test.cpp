@@ -53,7 +53,7 @@ TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
     std::thread first([&] {
         std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the second session has begun by now
         moved = std::filesystem::exists(folder_ / "session.journal.previous");
-        keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+        keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
         keeper_.reset();
     });
     second.emplace(folder_, master::JournalOptions{}, scene_, nullptr, "", "test");
@@ -80,9 +80,9 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
     begin({.checkpointSeconds = 1e-9});
     for (int frame = 0; frame < 30; ++frame) {
         ASSERT_TRUE(showFrame());
-        keeper_->shown(terrain_, frame_, 1, terrain_.stateHash());
+        keeper_->shown(replica_, frame_, 1, replica_.stateHash());
     }
-    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
     const auto steps = master::checkpointsOf(journal());
     ASSERT_FALSE(steps.empty());
     EXPECT_LE(steps.size(), 3U);
@@ -93,7 +93,7 @@ TEST_F(Keeper, KeepsTheNewestCheckpointsAndResumesFromThem) {
 }
 
 TEST_F(Keeper, IsWholeOnlyWithAnEndAndEveryStep) {
-    const auto end = [this] { keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()}); };
+    const auto end = [this] { keeper_->finish({replica_.stepNumber(), replica_.stateHash()}); };
     begin({});
     ASSERT_TRUE(showFrame());
     EXPECT_FALSE(keeper_->whole()) << "it has no end";
@@ -128,12 +128,12 @@ TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
     while (master::checkpointsOf(journal()).empty()) {
         ASSERT_TRUE(showFrame());
     }
-    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
     keeper_.reset();
     const std::uint64_t newest = master::checkpointsOf(journal()).front();
     std::filesystem::remove(master::checkpointFile(journal(), newest));
     support::makePipe(master::checkpointFile(journal(), newest));
-    EXPECT_TRUE(support::endsByItself([this] { expectWhole(terrain_.stepNumber()); })) << "a checkpoint";
+    EXPECT_TRUE(support::endsByItself([this] { expectWhole(replica_.stepNumber()); })) << "a checkpoint";
     EXPECT_TRUE(support::endsByItself([this, newest] {
         master::Checkpoint again;
         again.step = newest;
@@ -171,7 +171,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     for (int frame = 0; frame < 100; ++frame) {
         ASSERT_TRUE(showFrame());
     }
-    keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+    keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
     const std::uint32_t parts = keeper_->parts();
     ASSERT_GT(parts, 2U);
     EXPECT_TRUE(std::filesystem::exists(master::partOf(journal(), parts)));
@@ -190,7 +190,7 @@ TEST_F(Keeper, GoesOnInAnotherPartAndIsReadAsOne) {
     expectWhole(200);
     // A new session renames all parts.
     keeper_.reset();
-    terrain_ = sand::Replica(scene_);
+    replica_ = sand::Replica(scene_);
     begin({});
     EXPECT_FALSE(std::filesystem::exists(master::partOf(journal(), 2)));
     EXPECT_EQ(master::readJournal(journal().string() + ".previous").frames.size(), 200U);
@@ -239,7 +239,7 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
         ASSERT_TRUE(showFrame());
     }
     keeper_.reset();
-    const std::uint64_t steps = terrain_.stepNumber() - 1;  // the last step is in the second part
+    const std::uint64_t steps = replica_.stepNumber() - 1;  // the last step is in the second part
     // Cuts off the record that names the second part.
     std::filesystem::resize_file(journal(), std::filesystem::file_size(journal()) - 25);
     EXPECT_THROW((void)master::readJournal(journal()), base::InputError) << "the second part holds a step";
@@ -255,7 +255,7 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     const auto resumed = master::readSession(journal(), "");
     ASSERT_TRUE(resumed.has_value());
     EXPECT_EQ(resumed->place.part, 1U);
-    terrain_.decodeState(resumed->state);
+    replica_.decodeState(resumed->state);
     begin({.checkpointSeconds = 0, .partBytes = 2000}, &*resumed);
     ASSERT_TRUE(showFrame());
     expectWhole(steps + 1);
@@ -285,7 +285,7 @@ TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
             close(told[0]);
             begin({.checkpointSeconds = 1e-9, .partBytes = 20'000});
             while (showFrame()) {
-                const std::uint64_t steps = terrain_.stepNumber();
+                const std::uint64_t steps = replica_.stepNumber();
                 if (write(told[1], &steps, sizeof steps) != sizeof steps) {
                     break;
                 }

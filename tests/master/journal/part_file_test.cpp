@@ -24,7 +24,7 @@ protected:
     /// Returns the error of the second session; "nothing" if it may continue. The first session ends when the second
     /// one has waited for `until`.
     template <class Second>
-    std::string tell(const Second& second, std::chrono::milliseconds until) {
+    std::string report(const Second& second, std::chrono::milliseconds until) {
         try {
             second([this, until](std::chrono::milliseconds length) {
                 waited_ += length;
@@ -38,10 +38,10 @@ protected:
         return "nothing";
     }
     std::string open(std::chrono::milliseconds until) {
-        return tell([this](const master::Pause& pause) { (void)PartFile::open(file_, 3, 3, pause); }, until);
+        return report([this](const master::Pause& pause) { (void)PartFile::open(file_, 3, 3, pause); }, until);
     }
     std::string begin(std::chrono::milliseconds until) {
-        return tell([this](const master::Pause& pause) { PartFile::requireNoWriter(file_, pause); }, until);
+        return report([this](const master::Pause& pause) { PartFile::requireNoWriter(file_, pause); }, until);
     }
 
     static constexpr std::chrono::milliseconds kNever = 24h;

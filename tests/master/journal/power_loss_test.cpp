@@ -28,18 +28,18 @@ protected:
     }
     /// Shows a frame of one step. Writes `pieces` pieces of ticks and a material in the same write, before the step.
     void showFrame(int pieces = 0) {
-        ASSERT_TRUE(keeper_->mayTake(1 << 16, {terrain_.stepNumber(), terrain_.stateHash()}));
+        ASSERT_TRUE(keeper_->mayTake(1 << 16, {replica_.stepNumber(), replica_.stateHash()}));
         for (int i = 0; i < pieces; ++i) {
             base::Bytes piece(2500 + random_() % 2000);
             std::generate(piece.begin(), piece.end(), [this] { return static_cast<std::uint8_t>(random_()); });
             keeper_->keepTicks({piece});
         }
-        const sand::Step step = samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_);
+        const sand::Step step = samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_);
         before_ = std::filesystem::file_size(part());
-        keeper_->keep({++frame_, terrain_.stateHash(), {step}},
+        keeper_->keep({++frame_, replica_.stateHash(), {step}},
                       pieces > 0 ? std::vector{scene_.material} : std::vector<scene::Material>());
-        terrain_.apply(step);
-        hashes_.push_back(terrain_.stateHash());
+        replica_.apply(step);
+        hashes_.push_back(replica_.stateHash());
     }
     [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
     [[nodiscard]] std::filesystem::path part() const { return master::partOf(journal(), keeper_->parts()); }
@@ -57,19 +57,19 @@ protected:
         ASSERT_GE(resumed->step, shown) << "steps that were shown are lost";
         ASSERT_LE(resumed->step, shown + 1);
         ASSERT_EQ(resumed->hash, hashes_[resumed->step]);
-        const sand::Replica terrain = terrain_;
+        const sand::Replica replica = replica_;
         const std::vector<std::uint64_t> hashes = hashes_;
-        terrain_.decodeState(resumed->state);
+        replica_.decodeState(resumed->state);
         hashes_.resize(resumed->step + 1);
         begin({.checkpointSeconds = 0}, &*resumed);
         showFrame();
-        keeper_->finish({terrain_.stepNumber(), terrain_.stateHash()});
+        keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
         keeper_.reset();
         const master::Journal whole = master::readJournal(journal());
         EXPECT_EQ(whole.frames.size(), resumed->step + 1);
         ASSERT_TRUE(whole.end.has_value());
         EXPECT_EQ(whole.tornBytes, 0);
-        terrain_ = terrain;
+        replica_ = replica;
         hashes_ = hashes;
     }
     /// Loses every subset of the pages of the last write, and resumes from each.
@@ -78,7 +78,7 @@ protected:
         for (int frame = 0; frame < 12; ++frame) {
             showFrame(frame % 3);
         }
-        const std::uint64_t shown = terrain_.stepNumber();
+        const std::uint64_t shown = replica_.stepNumber();
         showFrame(5);
         const std::filesystem::path last = part();
         keeper_.reset();
@@ -108,11 +108,11 @@ protected:
     }
 
     scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
     std::mt19937 random_{71};
     std::uint64_t frame_ = 0;
     std::uintmax_t before_ = 0;                                // [byte], length of the part before the last write
-    std::vector<std::uint64_t> hashes_{terrain_.stateHash()};  // after every step, from 0
+    std::vector<std::uint64_t> hashes_{replica_.stateHash()};  // after every step, from 0
     std::optional<master::JournalKeeper> keeper_;
 };
 

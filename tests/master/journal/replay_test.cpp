@@ -28,19 +28,19 @@ protected:
     /// Records 40 steps, two per frame. `hashError` changes the hash of frame 10.
     sand::Replica record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
     sand::Replica record(const scene::Scene& scene, std::uint64_t hashError) {
-        sand::Replica terrain(scene);
+        sand::Replica replica(scene);
         std::mt19937 random(53);
         master::JournalWriter writer(journal(), scene, "test");
         for (std::uint64_t frame = 1; frame <= 20; ++frame) {
-            master::JournalFrame written{frame, terrain.stateHash() ^ (frame == 10 ? hashError : 0), {}};
+            master::JournalFrame written{frame, replica.stateHash() ^ (frame == 10 ? hashError : 0), {}};
             for (int i = 0; i < 2; ++i) {
-                written.steps.push_back(samples::randomStep(terrain.stepNumber() + 1, scene.rules, random));
-                terrain.apply(written.steps.back());
+                written.steps.push_back(samples::randomStep(replica.stepNumber() + 1, scene.rules, random));
+                replica.apply(written.steps.back());
             }
             writer.append(written);
         }
-        writer.finish(terrain.stepNumber(), terrain.stateHash());
-        return terrain;
+        writer.finish(replica.stepNumber(), replica.stateHash());
+        return replica;
     }
     [[nodiscard]] std::string journal() const { return path("s.journal"); }
     [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
@@ -62,20 +62,20 @@ protected:
 };
 
 TEST_F(Replay, EndsInTheSessionsHash) {
-    sand::Replica terrain = record();
+    sand::Replica replica = record();
     const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --hash");
     EXPECT_EQ(ran.status, 0);
-    EXPECT_EQ(ran.output, fmt::format("{:016x}\n", terrain.stateHash()));
+    EXPECT_EQ(ran.output, fmt::format("{:016x}\n", replica.stateHash()));
 }
 
 TEST_F(Replay, WritesTheHeights) {
-    const sand::Replica terrain = record();
+    const sand::Replica replica = record();
     const std::string file = (folder_ / "h.asc").string();
     ASSERT_EQ(support::runProgram("sandwall-replay", journal() + " --heights " + file).status, 0);
     const scene::EsriGrid grid = scene::readEsriGrid(file);
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 40; ++x) {
-            ASSERT_NEAR(grid.at(x, y), samples::fieldOf(terrain).height(x, y) * samples::fieldOf(terrain).unit(), 1e-6);
+            ASSERT_NEAR(grid.at(x, y), samples::fieldOf(replica).height(x, y) * samples::fieldOf(replica).unit(), 1e-6);
         }
     }
 }
@@ -95,9 +95,9 @@ TEST_F(Replay, WritesNoDataWhereATinHasHoles) {
     dem.close();
     std::ofstream(folder_ / "s.toml") << "[terrain]\nkind = \"esri_ascii\"\nfile = \"dem.asc\"\n[tin]\n[material]\n"
                                          "settling_time = 0.1\n[tool]\nradius = 4\n";
-    sand::Replica terrain = record(scene::loadScene(folder_ / "s.toml"), 0);
+    sand::Replica replica = record(scene::loadScene(folder_ / "s.toml"), 0);
     EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash").output,
-              fmt::format("{:016x}\n", terrain.stateHash()));
+              fmt::format("{:016x}\n", replica.stateHash()));
     for (const std::string option : {"--heights", "--difference"}) {
         const std::string file = (folder_ / "h.asc").string();
         ASSERT_EQ(support::runProgram("sandwall-replay", fmt::format("{} {} {}", journal(), option, file)).status, 0);
@@ -118,7 +118,7 @@ TEST_F(Replay, SaysWhereASessionDiffers) {
 }
 
 TEST_F(Replay, VerifiesAllThatAJournalSays) {
-    const sand::Replica terrain = record();
+    const sand::Replica replica = record();
     const std::uint64_t session = master::JournalReader(journal()).header().session;
     const auto keep = [&](const sand::Replica& sand) {
         sand::Replica copy = sand;
@@ -127,7 +127,7 @@ TEST_F(Replay, VerifiesAllThatAJournalSays) {
             {session, "test", sand.rules().digest(), sand.stepNumber(), 20, 1, copy.stateHash(), copy.encodeState()},
             3);
     };
-    keep(terrain);
+    keep(replica);
     const support::Ran good = support::runProgram("sandwall-replay", journal() + " --verify");
     EXPECT_EQ(good.status, 0) << good.output;
     for (const char* line : {"records      21 whole, ", "chain        whole", "parts        1\n",
@@ -181,7 +181,7 @@ TEST_F(Replay, WritesEveryStepAsARow) {
 }
 
 TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
-    sand::Replica terrain = record();
+    sand::Replica replica = record();
     const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(journal()) * 3 / 4);
     std::fstream stream(journal(), std::ios::in | std::ios::out | std::ios::binary);
     stream.seekg(middle);
@@ -206,10 +206,10 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
 }
 
 TEST_F(Replay, SaysWhatItReplayedWhereNothingElseIsAskedFor) {
-    sand::Replica terrain = record();
+    sand::Replica replica = record();
     EXPECT_EQ(support::runProgram("sandwall-replay", journal()).output,
               fmt::format("{}: 40 steps replayed, state hash {:016x}; no hash differs from the session's\n", journal(),
-                          terrain.stateHash()));
+                          replica.stateHash()));
     record(1);
     const support::Ran differs = support::runProgram("sandwall-replay", journal() + " --until 39");
     EXPECT_EQ(differs.status, 1);

@@ -25,35 +25,35 @@ protected:
         scene_.material.humidity = 0.25;
         master::JournalWriter writer(journal(), scene_, "test");
         record(writer, 20);
-        hashes_.push_back(terrain_.stateHash());
+        hashes_.push_back(replica_.stateHash());
     }
 
     void record(master::JournalWriter& writer, int frames, std::uint32_t epoch = 1) {
         for (int i = 0; i < frames; ++i) {
-            master::JournalFrame written{++frame_, terrain_.stateHash(), {}};
+            master::JournalFrame written{++frame_, replica_.stateHash(), {}};
             for (int k = 0; k < 2; ++k) {
-                hashes_.push_back(terrain_.stateHash());
-                written.steps.push_back(samples::wildStep(terrain_.stepNumber() + 1, scene_.rules, random_));
+                hashes_.push_back(replica_.stateHash());
+                written.steps.push_back(samples::wildStep(replica_.stepNumber() + 1, scene_.rules, random_));
                 written.steps.back().epoch = epoch;
-                terrain_.apply(written.steps.back());
+                replica_.apply(written.steps.back());
             }
             writer.append(written);
-            if (terrain_.stepNumber() % 10 == 0) {
+            if (replica_.stepNumber() % 10 == 0) {
                 keepCheckpoint(writer.session());
             }
         }
     }
     void keepCheckpoint(std::uint64_t session) {
-        const master::Checkpoint checkpoint{session, "test", scene_.rules.digest(), terrain_.stepNumber(),
-                                            frame_,  1,      terrain_.stateHash(),  terrain_.encodeState()};
+        const master::Checkpoint checkpoint{session, "test", scene_.rules.digest(), replica_.stepNumber(),
+                                            frame_,  1,      replica_.stateHash(),  replica_.encodeState()};
         master::writeCheckpoint(journal(), checkpoint, 3);
     }
     [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
     /// Expects the same sand as after an undisturbed replay of all steps.
     void expectSand(std::uint64_t step, std::uint64_t checkpoint) const {
         master::RestoredSand restored = master::restoreSand(journal(), step);
-        EXPECT_EQ(restored.terrain.stepNumber(), step);
-        EXPECT_EQ(restored.terrain.stateHash(), hashes_[step]) << step;
+        EXPECT_EQ(restored.replica.stepNumber(), step);
+        EXPECT_EQ(restored.replica.stateHash(), hashes_[step]) << step;
         EXPECT_EQ(restored.checkpointStep, checkpoint) << step;
         EXPECT_EQ(restored.replayedSteps, step - checkpoint) << step;
     }
@@ -74,7 +74,7 @@ protected:
     }
 
     scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
     std::mt19937 random_{59};
     std::uint64_t frame_ = 0;
     std::vector<std::uint64_t> hashes_;  // state hashes after every step, from 0
@@ -110,9 +110,9 @@ TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
 // The checkpoint is whole, has the right checksum and belongs to the session. But its sand differs from the journal's.
 TEST_F(Resume, LeavesOutACheckpointOfOtherSand) {
     const std::uint64_t session = master::JournalReader(journal()).header().session;
-    terrain_ = master::restoreSand(journal(), 39).terrain;
-    terrain_.apply({.epoch = 1, .number = 40, .engaged = true, .path = {{999, 999, -99}, {5000, 5000, -99}}});
-    ASSERT_NE(terrain_.stateHash(), hashes_[40]);
+    replica_ = master::restoreSand(journal(), 39).replica;
+    replica_.apply({.epoch = 1, .number = 40, .engaged = true, .path = {{999, 999, -99}, {5000, 5000, -99}}});
+    ASSERT_NE(replica_.stateHash(), hashes_[40]);
     keepCheckpoint(session);
     std::filesystem::remove(master::checkpointFile(journal(), 30));
     master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
@@ -128,7 +128,7 @@ TEST_F(Resume, LeavesOutACheckpointOfAnotherSession) {
     EXPECT_EQ(master::restoreSand(copy, 0).checkpointStep, 0U);
     // At step 0 both sessions have the same sand. Only the session's number is different.
     std::filesystem::rename(master::checkpointFile(copy, 40), master::checkpointFile(copy, 0));
-    EXPECT_EQ(master::restoreSand(copy, 0).terrain.stepNumber(), 0U);
+    EXPECT_EQ(master::restoreSand(copy, 0).replica.stepNumber(), 0U);
 }
 
 TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
@@ -146,18 +146,18 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
     EXPECT_EQ(session->scene.encode(), scene_.encode());
     EXPECT_EQ(session->material, scene_.material);
 
-    terrain_ = sand::Replica(session->scene);
-    terrain_.decodeState(session->state);
-    EXPECT_EQ(terrain_.stateHash(), hashes_[38]);
+    replica_ = sand::Replica(session->scene);
+    replica_.decodeState(session->state);
+    EXPECT_EQ(replica_.stateHash(), hashes_[38]);
     hashes_.resize(38);
     frame_ = session->frame;
     {
         master::JournalWriter writer(session->place, "test");
         writer.resume({session->frame, {session->step, session->hash}, session->cutBytes, "a test"});
         record(writer, 6, session->epoch + 1);
-        writer.finish(terrain_.stepNumber(), terrain_.stateHash());
+        writer.finish(replica_.stepNumber(), replica_.stateHash());
     }
-    hashes_.push_back(terrain_.stateHash());
+    hashes_.push_back(replica_.stateHash());
     const master::Journal journal = master::readJournal(this->journal());
     EXPECT_EQ(journal.frames.size(), 25U);
     EXPECT_EQ(journal.tornBytes, 0);
@@ -324,11 +324,11 @@ TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
     const auto append = [this](std::uint64_t number, std::uint32_t epoch) {
         const auto session = master::readSession(journal(), "");
         master::JournalWriter writer(session->place, "test");
-        master::JournalFrame frame{++frame_, terrain_.stateHash(), {}};
-        frame.steps.push_back(samples::randomStep(terrain_.stepNumber() + 1, scene_.rules, random_));
+        master::JournalFrame frame{++frame_, replica_.stateHash(), {}};
+        frame.steps.push_back(samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_));
         frame.steps.back().epoch = epoch;
         frame.steps.back().edit = samples::withNumber(number, sand::Edit::settle);
-        terrain_.apply(frame.steps.back());
+        replica_.apply(frame.steps.back());
         writer.append(frame);
         writer.sync();
     };
@@ -370,7 +370,7 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
     const auto torn = master::readSession(journal(), "");
     ASSERT_EQ(torn->step, 40U);
     ASSERT_GT(torn->cutBytes, 0);
-    terrain_.decodeState(torn->state);
+    replica_.decodeState(torn->state);
     {
         master::JournalWriter writer(torn->place, "test");
         writer.resume({torn->frame, {torn->step, torn->hash}, torn->cutBytes, "a crash"});

@@ -21,9 +21,9 @@ using master::SavedSand;
 class SavedSandFile : public test::FolderTest {
 protected:
     [[nodiscard]] SavedSand sand() const {
-        sand::Replica terrain(scene_);
-        terrain.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
-        return {SandPlace::of(scene_), 1, terrain.stateHash(), terrain.copySand()->encode()};
+        sand::Replica replica(scene_);
+        replica.apply({1, 1, true, {{8000, 8000, 0}}, sand::Edit::none});
+        return {SandPlace::of(scene_), 1, replica.stateHash(), replica.copySand()->encode()};
     }
     [[nodiscard]] std::string complaint(const scene::Scene& scene) const {
         try {

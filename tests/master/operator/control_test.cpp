@@ -113,7 +113,9 @@ protected:
         return made;
     }
     [[nodiscard]] int connectHere() const { return connectTo(folder_ / "control"); }
-    static void say(int peer, const std::string& text) { (void)send(peer, text.data(), text.size(), MSG_NOSIGNAL); }
+    static void sendText(int peer, const std::string& text) {
+        (void)send(peer, text.data(), text.size(), MSG_NOSIGNAL);
+    }
     /// Returns all bytes that the client receives until the connection ends.
     static std::string hear(int peer) {
         std::string text;
@@ -135,7 +137,7 @@ protected:
     /// Sends a line, answers it with `answer`, and returns the bytes that the client received.
     [[nodiscard]] std::string ask(ControlSocket& control, const std::string& line, const std::string& answer) const {
         const int peer = connectHere();
-        say(peer, line + "\n");
+        sendText(peer, line + "\n");
         const ControlSocket::Asked asked = await(control);
         EXPECT_EQ(asked.line, line);
         control.answer(asked.client, answer);
@@ -218,7 +220,7 @@ TEST_F(Control, WorksInFoldersDeeperThanASocketsPath) {
 TEST_F(Control, SendsAwayWhoTalksTooMuch) {
     ControlSocket control(folder_);
     const int peer = connectHere();
-    say(peer, std::string(2000, 'x'));
+    sendText(peer, std::string(2000, 'x'));
     EXPECT_NE(hear(peer).find("more than 1024 bytes"), std::string::npos);
     EXPECT_TRUE(control.take().empty());
     EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
@@ -236,7 +238,7 @@ TEST_F(Control, CrowdsHarmNobody) {
     std::vector<ControlSocket::Asked> asked;
     for (std::size_t i = 0; i < ControlSocket::kMostClients; ++i) {
         crowd.push_back(connectHere());
-        say(crowd.back(), "capture\n");
+        sendText(crowd.back(), "capture\n");
         asked.push_back(await(control));
     }
     EXPECT_NE(hear(connectHere()).find("too many clients"), std::string::npos);
@@ -252,7 +254,7 @@ TEST_F(Control, CrowdsHarmNobody) {
 TEST_F(Control, ForgetsWhoLeavesBeforeTheAnswer) {
     ControlSocket control(folder_);
     const int peer = connectHere();
-    say(peer, "capture\n");
+    sendText(peer, "capture\n");
     const ControlSocket::Asked asked = await(control);
     close(peer);
     control.answer(asked.client, "{}");
@@ -265,7 +267,7 @@ TEST_F(Control, WhoWaitsWhenTheSessionEndsIsLetGo) {
     {
         ControlSocket control(folder_);
         peer = connectHere();
-        say(peer, "capture\n");
+        sendText(peer, "capture\n");
         (void)await(control);
     }
     EXPECT_EQ(hear(peer), "");

@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kLooks = 1200ms;  // time in which a link lo
 class LiveStepsTest : public testing::Test {
 protected:
     master::LiveSteps stepsFrom(const haptic_bridge::Address& server) {
-        return {server, scene_, master::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
+        return {server, scene_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
     }
     void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
     /// Shows one frame, and returns its steps.
@@ -69,7 +69,8 @@ protected:
 };
 
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
-    master::LiveSteps live(std::nullopt, scene_, master::Pace::realtime, 0, {}, [this] { return nowNs_.load(); });
+    master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
+                           [this] { return nowNs_.load(); });
     std::array<lockstep::PointerReport, 2> reports{};
     live.pointed(reports, wall_, nowNs_);
     EXPECT_STREQ(live.hand(), "hand points");
@@ -186,9 +187,9 @@ TEST_F(LiveStepsTest, AServerWithAnotherHistoryGetsNoneOfItBack) {
 
 TEST_F(LiveStepsTest, AServerThatTakesTheConnectionAndNeverGreetsIsWaitedForTenSeconds) {
     std::atomic<int> greeted = 0;
-    FakeServer server([&](FakeServer::Guest& guest) {
-        greeted += guest.await<haptic_bridge::Hello>() ? 1 : 0;
-        guest.ignoreTheRest();
+    FakeServer server([&](FakeServer::Connection& connection) {
+        greeted += connection.await<haptic_bridge::Hello>() ? 1 : 0;
+        connection.ignoreTheRest();
     });
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(eventually([&] { return greeted == 1; }));
@@ -209,18 +210,18 @@ TEST_F(LiveStepsTest, AServerThatTakesTheConnectionAndNeverGreetsIsWaitedForTenS
 
 TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
     std::atomic<bool> silent = false;
-    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
-        if (!guest.await<haptic_bridge::Hello>()) {
+    FakeServer server(test::toTheFirst([&](FakeServer::Connection& connection) {
+        if (!connection.await<haptic_bridge::Hello>()) {
             return;
         }
-        guest.send(haptic_bridge::Welcome{
+        connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (!guest.await<haptic_bridge::Start>()) {
+        if (!connection.await<haptic_bridge::Start>()) {
             return;
         }
-        guest.send(haptic_bridge::Ready{});
+        connection.send(haptic_bridge::Ready{});
         silent = true;
-        guest.ignoreTheRest();  // the kernel still accepts bytes for a stopped process
+        connection.ignoreTheRest();  // the kernel still accepts bytes for a stopped process
     }));
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return silent && live.linked(); }));
@@ -238,11 +239,11 @@ TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
 }
 
 TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAskedAgainAfterThirty) {
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (guest.await<haptic_bridge::Hello>()) {
-            guest.send(haptic_bridge::Welcome{
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (connection.await<haptic_bridge::Hello>()) {
+            connection.send(haptic_bridge::Welcome{
                 {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-            guest.ignoreTheRest();
+            connection.ignoreTheRest();
         }
     });
     master::LiveSteps live = stepsFrom(server.address());
@@ -257,26 +258,26 @@ TEST_F(LiveStepsTest, AServerThatDoesNotBeginIsPassedOverAfterFiveSecondsAndAske
     pass(29.98);
     EXPECT_TRUE(numbersAlone(live));
     std::this_thread::sleep_for(100ms);
-    EXPECT_EQ(server.guests(), 1);
+    EXPECT_EQ(server.connections(), 1);
     pass(0.04);
-    EXPECT_TRUE(showUntil(live, [&] { return server.guests() == 2; }));
+    EXPECT_TRUE(showUntil(live, [&] { return server.connections() == 2; }));
 }
 
 // The pauses before the next four links are 0.1, 0.2, 0.4 and 0.8 s. Without longer pauses four links take 0.4 s. A
 // slow machine only makes them longer.
 TEST_F(LiveStepsTest, AServerThatFailsRightAfterEachLinkIsAskedMoreRarelyEachTime) {
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (guest.await<haptic_bridge::Hello>()) {
-            guest.send(haptic_bridge::Welcome{
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (connection.await<haptic_bridge::Hello>()) {
+            connection.send(haptic_bridge::Welcome{
                 {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-            if (guest.await<haptic_bridge::Start>()) {
-                guest.send(haptic_bridge::Ready{});
+            if (connection.await<haptic_bridge::Start>()) {
+                connection.send(haptic_bridge::Ready{});
             }
         }
     });
     const auto began = std::chrono::steady_clock::now();
     master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return server.guests() >= 5; }));
+    ASSERT_TRUE(showUntil(live, [&] { return server.connections() >= 5; }));
     EXPECT_GE(std::chrono::steady_clock::now() - began, 1500ms);
     EXPECT_GE(live.counters().links, 3U) << "the server was linked each time";
     EXPECT_TRUE(eventually([&] { return !live.linked() && numbersAlone(live); })) << "the wall continues meanwhile";
@@ -306,22 +307,22 @@ TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
 
 TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
     std::atomic<int> asked = 0;
-    FakeServer server([&](FakeServer::Guest& guest) {
-        if (!guest.await<haptic_bridge::Hello>()) {
+    FakeServer server([&](FakeServer::Connection& connection) {
+        if (!connection.await<haptic_bridge::Hello>()) {
             return;
         }
-        guest.send(haptic_bridge::Welcome{
+        connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        const auto start = guest.await<haptic_bridge::Start>();
+        const auto start = connection.await<haptic_bridge::Start>();
         if (!start) {
             return;
         }
-        guest.send(haptic_bridge::Ready{});
-        if (server.guests() > 1) {  // it does the edit late, in the next epoch
-            guest.send(haptic_bridge::StepMessage{
+        connection.send(haptic_bridge::Ready{});
+        if (server.connections() > 1) {  // it does the edit late, in the next epoch
+            connection.send(haptic_bridge::StepMessage{
                 1, 1, {start->epoch, start->stepNumber + 1, false, {}, withNumber(1, sand::Edit::settle)}});
-            guest.await<haptic_bridge::Bye>();
-        } else if (guest.await<haptic_bridge::EditRequest>()) {
+            connection.await<haptic_bridge::Bye>();
+        } else if (connection.await<haptic_bridge::EditRequest>()) {
             ++asked;  // the server then closes the link
         }
     });
@@ -372,20 +373,20 @@ TEST_F(LiveStepsTest, TicksThatNoHandCanMakeAreLeftOut) {
     constexpr int kPieces = 400;
     constexpr std::size_t kPiece = 60'000;
     std::atomic<bool> sent = false;
-    FakeServer server(test::toTheFirst([&](FakeServer::Guest& guest) {
-        if (!guest.await<haptic_bridge::Hello>()) {
+    FakeServer server(test::toTheFirst([&](FakeServer::Connection& connection) {
+        if (!connection.await<haptic_bridge::Hello>()) {
             return;
         }
-        guest.send(haptic_bridge::Welcome{
+        connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (guest.await<haptic_bridge::Start>()) {
-            guest.send(haptic_bridge::Ready{});
+        if (connection.await<haptic_bridge::Start>()) {
+            connection.send(haptic_bridge::Ready{});
             const base::Bytes piece = haptic_bridge::encode(haptic_bridge::TickPiece{base::Bytes(kPiece, 1)});
             for (int i = 0; i < kPieces; ++i) {
-                guest.send(piece);
+                connection.send(piece);
             }
             sent = true;
-            guest.await<haptic_bridge::Bye>();
+            connection.await<haptic_bridge::Bye>();
         }
     }));
     master::LiveSteps live = stepsFrom(server.address());

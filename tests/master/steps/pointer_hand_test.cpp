@@ -36,22 +36,22 @@ protected:
     }
     /// Shows a frame with one step.
     sand::Step step() {
-        hand_.take(reports_, terrain_);
+        hand_.take(reports_, replica_);
         for (PointerReport& report : reports_) {
             report.count = 0;
             report.wheel = 0;
         }
         sand::Step step;
-        step.number = terrain_.stepNumber() + 1;
+        step.number = replica_.stepNumber() + 1;
         read_ = hand_.fill(step);
-        terrain_.apply(step);
+        replica_.apply(step);
         return step;
     }
-    [[nodiscard]] int height(int x, int y) const { return samples::fieldOf(terrain_).height(x, y); }
+    [[nodiscard]] int height(int x, int y) const { return samples::fieldOf(replica_).height(x, y); }
 
     const scene::Scene scene_ = samples::flatScene(64, 64);
-    sand::Replica terrain_{scene_};
-    master::PointerHand hand_{60, terrain_};
+    sand::Replica replica_{scene_};
+    master::PointerHand hand_{60, replica_};
     std::array<PointerReport, 3> reports_{};
     std::int64_t clock_ = 20'000 * kReadingNs;
     std::int64_t read_ = 0;
@@ -79,9 +79,9 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
     add(1, 20, 32, false);
     step();
     for (const int cells : {8, 2}) {
-        sand::Tuning tuning = terrain_.rules().tuning;
+        sand::Tuning tuning = replica_.rules().tuning;
         tuning.tool.radius = cells * kPerCell;
-        terrain_.apply({0, terrain_.stepNumber() + 1, false, {}, sand::Edit::tuned(tuning)});
+        replica_.apply({0, replica_.stepNumber() + 1, false, {}, sand::Edit::tuned(tuning)});
         const sand::Step hovers = step();
         EXPECT_FALSE(hovers.engaged);
         ASSERT_EQ(hovers.path.size(), 1U);
@@ -109,14 +109,14 @@ TEST_F(PointerHand, BesideTheSandMovesNothing) {
     const std::int64_t before = [this] {
         add(1, 20, 32, false);
         (void)step();
-        return samples::fieldOf(terrain_).volume();
+        return samples::fieldOf(replica_).volume();
     }();
     add(1, 0, 0, true, false);
     const sand::Step aside = step();
     EXPECT_FALSE(aside.engaged);
     EXPECT_TRUE(aside.path.empty());
     EXPECT_EQ(height(0, 0), 0);
-    EXPECT_EQ(samples::fieldOf(terrain_).volume(), before);
+    EXPECT_EQ(samples::fieldOf(replica_).volume(), before);
 }
 
 TEST_F(PointerHand, AStrokeThatLeavesTheSandLiftsAndComesBackElsewhere) {
@@ -162,7 +162,7 @@ TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
     reports_[1].wheel = 1000;
     add(1, 20, 32, true);
     reports_[1].samples[0].probe.z = -sand::kMaxProbe;
-    hand_.take(reports_, terrain_);
+    hand_.take(reports_, replica_);
     sand::Step deep;
     (void)hand_.fill(deep);
     EXPECT_EQ(deep.path.at(0).z, -sand::kMaxProbe);

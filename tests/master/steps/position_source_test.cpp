@@ -19,16 +19,16 @@ constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 /// A server that streams positions, without a socket.
 class Positions : public testing::Test {
 protected:
-    void SetUp() override { source_.begin(terrain_); }
+    void SetUp() override { source_.begin(replica_); }
     void add(double x, double y, double z, bool engaged = true) {
         add(Position{clock_ += kMillisecond, x, y, z, engaged});
     }
     void add(const Position& position) { source_.add({{position, clock_}}, clock_); }
     sand::Step step() {
         sand::Step step;
-        step.number = terrain_.stepNumber() + 1;
+        step.number = replica_.stepNumber() + 1;
         source_.fill(step);
-        terrain_.apply(step);
+        replica_.apply(step);
         return step;
     }
     std::string told() {
@@ -39,7 +39,7 @@ protected:
         return all;
     }
     const scene::Scene scene_ = samples::flatScene(64, 64);
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
     master::PositionSource source_{scene_};
     std::int64_t clock_ = 20'000 * kMillisecond;
     std::uint64_t floods_ = 0;
@@ -52,8 +52,8 @@ TEST_F(Positions, MoveTheSandWhereTheHandIs) {
         add(0.02 * i, 0, 0);
     }
     EXPECT_EQ(step().path.size(), 16U);
-    EXPECT_LT(samples::fieldOf(terrain_).height(36, 32), 0);
-    EXPECT_EQ(samples::fieldOf(terrain_).height(10, 10), 0);
+    EXPECT_LT(samples::fieldOf(replica_).height(36, 32), 0);
+    EXPECT_EQ(samples::fieldOf(replica_).height(10, 10), 0);
     EXPECT_EQ(told(), "");
 }
 
@@ -93,8 +93,8 @@ TEST_F(Positions, AJumpCutsNoFurrow) {
     add(0.9, 0.01, 0);
     const sand::Step after = step();
     EXPECT_TRUE(after.engaged);
-    EXPECT_EQ(samples::fieldOf(terrain_).height(32, 32), 0) << "nothing in between was touched";
-    EXPECT_LT(samples::fieldOf(terrain_).height(60, 32), 0);
+    EXPECT_EQ(samples::fieldOf(replica_).height(32, 32), 0) << "nothing in between was touched";
+    EXPECT_LT(samples::fieldOf(replica_).height(60, 32), 0);
     EXPECT_NE(told().find("jumps, 1 times"), std::string::npos);
 }
 
@@ -115,13 +115,13 @@ TEST_F(Positions, AFloodIsTold) {
 TEST_F(Positions, AToolLeftInTheSandIsLiftedFirst) {
     add(-0.5, 0, 0);
     (void)step();
-    ASSERT_TRUE(terrain_.engaged());
+    ASSERT_TRUE(replica_.engaged());
     source_.end();
-    source_.begin(terrain_);
+    source_.begin(replica_);
     add(0.5, 0, 0);
     EXPECT_FALSE(step().engaged);
     EXPECT_TRUE(step().engaged);
-    EXPECT_EQ(samples::fieldOf(terrain_).height(32, 32), 0);
+    EXPECT_EQ(samples::fieldOf(replica_).height(32, 32), 0);
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ sand::HeightField hills(int columns, int rows, std::uint32_t seed) {
 
 sand::CellRect chunkAt(int x, int y) { return {x * kSide, y * kSide, (x + 1) * kSide + 1, (y + 1) * kSide + 1}; }
 
-using Place = std::pair<int, int>;  // column and row of the vertex grid
+using GridPoint = std::pair<int, int>;  // column and row of the vertex grid
 
 /// Field whose chunks have random levels.
 class Patchwork {
@@ -79,8 +79,8 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
     const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         const Patchwork patchwork(seed);
-        std::map<Place, SandVertex> vertices;
-        std::map<std::pair<Place, Place>, int> edges;
+        std::map<GridPoint, SandVertex> vertices;
+        std::map<std::pair<GridPoint, GridPoint>, int> edges;
         for (int chunk = 0; chunk < kChunks * kChunks; ++chunk) {
             const int x = chunk % kChunks, y = chunk / kChunks;
             const ChunkLevels levels = patchwork.at(x, y);
@@ -203,14 +203,14 @@ protected:
     std::unique_ptr<render_node::GlContext> context_ =
         render_node::makeOffscreenContext(render_node::Backend::automatic);
     scene::Scene scene_ = strip();
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
 };
 
 // The floor of the box is below the sand. Through a crack the floor would be visible, deeper than any sand.
 TEST_F(LargeField, ShowsNoHoleAtAnyBound) {
-    sample::drag(terrain_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
+    sample::drag(replica_, scene_, {0.6, 0.1, 0.005}, {0.9, 0.16, 0.0});
     ScenePainter view(scene_, glm::dmat4(1));
-    view.update(terrain_.surface().data(), {});
+    view.update(replica_.surface().data(), {});
     const EyeTarget target(320, 240);
     for (const glm::dvec3& eye :
          {glm::dvec3(0.75, 0.12, 0.2), glm::dvec3(0.75, 0.03, 0.09), glm::dvec3(0.9, 0.2, 0.15)}) {
@@ -262,9 +262,9 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     int inPart = 0, fewest = 1 << 30, most = 0;
     for (int i = 0; i < 30; ++i) {
         const glm::dvec3 hand(0.5 + 0.012 * i, 0.06 + 0.004 * i, i < 22 ? 0.004 : 0.03);
-        terrain_.apply({0, terrain_.stepNumber() + 1, i < 22, {sample::probeAt(scene_, hand)}});
-        view.update(terrain_.surface().data(), terrain_.takeChange());
-        view.setTool(terrain_.probe(), terrain_.engaged());
+        replica_.apply({0, replica_.stepNumber() + 1, i < 22, {sample::probeAt(scene_, hand)}});
+        view.update(replica_.surface().data(), replica_.takeChange());
+        view.setTool(replica_.probe(), replica_.engaged());
         head += i % 9 == 8 ? glm::dvec3(0.02, -0.01, 0.01) : glm::dvec3(0);
         for (std::size_t eye = 0; eye < kEyes; ++eye) {
             const glm::dvec3 place = head + glm::dvec3(0.06 * double(eye), 0, 0);
@@ -281,8 +281,8 @@ TEST_F(LargeField, DrawnInPartsIsEqualToTheWhole) {
     EXPECT_GT(fewest, 0);
     EXPECT_LT(fewest + 4, most) << "no chunk has become finer";
     ScenePainter fresh(scene_, glm::dmat4(1));
-    fresh.update(terrain_.surface().data(), {});
-    fresh.setTool(terrain_.probe(), terrain_.engaged());
+    fresh.update(replica_.surface().data(), {});
+    fresh.setTool(replica_.probe(), replica_.engaged());
     const auto camera = sample::camera(head, head + glm::dvec3(0, 0.25, -0.35));
     EXPECT_TRUE(sample::draw(fresh, camera, whole) == targets[0].read());
 }

@@ -148,14 +148,14 @@ TEST_F(Redraw, FollowsAToolThatChangesItsSizeWhereItIs) {
 TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
     scene::Scene scene = sample::duneScene(128);
     scene.rules.tuning.tool.radius = static_cast<std::int32_t>(0.14 / scene.terrain.cellSize() * sand::kProbePerCell);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera slanted = sample::camera({1, -0.9, 1.3}, {1, 0.9, 0});
     const EyeTarget inParts(200, 150), whole(200, 150);
     render_node::EyeMemory memory;
     int inPart = 0;
     for (int i = 0; i < 120; ++i) {
-        sand::Step step{.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = i % 20 >= 6, .path = {}};
+        sand::Step step{.epoch = 1, .number = replica.stepNumber() + 1, .engaged = i % 20 >= 6, .path = {}};
         const double along = (i % 40) / 40.0, height = step.engaged ? 0.16 : 0.3 + 0.02 * (i % 20);
         const int row = i / 20;
         if (i % 20 < 15) {
@@ -168,28 +168,28 @@ TEST_F(Redraw, FollowsToolsOfEveryShapeAsTheyTurnAndAreSwitched) {
             tuning.tool.halfWidth = sand::isRound(tuning.tool.kind) ? 0 : tuning.tool.radius / 3;
             step.edit = sand::Edit::tuned(tuning);
         }
-        terrain.apply(step);
-        view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged(), terrain.tool());
+        replica.apply(step);
+        view.update(replica.surface().data(), replica.takeChange());
+        view.setTool(replica.probe(), replica.engaged(), replica.tool());
         const PixelRect drawn = view.drawIfChanged(slanted, inParts, memory);
         inPart += !drawn.empty() && drawn.area() < 200 * 150 ? 1 : 0;
         ASSERT_TRUE(inParts.read() == sample::draw(view, slanted, whole))
-            << base::nameOf(terrain.tool().kind) << " in step " << i;
+            << base::nameOf(replica.tool().kind) << " in step " << i;
     }
     EXPECT_GT(inPart, 60);
 }
 
 TEST_F(Redraw, OfRestingSandDrawsNothing) {
     const scene::Scene scene = sample::flatScene(64, 64);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     ScenePainter view(scene, glm::dmat4(1));
     const render_node::Camera above = sample::camera({1, 1, 2.2}, {1, 1, 0});
     const EyeTarget target(200, 150);
     render_node::EyeMemory memory;
     for (int i = 0; i < 5; ++i) {
-        terrain.apply({0, terrain.stepNumber() + 1, false, {}});
-        view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged());
+        replica.apply({0, replica.stepNumber() + 1, false, {}});
+        view.update(replica.surface().data(), replica.takeChange());
+        view.setTool(replica.probe(), replica.engaged());
         EXPECT_EQ(view.drawIfChanged(above, target, memory).empty(), i > 0) << "frame " << i;
     }
 }

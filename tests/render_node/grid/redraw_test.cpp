@@ -100,11 +100,11 @@ void drawTwice(ScenePainter& view, const walls::Wall& wall, const walls::Viewer&
 }
 
 /// Checks that another view of the same scene, which takes over the whole sand at once, draws the same picture.
-void checkAgainstFreshView(const scene::Scene& scene, const sand::Replica& terrain, const glm::dmat4& sceneToRoom,
+void checkAgainstFreshView(const scene::Scene& scene, const sand::Replica& replica, const glm::dmat4& sceneToRoom,
                            const Shown& shown, const render_node::Camera& camera, const Twice& twice) {
     ScenePainter fresh(scene, sceneToRoom);
-    fresh.update(terrain.surface().data(), {});
-    fresh.setTool(terrain.probe(), terrain.engaged());
+    fresh.update(replica.surface().data(), {});
+    fresh.setTool(replica.probe(), replica.engaged());
     fresh.setLayers(shown.layers);
     fresh.setForce(shown.force);
     ASSERT_TRUE(sample::draw(fresh, camera, twice.whole) == twice.before);
@@ -116,7 +116,7 @@ Tally play(const std::string& name, int smaller, const std::vector<std::size_t>&
            walls::Stereo stereo, LayersAt layersAt = noLayers) {
     walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
     const scene::Scene scene = sessionScene(rim);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     const double width = scene.terrain.columns() * scene.terrain.cellSize();
     const glm::dmat4 sceneToRoom = walls::stageToRoom(
         wall.stage, width, width, static_cast<double>(scene.referenceHeight()) * scene.terrain.unit());
@@ -131,10 +131,10 @@ Tally play(const std::string& name, int smaller, const std::vector<std::size_t>&
     Tally tally;
     render_node::ToolForce force(scene.force);
     for (int i = 0; i < kSteps; ++i) {
-        terrain.apply(stepOf(scene, i));
-        view.update(terrain.surface().data(), terrain.takeChange());
-        view.setTool(terrain.probe(), terrain.engaged());
-        Shown shown{layersAt(i), force.arrow(terrain)};
+        replica.apply(stepOf(scene, i));
+        view.update(replica.surface().data(), replica.takeChange());
+        view.setTool(replica.probe(), replica.engaged());
+        Shown shown{layersAt(i), force.arrow(replica)};
         shown.force = shown.layers.shows(Overlay::force) ? shown.force : std::nullopt;
         view.setLayers(shown.layers);
         view.setForce(shown.force);
@@ -151,7 +151,7 @@ Tally play(const std::string& name, int smaller, const std::vector<std::size_t>&
         if (i % 40 == 39) {
             const glm::dvec3 position = walls::eyePosition(viewer, eyes[0].eye);
             const auto seen = walls::viewOf(eyes[0].screen, position, wall.clip.near, wall.clip.far);
-            checkAgainstFreshView(scene, terrain, sceneToRoom, shown, {seen.viewProjection, position}, eyes[0]);
+            checkAgainstFreshView(scene, replica, sceneToRoom, shown, {seen.viewProjection, position}, eyes[0]);
         }
     }
     std::printf("%s: %d views skipped, %d drawn in part, %d whole; %.1f %% of the pixels\n", name.c_str(),

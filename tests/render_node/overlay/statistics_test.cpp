@@ -76,15 +76,15 @@ protected:
     /// Draws a frame of digging or of rest.
     void paintBoth(bool statistics, bool dig, bool oneEye = false) {
         ++frame_;
-        for (sand::Replica* terrain : {&first_, &second_}) {
+        for (sand::Replica* replica : {&first_, &second_}) {
             sand::Step step;
-            step.number = terrain->stepNumber() + 1;
+            step.number = replica->stepNumber() + 1;
             step.engaged = dig;
             if (dig) {
                 const double along = 0.01 * static_cast<double>(frame_);
                 step.path = {sample::probeAt(scene_, {0.7 + along, 0.9 + 0.3 * along, 0.03})};
             }
-            terrain->apply(step);
+            replica->apply(step);
         }
         shown_->paint(first_, viewOf(wall_, scene_, statistics), frame_, oneEye, figuresOf(frame_));
         never_->paint(second_, viewOf(wall_, scene_, false), frame_, oneEye);

@@ -21,13 +21,13 @@ scene::Scene sceneOf(const std::string& name) {
     return scene::loadScene(std::filesystem::path(SANDWALL_SOURCE_DIR) / "scenes" / (name + ".toml"));
 }
 
-void step(sand::Replica& terrain, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
-    terrain.apply(
-        {.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = engaged, .path = std::move(path), .edit = edit});
+void step(sand::Replica& replica, bool engaged, std::vector<sand::ProbePoint> path, const sand::Edit& edit = {}) {
+    replica.apply(
+        {.epoch = 1, .number = replica.stepNumber() + 1, .engaged = engaged, .path = std::move(path), .edit = edit});
 }
 
 /// Moves a scripted hand over sand that is level at the start, at four places per step.
-void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridge::Strokes& strokes) {
+void write(sand::Replica& replica, const scene::Scene& scene, const haptic_bridge::Strokes& strokes) {
     haptic_bridge::StrokeDevice device(strokes);
     const double half = 0.5 * std::min(scene.rules.columns, scene.rules.rows) * kProbePerCell;
     const double level = static_cast<double>(scene.referenceHeight()) * kProbePerCell / sand::kUnitsPerCell;
@@ -41,7 +41,7 @@ void write(sand::Replica& terrain, const scene::Scene& scene, const haptic_bridg
             path.push_back({lattice(half * (1 + pose.x)), lattice(half * (1 + pose.y)),
                             lattice(level + pose.z * scene.rules.tuning.tool.radius)});
         }
-        step(terrain, engaged, path);
+        step(replica, engaged, path);
     }
 }
 
@@ -53,15 +53,15 @@ protected:
 
 TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
     const scene::Scene scene = sceneOf("gis_tin");
-    sand::Replica terrain(scene);
-    write(terrain, scene, haptic_bridge::Strokes::parse(haptic_bridge::gisStrokes(), "gis"));
-    step(terrain, false, {}, sand::Edit::settle);
+    sand::Replica replica(scene);
+    write(replica, scene, haptic_bridge::Strokes::parse(haptic_bridge::gisStrokes(), "gis"));
+    step(replica, false, {}, sand::Edit::settle);
     const walls::Wall wall =
         sample::smallWall(walls::loadWall(sample::wallFolder() / "tiled_3x4.toml"), golden::kMostPixels);
-    render_node::ScenePainter view(scene, terrain.surface().data(), sample::sceneToRoom(wall, scene));
-    view.setTool(terrain.probe(), false);
-    const double unit = terrain.cellSize() / kProbePerCell, ground = scene.referenceHeight() * scene.terrain.unit();
-    const sand::ProbePoint probe = terrain.probe();
+    render_node::ScenePainter view(scene, replica.surface().data(), sample::sceneToRoom(wall, scene));
+    view.setTool(replica.probe(), false);
+    const double unit = replica.cellSize() / kProbePerCell, ground = scene.referenceHeight() * scene.terrain.unit();
+    const sand::ProbePoint probe = replica.probe();
     const std::vector<double>& sun = scene.look.sunDirection;
     const sample::Ball ball{glm::dvec3(probe.x, probe.y, probe.z) * unit,
                             scene.rules.tuning.tool.radius * unit,
@@ -73,10 +73,10 @@ TEST_F(GoldenTin, GisIsWrittenAcrossTheWall) {
 
 /// Presses a stamp into the sand and takes it away. `radius` is half of its length, and `heading` is the direction of
 /// its length.
-void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, double heading /* [degree] */) {
-    const double probe = terrain.cellSize() / kProbePerCell;  // [scene unit]
+void imprint(sand::Replica& replica, const glm::dvec2& place, double radius, double heading /* [degree] */) {
+    const double probe = replica.cellSize() / kProbePerCell;  // [scene unit]
     constexpr double kDepth = 0.06;                           // [scene unit], below the sand's mean height
-    sand::Tuning stamp = terrain.rules().tuning;
+    sand::Tuning stamp = replica.rules().tuning;
     stamp.tool.halfWidth = static_cast<std::int32_t>(radius / probe * stamp.tool.halfWidth / stamp.tool.radius);
     stamp.tool.radius = static_cast<std::int32_t>(radius / probe);
     stamp.tool.heading = sand::headingOf(heading).value();
@@ -84,21 +84,21 @@ void imprint(sand::Replica& terrain, const glm::dvec2& place, double radius, dou
         return sand::ProbePoint{static_cast<std::int32_t>(place.x / probe), static_cast<std::int32_t>(place.y / probe),
                                 static_cast<std::int32_t>((height + radius) / probe)};
     };
-    step(terrain, false, {at(0.5)}, sand::Edit::tuned(stamp));
-    step(terrain, true, {at(0.2 - kDepth)});
-    step(terrain, false, {at(0.5)});
+    step(replica, false, {at(0.5)}, sand::Edit::tuned(stamp));
+    step(replica, true, {at(0.2 - kDepth)});
+    step(replica, false, {at(0.5)});
 }
 
 TEST_F(GoldenTin, ThreeEllipsesAreImprintedAndTheirBordersMarked) {
     const scene::Scene scene = sceneOf("ellipses");
-    sand::Replica terrain(scene);
-    imprint(terrain, {0.55, 1.3}, 0.36, 35);
-    imprint(terrain, {1.45, 1.4}, 0.28, -20);
-    imprint(terrain, {1.1, 0.6}, 0.2, 80);
-    step(terrain, false, {}, sand::Edit::settle);
+    sand::Replica replica(scene);
+    imprint(replica, {0.55, 1.3}, 0.36, 35);
+    imprint(replica, {1.45, 1.4}, 0.28, -20);
+    imprint(replica, {1.1, 0.6}, 0.2, 80);
+    step(replica, false, {}, sand::Edit::settle);
     const render_node::Camera camera = sample::camera({1, 0.2, 1.9}, {1, 0.95, 0.2});
     const render_node::EyeTarget target(240, 180);
-    render_node::ScenePainter view(scene, terrain.surface().data(), glm::dmat4(1));
+    render_node::ScenePainter view(scene, replica.surface().data(), glm::dmat4(1));
     Image both(2 * target.width(), target.height());
     for (const bool wires : {false, true}) {
         lockstep::Overlays layers;

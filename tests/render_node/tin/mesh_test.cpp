@@ -175,7 +175,7 @@ TEST_F(TinLook, MarksConstraintsInTheWireframeAlone) {
     EXPECT_LT(reddest(wires), 0) << "ink is brown";
     const auto& places = tin.mesh().places;
     const auto at = [&](sand::tin::Vertex vertex, int x, int y) {
-        return places[static_cast<std::size_t>(vertex)] == sand::tin::Place{x * 256 + 128, y * 256 + 128};
+        return places[static_cast<std::size_t>(vertex)] == sand::tin::LatticePoint{x * 256 + 128, y * 256 + 128};
     };
     const auto constrain = [&](bool on) {
         for (std::int32_t slot = 0; slot < static_cast<std::int32_t>(tin.mesh().triangles.size()); ++slot) {

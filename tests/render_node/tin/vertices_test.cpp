@@ -46,7 +46,7 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
         // Weights of a place that is nearer to one corner than to the others.
         for (const auto& [vertex, corners] : within) {
             const auto near = static_cast<std::size_t>(random() % 3);
-            sand::tin::Place sum{0, 0};
+            sand::tin::LatticePoint sum{0, 0};
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto& place = tin.mesh().places[static_cast<std::size_t>(corners[k])];
                 const int weight = k == near ? 8 : 1;

@@ -38,10 +38,10 @@ scene::Scene rockScene() {
 class Arrow : public testing::Test {
 protected:
     /// Applies the next step, with the tool's centre at this place [cell], touching.
-    void press(const glm::dvec3& place, bool engaged = true) { press(terrain_, place, engaged); }
-    static void press(sand::Replica& terrain, const glm::dvec3& place, bool engaged = true) {
+    void press(const glm::dvec3& place, bool engaged = true) { press(replica_, place, engaged); }
+    static void press(sand::Replica& replica, const glm::dvec3& place, bool engaged = true) {
         const glm::ivec3 at(place * double{sand::kProbePerCell});
-        terrain.apply({0, terrain.stepNumber() + 1, engaged, {{at.x, at.y, at.z}}});
+        replica.apply({0, replica.stepNumber() + 1, engaged, {{at.x, at.y, at.z}}});
     }
     static double newtons(const ForceArrow& arrow) {
         return double{glm::length(arrow.to - arrow.from)} / (render_node::kArrowPerNewton * kRadius);
@@ -53,7 +53,7 @@ protected:
     }
 
     scene::Scene scene_ = rockScene();
-    sand::Replica terrain_{scene_};
+    sand::Replica replica_{scene_};
 };
 
 // On level ground, a tool whose centre is at a height of 4 and 2 cells is 1 and 3 cells deep: 0.008 and 0.024. With k_s
@@ -62,14 +62,14 @@ TEST_F(Arrow, IsAsLongAsTheForceIsLarge) {
     scene_.force = {100, 0.5, 0};
     ToolForce force(scene_.force);
     press({125, 125, 4});
-    const auto light = force.arrow(terrain_);
+    const auto light = force.arrow(replica_);
     ASSERT_TRUE(light);
     EXPECT_NEAR(newtons(*light), 0.4008011, kNewtonsOfFloats);
     EXPECT_FALSE(light->longest);
     expectNear(light->from, {1, 1, 0.032 + kRadius}, 1e-7);  // on the tool's surface
     expectNear(light->to, {1, 1, 0.032 + kRadius + 1.5 * kRadius * 0.4008011}, 1e-7);
     press({125, 125, 2});
-    EXPECT_NEAR(newtons(*force.arrow(terrain_)), 1.2072289, kNewtonsOfFloats);
+    EXPECT_NEAR(newtons(*force.arrow(replica_)), 1.2072289, kNewtonsOfFloats);
 }
 
 // The ground is 0.02 above the lowest point. The push is 10 N times 0.02 divided by the unit length, which is 1, and
@@ -78,7 +78,7 @@ TEST_F(Arrow, FollowsTheScenesLaw) {
     scene_.force.law = sand::ForceLaw::controlPoints;
     ToolForce force(scene_.force);
     press({125, 125, 2.5});
-    const auto arrow = force.arrow(terrain_);
+    const auto arrow = force.arrow(replica_);
     ASSERT_TRUE(arrow);
     EXPECT_NEAR(newtons(*arrow), 0.2, kNewtonsOfFloats);
 }
@@ -87,7 +87,7 @@ TEST_F(Arrow, EndsAtTheGreatestForceThatADeviceGives) {
     scene_.force = {10000, 0.5, 0};
     ToolForce force(scene_.force);
     press({125, 125, 0});
-    const auto arrow = force.arrow(terrain_);
+    const auto arrow = force.arrow(replica_);
     ASSERT_TRUE(arrow);
     EXPECT_TRUE(arrow->longest);
     EXPECT_NEAR(newtons(*arrow), 3.3, kNewtonsOfFloats) << "docs/look.md";
@@ -100,26 +100,26 @@ TEST_F(Arrow, LeansAgainstTheHandsMovement) {
     ToolForce force(scene_.force);
     for (int i = 0; i < 3; ++i) {
         press({125 + 1.25 * i, 125, 2.5});
-        (void)force.arrow(terrain_);
+        (void)force.arrow(replica_);
     }
     press({125 + 1.25 * 3, 125, 2.5});
-    const auto moving = force.arrow(terrain_);
+    const auto moving = force.arrow(replica_);
     ASSERT_TRUE(moving);
     const glm::dvec3 along(moving->to - moving->from);
     constexpr double kPerNewton = 1.5 * kRadius;  // [scene unit]
     expectNear(along, {-0.2512542 * kPerNewton, 0, 0.5025084 * kPerNewton}, 2.5e-7);
-    EXPECT_EQ(force.arrow(terrain_), moving) << "a frame without a step shows what the frame before did";
+    EXPECT_EQ(force.arrow(replica_), moving) << "a frame without a step shows what the frame before did";
 }
 
 TEST_F(Arrow, IsNotThereWhileTheToolHoversOrTouchesNothing) {
     ToolForce force(scene_.force);
-    EXPECT_FALSE(force.arrow(terrain_)) << "before the first step";
+    EXPECT_FALSE(force.arrow(replica_)) << "before the first step";
     press({125, 125, 2.5}, false);
-    EXPECT_FALSE(force.arrow(terrain_));
+    EXPECT_FALSE(force.arrow(replica_));
     press({125, 125, 15});
-    EXPECT_FALSE(force.arrow(terrain_));
+    EXPECT_FALSE(force.arrow(replica_));
     press({375, 125, 0});
-    EXPECT_FALSE(force.arrow(terrain_)) << "beside the field";
+    EXPECT_FALSE(force.arrow(replica_)) << "beside the field";
 }
 
 TEST_F(Arrow, LeavesTheSandAlone) {
@@ -128,8 +128,8 @@ TEST_F(Arrow, LeavesTheSandAlone) {
     sand::Replica felt(sandy), untouched(sandy);
     const std::uint64_t level = felt.stateHash();
     for (int i = 0; i < 20; ++i) {
-        for (sand::Replica* terrain : {&felt, &untouched}) {
-            press(*terrain, {125 + 1.25 * i, 125, 2.5});
+        for (sand::Replica* replica : {&felt, &untouched}) {
+            press(*replica, {125 + 1.25 * i, 125, 2.5});
         }
         EXPECT_TRUE(force.arrow(felt));
         EXPECT_EQ(felt.stateHash(), untouched.stateHash());

@@ -16,7 +16,7 @@ namespace {
 
 using sand::force::Dual;
 using sand::force::Facets;
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::Triangles;
 using sand::tin::VertexSand;
 
@@ -29,13 +29,13 @@ VertexSand roughLayer(std::uint32_t seed) {
     constexpr std::int32_t kSide = 48 * sand::kProbePerCell;
     sand::tin::Mesh mesh(kSide, kSide);
     for (int i = 0; i < 400; ++i) {
-        mesh.insert(Place{below(kSide), below(kSide)});
+        mesh.insert(LatticePoint{below(kSide), below(kSide)});
     }
     for (int i = 0; i < 12; ++i) {
-        mesh.insert(Place{6000 + 16 * i, 6000 + i % 2});
+        mesh.insert(LatticePoint{6000 + 16 * i, 6000 + i % 2});
     }
     for (const std::int32_t x : {5200, 5202}) {
-        mesh.constrain(mesh.insert(Place{x, 4000}), mesh.insert(Place{x + 300, 8000}));
+        mesh.constrain(mesh.insert(LatticePoint{x, 4000}), mesh.insert(LatticePoint{x + 300, 8000}));
     }
     VertexSand layer(std::move(mesh));
     const auto places = layer.triangles().places;
@@ -129,7 +129,7 @@ TEST(Facets, AreTheTrianglesToAPartOfAHeightUnit) {
 
 /// Returns twice the area of a, b and a place in parts of a probe unit, which is exact. A probe unit has kParts parts.
 constexpr std::int64_t kParts = 256;
-std::int64_t areaWith(const Place& a, const Place& b, std::int64_t x, std::int64_t y) {
+std::int64_t areaWith(const LatticePoint& a, const LatticePoint& b, std::int64_t x, std::int64_t y) {
     return (std::int64_t{b.x} - a.x) * (y - kParts * a.y) - (std::int64_t{b.y} - a.y) * (x - kParts * a.x);
 }
 
@@ -146,12 +146,12 @@ TEST(Facets, TellTheSideOfAnEdgeExactlyOfTheRoundedPlace) {
         if (!triangle.alive()) {
             continue;
         }
-        std::array<Place, 3> at{};
+        std::array<LatticePoint, 3> at{};
         for (std::size_t k = 0; k < 3; ++k) {
             at[k] = mesh.places[static_cast<std::size_t>(triangle.corner[k])];
         }
         for (int i = 0; i < 60; ++i) {
-            const Place a = at[static_cast<std::size_t>(i % 3)], b = at[static_cast<std::size_t>((i + 1) % 3)];
+            const LatticePoint a = at[static_cast<std::size_t>(i % 3)], b = at[static_cast<std::size_t>((i + 1) % 3)];
             const double along = static_cast<double>(random() % 4096) / 4096;
             const auto x = static_cast<std::int64_t>(std::lround(kParts * (a.x + along * (b.x - a.x)))),
                        y = static_cast<std::int64_t>(std::lround(kParts * (a.y + along * (b.y - a.y))));
@@ -207,8 +207,8 @@ TEST(Facets, SayTheSameWhicheverWayTheyWalkThroughWhicheverSlots) {
         if (!triangle.alive()) {
             continue;
         }
-        const Place a = layer.triangles().places[static_cast<std::size_t>(triangle.corner[0])];
-        const Place b = layer.triangles().places[static_cast<std::size_t>(triangle.corner[1])];
+        const LatticePoint a = layer.triangles().places[static_cast<std::size_t>(triangle.corner[0])];
+        const LatticePoint b = layer.triangles().places[static_cast<std::size_t>(triangle.corner[1])];
         places.insert(places.end(), {{a.x, a.y}, {(a.x + b.x) / 2.0, (a.y + b.y) / 2.0}});
         places.emplace_back(random() % 12288, random() % 2 * 12288);
         places.emplace_back(random() % 12288, random() % 12288);

@@ -34,13 +34,13 @@ scene::Scene sceneOf(const std::string& shape, const std::string& tin) {
 /// Returns the force on a tool whose underside is `depth` below the level, after the sand around it has come to rest.
 double upward(const std::string& shape, const std::string& tin, sand::ForceLaw law, double depth, double east = 0) {
     const scene::Scene scene = sceneOf(shape, tin);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     const auto place = [&](double under) {
         const auto probe = [](double at) { return static_cast<std::int32_t>(std::lround(at / kNominal * 256)); };
         return sand::ProbePoint{probe(0.48 + east), probe(0.48), probe(0.3 - under + 0.08)};
     };
     for (std::uint64_t number = 1; number <= 20; ++number) {
-        terrain.apply({.epoch = 1,
+        replica.apply({.epoch = 1,
                        .number = number,
                        .engaged = number > 1,
                        .path = {place(number == 1 ? -0.2 : depth)},
@@ -49,10 +49,10 @@ double upward(const std::string& shape, const std::string& tin, sand::ForceLaw l
     sand::ForceConstants constants;
     constants.law = law;
     constants.unitLength = 0.96;
-    const SurfacePatch patch(terrain);
+    const SurfacePatch patch(replica);
     EXPECT_EQ(patch.facets().empty(), tin.empty());
-    const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
-    const sand::ProbePoint at = terrain.probe();
+    const auto tool = sand::force::contourOf(replica.tool(), replica.cellSize());
+    const sand::ProbePoint at = replica.probe();
     const double probe = kNominal / 256;
     return respond(constants, patch, tool, {probe * at.x, probe * at.y, probe * at.z}).push.z;
 }

@@ -26,7 +26,7 @@ struct Felt {
 /// Moves a tool whose lowest point is `depth` below the level sand, at `speed` [radius per step], after ten steps.
 Felt dragged(const ForceConstants& constants, double depth, double speed) {
     const int steps = 10 + (speed > 0 ? static_cast<int>(std::min(50.0, 12 / speed)) : 50);
-    sand::Replica terrain(levelScene());
+    sand::Replica replica(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
     SurfacePatch patch;
@@ -39,11 +39,11 @@ Felt dragged(const ForceConstants& constants, double depth, double speed) {
         next.path.push_back(probeAt(place));
         const bool update = tick * 60 / 1000 != (tick - 1) * 60 / 1000 || tick == 0;
         if (update) {
-            terrain.apply(next);
+            replica.apply(next);
             next = {1, next.number + 1, true, {}};
-            patch = SurfacePatch(samples::fieldOf(terrain), terrain.probe(), kRadius);
+            patch = SurfacePatch(samples::fieldOf(replica), replica.probe(), kRadius);
         }
-        const Response here = model.at(patch, terrain.stepNumber(), tool, place, tick * kTick);
+        const Response here = model.at(patch, replica.stepNumber(), tool, place, tick * kTick);
         const Vec3 velocity{moving > 0 ? speed * kRadius : 0, moving > 0 ? speed * kRadius / 3 : 0, 0};
         const Vec3 force = lawfulForce(here, velocity);
         if (tick > 0) {

@@ -70,10 +70,10 @@ constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
 
 /// Pulls a weighted device to and fro for two seconds while it digs, then releases it.
 Session pulledAndReleased(const sand::ForceConstants& constants) {
-    sand::Replica terrain(levelScene());
+    sand::Replica replica(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
-    SurfacePatch patch(samples::fieldOf(terrain), probeAt(placeAt(0)), kRadius);
+    SurfacePatch patch(samples::fieldOf(replica), probeAt(placeAt(0)), kRadius);
     PointMass mass;
     const Vec3 start = placeAt(0, -5 * kRadius);
     Session session;
@@ -85,11 +85,11 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
             next.path.push_back(probeAt(place));
         }
         if (tick * 60 / 1000 != (tick - 1) * 60 / 1000 || tick == 0) {
-            terrain.apply(next);
+            replica.apply(next);
             next = {1, next.number + 1, true, {}};
-            patch = SurfacePatch(samples::fieldOf(terrain), terrain.probe(), kRadius);
+            patch = SurfacePatch(samples::fieldOf(replica), replica.probe(), kRadius);
         }
-        const Response felt = model.at(patch, terrain.stepNumber(), tool, place, tick * kTick);
+        const Response felt = model.at(patch, replica.stepNumber(), tool, place, tick * kTick);
         const Vec3 sand = lawfulForce(felt, (1 / (60 * kMetres)) * mass.velocity);
         Vec3 hand{0, 0, -kWeight};
         if (tick < kPulled) {
@@ -112,8 +112,8 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
     }
     for (int row = 0; row < kSide; ++row) {
         for (int column = 0; column < kSide; ++column) {
-            session.sandMoved = std::max(session.sandMoved, std::abs(samples::fieldOf(terrain).height(column, row)) *
-                                                                samples::fieldOf(terrain).unit());
+            session.sandMoved = std::max(session.sandMoved, std::abs(samples::fieldOf(replica).height(column, row)) *
+                                                                samples::fieldOf(replica).unit());
         }
     }
     return session;

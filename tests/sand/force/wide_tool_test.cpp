@@ -155,17 +155,17 @@ double worstOnFineTin(int cells) {
     double worst = 0;
     for (const double aside : kAsides) {
         const Bowl bowl(cells, aside);
-        const sand::Replica terrain = finelyMeshed(bowl);
+        const sand::Replica replica = finelyMeshed(bowl);
         const sand::ForceConstants constants = constantsOf(sand::ForceLaw::controlPoints);
         SurfacePatch patch;
-        patch.take(terrain, probeAt(bowl.place()));
+        patch.take(replica, probeAt(bowl.place()));
         EXPECT_TRUE(patch.facets().empty());
         double sum = 0;
         for (int i = 0; i < 32; ++i) {
             const double angle = 2 * std::numbers::pi * i / 32, reach = cells + 0.5;
             const double x = bowl.middle + reach * std::cos(angle), y = 5 * cells + reach * std::sin(angle);
             sum += kCell *
-                   (terrain.surface().height(sand::kProbePerCell * x, sand::kProbePerCell * y) / sand::kUnitsPerCell +
+                   (replica.surface().height(sand::kProbePerCell * x, sand::kProbePerCell * y) / sand::kUnitsPerCell +
                     cells);
         }
         const double exact = constants.maxForce / 32 * sum / constants.unitLength;

@@ -57,13 +57,13 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     const Way way = wayOf(GetParam());
     host::WorkerPool team(way.threads);
     const base::Executor executor = team.executor();
-    sand::Replica terrain =
+    sand::Replica replica =
         samples::replicaSwept(scene, {.blockSize = way.block, .path = way.path, .executor = &executor});
     std::mt19937 random(47);
     std::uint64_t all = 0;  // combines every step's hash, so that each of them counts
     for (std::uint64_t edit = 1; edit <= (samples::kSlowBuild ? kFew : kEdits); ++edit) {
-        terrain.apply(samples::randomStep(edit, scene.rules, random));
-        all = all * 31 + terrain.stateHash();
+        replica.apply(samples::randomStep(edit, scene.rules, random));
+        all = all * 31 + replica.stateHash();
         if (edit == kFew) {
             EXPECT_EQ(fmt::format("{:016x}", all), "a5ffb9d113edf67c");
         }

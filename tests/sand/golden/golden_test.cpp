@@ -19,12 +19,12 @@ std::uint64_t hashOfSession(sand::Scheme scheme, sand::Rim rim) {
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     scene.rules.scheme = scheme;
     scene.rules.rim = rim;
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     std::mt19937 random(43);
     for (std::uint64_t i = 1; i <= 400; ++i) {
-        terrain.apply(samples::randomStep(i, scene.rules, random));
+        replica.apply(samples::randomStep(i, scene.rules, random));
     }
-    return terrain.stateHash();
+    return replica.stateHash();
 }
 
 // These numbers must be the same with every compiler, level of optimisation and machine. They were accepted when
@@ -71,12 +71,12 @@ std::uint64_t hashOf(const Variant& variant) {
         scene.ground = groundOf(variant, scene.terrain);
         scene.rules.ground = scene.ground->digest();
     }
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     std::mt19937 random(43);
     for (std::uint64_t i = 1; i <= 200; ++i) {
-        terrain.apply(samples::randomStep(i, scene.rules, random));
+        replica.apply(samples::randomStep(i, scene.rules, random));
     }
-    return terrain.stateHash();
+    return replica.stateHash();
 }
 
 // Each variant has a kernel of its own, or uses doubles that plain sand does not have. These are doubles for the band,
@@ -102,12 +102,12 @@ TEST(Golden, ASessionOfEveryToolIsTheSameEverywhere) {
     scene.rules.rim = sand::Rim::open;
     scene.rules.tuning.tool.kind = sand::ToolKind::footprint;
     scene.rules.tuning.tool.halfWidth = scene.rules.tuning.tool.radius * 2 / 5;
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     std::mt19937 random(73);
     for (std::uint64_t i = 1; i <= 400; ++i) {
-        terrain.apply(samples::wildStep(i, scene.rules, random));
+        replica.apply(samples::wildStep(i, scene.rules, random));
     }
-    EXPECT_EQ(fmt::format("{:016x}", terrain.stateHash()), "3e515f748348f233");
+    EXPECT_EQ(fmt::format("{:016x}", replica.stateHash()), "3e515f748348f233");
 }
 
 /// Returns the hash of noise after settle().

@@ -10,8 +10,8 @@
 
 namespace {
 
+using sand::tin::LatticePoint;
 using sand::tin::Mesh;
-using sand::tin::Place;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
@@ -21,7 +21,7 @@ std::int32_t below(std::int32_t bound, std::mt19937& random) {
     return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>(bound));
 }
 
-Place anywhere(std::mt19937& random) {
+LatticePoint anywhere(std::mt19937& random) {
     const std::int32_t x = below(kSide + 1, random);
     return {x, below(kSide + 1, random)};
 }
@@ -41,8 +41,8 @@ Vertex anyOf(const VertexSand& layer, std::mt19937& random) {
 std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold, sand::Rim rim, bool anew) {
     std::mt19937 random(61);
     Mesh mesh(kSide, kSide);
-    std::vector<Place> places(300);
-    for (Place& place : places) {
+    std::vector<LatticePoint> places(300);
+    for (LatticePoint& place : places) {
         place = anywhere(random);
     }
     mesh.insert(places);
@@ -61,8 +61,8 @@ std::uint64_t hashOfSession(std::int32_t threshold, std::int32_t startThreshold,
         const Vertex fallen = anyOf(layer, random);
         layer.add(fallen, layer.stars()[static_cast<std::size_t>(fallen)] * below(1 << 21, random));
         erosion.wake({lifted, fallen});
-        const Place tool = anywhere(random);
-        const sand::tin::Underside held = [&](Place place) {
+        const LatticePoint tool = anywhere(random);
+        const sand::tin::Underside held = [&](LatticePoint place) {
             const std::int64_t x = place.x - tool.x, y = place.y - tool.y;
             return x * x + y * y < 2'000'000 ? 1 << 16 : std::numeric_limits<std::int32_t>::max();
         };

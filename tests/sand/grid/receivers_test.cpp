@@ -32,11 +32,11 @@ sand::Tool toolOf(ToolKind kind, double radius /* [cell] */, const Heading& head
 /// Tool on level sand of height 0.
 struct PlacedTool {
     sand::Tool tool;
-    ProbePoint at{probes(54.3), probes(55.6), 0};
+    ProbePoint probe{probes(54.3), probes(55.6), 0};
 
     [[nodiscard]] Offset offsetOf(int column, int row) const {
-        return {std::int64_t{column} * kProbePerCell + kProbePerCell / 2 - at.x,
-                std::int64_t{row} * kProbePerCell + kProbePerCell / 2 - at.y};
+        return {std::int64_t{column} * kProbePerCell + kProbePerCell / 2 - probe.x,
+                std::int64_t{row} * kProbePerCell + kProbePerCell / 2 - probe.y};
     }
     /// Returns a place in the tool's own axes, along the heading and to the left of it [probe unit / Heading::kLength].
     [[nodiscard]] std::pair<std::int64_t, std::int64_t> placeOf(int column, int row) const {
@@ -93,8 +93,8 @@ struct PlacedTool {
     /// Returns level sand after the tool was dragged to its place from there minus `way`.
     [[nodiscard]] HeightField dragged(const ProbePoint& way) const {
         HeightField field(kSide, kSide, 1.0);
-        const ProbePoint from{at.x - way.x, at.y - way.y, at.z};
-        sand::grid::Displacement(tool).drag(field, sand::Rim::closed, nullptr, from, at);
+        const ProbePoint from{probe.x - way.x, probe.y - way.y, probe.z};
+        sand::grid::Displacement(tool).drag(field, sand::Rim::closed, nullptr, from, probe);
         return field;
     }
     [[nodiscard]] HeightField pressed() const { return dragged({0, 0, 0}); }
@@ -186,7 +186,7 @@ void expectEvenShares(PlacedTool placed, const std::vector<Cell>& order) {
     const auto count = static_cast<std::int64_t>(order.size());
     HeightField field = placed.pressed();
     for (int tries = 0; takenFrom(field) % count < 2 && tries < 20; ++tries) {
-        --placed.at.z;
+        --placed.probe.z;
         field = placed.pressed();
     }
     const std::int64_t taken = takenFrom(field);

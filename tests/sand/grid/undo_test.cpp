@@ -94,13 +94,13 @@ TEST(GridUndo, OfAToolAcrossTheBordersOfTilesRestoresSandThatDoesNotSlide) {
     for (const int column : {64, 128}) {
         for (const int row : {64, 128}) {
             for (int beside = -9; beside <= 9; ++beside) {
-                sand::Replica terrain(scene);
-                terrain.apply({1, 1, false, {}});
-                const sand::ProbePoint at{(column - beside) * kProbePerCell, (row + beside) * kProbePerCell, 0};
-                terrain.apply({1, 2, true, {at}});
-                ASSERT_FALSE(sameHeights(samples::fieldOf(terrain), scene.terrain));
-                terrain.apply({1, 3, false, {}, sand::Edit::undo});
-                ASSERT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain))
+                sand::Replica replica(scene);
+                replica.apply({1, 1, false, {}});
+                const sand::ProbePoint probe{(column - beside) * kProbePerCell, (row + beside) * kProbePerCell, 0};
+                replica.apply({1, 2, true, {probe}});
+                ASSERT_FALSE(sameHeights(samples::fieldOf(replica), scene.terrain));
+                replica.apply({1, 3, false, {}, sand::Edit::undo});
+                ASSERT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain))
                     << column << ", " << row << ", " << beside;
             }
         }

@@ -39,17 +39,17 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
     for (const auto rim : {sand::Rim::closed, sand::Rim::open}) {
         scene::Scene rimmed = scene;
         rimmed.rules.rim = rim;
-        Replica terrain(rimmed);
+        Replica replica(rimmed);
         std::mt19937 random(5);
         for (std::uint64_t i = 1; i <= 300; ++i) {
-            terrain.apply(samples::randomStep(i, scene.rules, random));
-            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), scene.terrain.volume()) << "step " << i;
+            replica.apply(samples::randomStep(i, scene.rules, random));
+            ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), scene.terrain.volume()) << "step " << i;
             for (int y = 0; y < 47; ++y) {
                 for (int x = 0; x < 61; ++x) {
-                    ASSERT_GE(scene.ground->sand(x, y, samples::fieldOf(terrain).height(x, y)), 0)
+                    ASSERT_GE(scene.ground->sand(x, y, samples::fieldOf(replica).height(x, y)), 0)
                         << "a layer thinner than nothing at " << x << ", " << y << " in step " << i << " of seed 5";
                     ASSERT_TRUE(!scene.ground->isWall(x, y) ||
-                                samples::fieldOf(terrain).height(x, y) == scene.terrain.height(x, y));
+                                samples::fieldOf(replica).height(x, y) == scene.terrain.height(x, y));
                 }
             }
         }
@@ -59,12 +59,12 @@ TEST(Ground, RockAndWallsOutlastAnyHand) {
 TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
     const scene::Scene scene = layerOverRock(7);
     const auto hashWith = [&](const sand::grid::Erosion::Options& options) {
-        Replica terrain = samples::replicaSwept(scene, options);
+        Replica replica = samples::replicaSwept(scene, options);
         std::mt19937 random(11);
         for (std::uint64_t i = 1; i <= (samples::kSlowBuild ? 30 : 100); ++i) {
-            terrain.apply(samples::randomStep(i, scene.rules, random));
+            replica.apply(samples::randomStep(i, scene.rules, random));
         }
-        return terrain.stateHash();
+        return replica.stateHash();
     };
     const std::uint64_t expected = hashWith({.skipSettled = false});
     // Runs the last task first, which reveals a dependence on the order.

@@ -78,19 +78,19 @@ TEST(ToolShape, PrintsItsUndersideAndNothingElse) {
         for (const Heading& turn : {heading(0), heading(90), heading(30), heading(217.3, true)}) {
             sand::HeightField field(90, 80, 1.0);
             const Tool tool = toolOf(kind, 24, turn);
-            const ProbePoint at{probes(44.3), probes(39.6), probes(20)};
-            Displacement(tool).drag(field, Rim::closed, nullptr, at, at);
+            const ProbePoint probe{probes(44.3), probes(39.6), probes(20)};
+            Displacement(tool).drag(field, Rim::closed, nullptr, probe, probe);
             int below = 0;
             for (int row = 0; row < field.rows(); ++row) {
                 for (int column = 0; column < field.columns(); ++column) {
-                    const long double x = (column + 0.5L) * kProbePerCell - at.x,
-                                      y = (row + 0.5L) * kProbePerCell - at.y;
+                    const long double x = (column + 0.5L) * kProbePerCell - probe.x,
+                                      y = (row + 0.5L) * kProbePerCell - probe.y;
                     const auto depth = depthAt(tool, x, y);
                     if (!depth) {
                         EXPECT_GE(field.height(column, row), 0) << base::nameOf(kind) << " beside";
                         continue;
                     }
-                    const long double underside = (at.z - *depth * tool.radius) * kUnitsPerCell / kProbePerCell;
+                    const long double underside = (probe.z - *depth * tool.radius) * kUnitsPerCell / kProbePerCell;
                     const long double expected = std::min(0.0L, underside);
                     ASSERT_NEAR(static_cast<double>(field.height(column, row) - expected), 0, 1)
                         << base::nameOf(kind) << " at " << column << ", " << row;
@@ -112,10 +112,10 @@ struct Way {
     unsigned bits;
     int columns, rows;
 
-    [[nodiscard]] ProbePoint of(ProbePoint at) const {
-        const std::int32_t x = (bits & 1) != 0 ? columns * kProbePerCell - at.x : at.x;
-        const std::int32_t y = (bits & 2) != 0 ? rows * kProbePerCell - at.y : at.y;
-        return (bits & 4) != 0 ? ProbePoint{y, x, at.z} : ProbePoint{x, y, at.z};
+    [[nodiscard]] ProbePoint of(ProbePoint probe) const {
+        const std::int32_t x = (bits & 1) != 0 ? columns * kProbePerCell - probe.x : probe.x;
+        const std::int32_t y = (bits & 2) != 0 ? rows * kProbePerCell - probe.y : probe.y;
+        return (bits & 4) != 0 ? ProbePoint{y, x, probe.z} : ProbePoint{x, y, probe.z};
     }
     [[nodiscard]] Heading of(Heading turn) const {
         for (const unsigned bit : {1U, 2U, 4U}) {
@@ -143,16 +143,16 @@ struct Way {
 
 /// Returns a scene's sand after a press, a drag and a turn of its tool, put onto the grid by `way`.
 sand::HeightField dug(const scene::Scene& scene, const std::vector<ProbePoint>& path, double degrees, const Way& way) {
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     for (std::uint64_t i = 1; i <= 12; ++i) {
         sand::Step step{.epoch = 1, .number = i, .engaged = true, .path = {}};
         step.heading = way.of(heading(degrees + (i > 6 ? 20 : 0)));
         if (i <= path.size()) {
             step.path = {way.of(path[i - 1])};
         }
-        terrain.apply(step);
+        replica.apply(step);
     }
-    return samples::fieldOf(terrain);
+    return samples::fieldOf(replica);
 }
 
 // A quarter turn consists of an exchange and a mirroring. Round tools are left out, because they give their last units
@@ -251,7 +251,7 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                 const scene::Scene scene = sceneWith(kind, radius, rim);
                 const std::int64_t before = scene.terrain.volume();
                 std::mt19937 random(67);
-                sand::Replica terrain(scene);
+                sand::Replica replica(scene);
                 std::uint64_t number = 0;
                 for (const auto& [x, y] : {std::pair{0, 0}, {45, 33}, {22, 0}, {20, 16}}) {
                     sand::Step step = samples::randomStep(++number, scene.rules, random);
@@ -259,8 +259,8 @@ TEST(ToolShape, EveryOneKeepsTheVolumeWhereverItIs) {
                     step.heading = heading(31.0 * static_cast<double>(number));
                     step.path = {{probes(x), probes(y), probes(radius)},
                                  {probes(x + 5), probes(y - 3), probes(radius)}};
-                    terrain.apply(step);
-                    ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before)
+                    replica.apply(step);
+                    ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), before)
                         << base::nameOf(kind) << " of " << radius << " at " << x << ", " << y;
                 }
             }
@@ -272,9 +272,9 @@ TEST(ToolShape, OfNoRadiusItDigsNothing) {
     for (const ToolKind kind : kEvery) {
         scene::Scene scene = samples::flatScene(45, 33, 0);
         scene.rules.tuning.tool.kind = kind;
-        sand::Replica terrain(scene);
-        terrain.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
-        EXPECT_TRUE(sameHeights(samples::fieldOf(terrain), scene.terrain)) << base::nameOf(kind);
+        sand::Replica replica(scene);
+        replica.apply({1, 1, true, {{probes(5.5), probes(5.5), probes(-3)}, {probes(40), probes(30), probes(-3)}}});
+        EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain)) << base::nameOf(kind);
     }
 }
 
@@ -282,20 +282,20 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
     for (const Rim rim : {Rim::closed, Rim::open}) {
         const scene::Scene scene = sceneWith(footprint, 7, rim);
         const std::int64_t before = scene.terrain.volume();
-        sand::Replica terrain(scene), copy(scene);
+        sand::Replica replica(scene), copy(scene);
         std::mt19937 random(71);
         for (std::uint64_t i = 1; i <= 600; ++i) {
             const sand::Step step = samples::wildStep(i, scene.rules, random);
-            terrain.apply(step);
-            ASSERT_EQ(samples::fieldOf(terrain).volume() + terrain.outflow(), before) << "step " << i;
+            replica.apply(step);
+            ASSERT_EQ(samples::fieldOf(replica).volume() + replica.outflow(), before) << "step " << i;
             if (i == 300) {
-                copy.decodeState(terrain.encodeState());
+                copy.decodeState(replica.encodeState());
             } else if (i > 300) {
                 copy.apply(step);
-                ASSERT_EQ(copy.stateHash(), terrain.stateHash()) << "step " << i;
+                ASSERT_EQ(copy.stateHash(), replica.stateHash()) << "step " << i;
             }
         }
-        EXPECT_EQ(copy.heading(), terrain.heading());
+        EXPECT_EQ(copy.heading(), replica.heading());
     }
 }
 
@@ -303,40 +303,40 @@ TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
     for (const ToolKind kind : support::longTools()) {
         scene::Scene scene = samples::flatScene(60, 60, 12);
         scene.rules.tuning.tool = toolOf(kind, 12);
-        sand::Replica terrain(scene);
-        terrain.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
+        sand::Replica replica(scene);
+        replica.apply({1, 1, true, {{probes(30), probes(30), probes(9)}}});
         sand::Step turn{1, 2, true, {}};
         turn.heading = heading(90);
-        terrain.apply(turn);
+        replica.apply(turn);
         const sand::grid::Obstacle under =
-            Displacement(terrain.tool()).obstacle(samples::fieldOf(terrain), terrain.probe());
+            Displacement(replica.tool()).obstacle(samples::fieldOf(replica), replica.probe());
         for (int row = under.cells.y0; row < under.cells.y1; ++row) {
             for (int column = under.cells.x0; column < under.cells.x1; ++column) {
-                ASSERT_LE(samples::fieldOf(terrain).height(column, row), under.row(row)[column - under.cells.x0])
+                ASSERT_LE(samples::fieldOf(replica).height(column, row), under.row(row)[column - under.cells.x0])
                     << base::nameOf(kind);
             }
         }
-        for (int i = 0; i < 3000 && !terrain.settled(); ++i) {
-            terrain.apply({1, terrain.stepNumber() + 1, true, {}});
+        for (int i = 0; i < 3000 && !replica.settled(); ++i) {
+            replica.apply({1, replica.stepNumber() + 1, true, {}});
         }
-        EXPECT_TRUE(terrain.settled()) << base::nameOf(kind);
-        EXPECT_EQ(samples::fieldOf(terrain).volume(), 0);
+        EXPECT_TRUE(replica.settled()) << base::nameOf(kind);
+        EXPECT_EQ(samples::fieldOf(replica).volume(), 0);
     }
 }
 
 TEST(ToolShape, AnOperatorWhoChangesTheToolAloneLeavesAHandsHeading) {
     const scene::Scene scene = sceneWith(ellipse, 5);
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     sand::Step turned{1, 1, false, {}};
     turned.heading = heading(40);
-    terrain.apply(turned);
+    replica.apply(turned);
     sand::Tuning tuning = scene.rules.tuning;
     tuning.tool.kind = footprint;
-    terrain.apply({1, 2, false, {}, sand::Edit::tuned(tuning)});
-    EXPECT_EQ(terrain.heading(), heading(40));
+    replica.apply({1, 2, false, {}, sand::Edit::tuned(tuning)});
+    EXPECT_EQ(replica.heading(), heading(40));
     tuning.tool.heading = heading(70);
-    terrain.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
-    EXPECT_EQ(terrain.heading(), heading(70)) << "the operator turned it";
+    replica.apply({1, 3, false, {}, sand::Edit::tuned(tuning)});
+    EXPECT_EQ(replica.heading(), heading(70)) << "the operator turned it";
 }
 
 // Undersides of a row equal those of single cells, with either instruction set. A single cell computes one root at a

@@ -42,30 +42,30 @@ int run(const Options& options) {
     host::WorkerPool team(options.threads);
     const base::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
-    sand::Replica terrain = samples::replicaSwept(
+    sand::Replica replica = samples::replicaSwept(
         dunes(options), {.blockSize = options.block,
                          .path = options.baseline ? base::CodePath::baseline : base::fastestCodePath(),
                          .executor = options.threads > 1 ? &executor : nullptr});
-    const std::int64_t volume = samples::fieldOf(terrain).volume();
+    const std::int64_t volume = samples::fieldOf(replica).volume();
     std::mt19937 random(options.seed);
     std::uint64_t all = 0;
     const auto begin = std::chrono::steady_clock::now();
     for (std::uint64_t edit = 1; edit <= options.edits; ++edit) {
-        terrain.apply(samples::randomStep(edit, rules, random));
-        all = all * 31 + terrain.stateHash();
+        replica.apply(samples::randomStep(edit, rules, random));
+        all = all * 31 + replica.stateHash();
         if (edit % std::max<std::uint64_t>(options.edits / 10, 1) == 0) {
             const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
             fmt::print(stderr, "soak: {} edits in {:.0f} s, hash of all steps {:016x}\n", edit, seconds.count(), all);
         }
     }
-    if (samples::fieldOf(terrain).volume() + terrain.outflow() != volume) {
+    if (samples::fieldOf(replica).volume() + replica.outflow() != volume) {
         fmt::print(stderr, "soak: the volume was {} and is {}\n", volume,
-                   samples::fieldOf(terrain).volume() + terrain.outflow());
+                   samples::fieldOf(replica).volume() + replica.outflow());
         return 1;
     }
     fmt::print("{:016x}\n", all);
     fmt::print(stderr, "soak: {} x {} cells, {} threads, blocks of {}, {} sweeps: peak of {:.3g} GiB\n",
-               options.columns, options.rows, options.threads, options.block, samples::erosionOf(terrain).sweepsDone(),
+               options.columns, options.rows, options.threads, options.block, samples::erosionOf(replica).sweepsDone(),
                peakGibibytes());
     return 0;
 }

@@ -33,7 +33,7 @@ ActiveMesh everythingOf(const VertexSand& layer, bool obstacle, bool open, Activ
     for (std::int32_t slot = 0; slot < slots; ++slot) {
         for (int corner = 0; corner < 3; ++corner) {
             const sand::tin::TriangleSide side{slot, corner}, other = across(mesh, side);
-            if (other.triangle < slot) {  // smaller slots, and kNobody, so that each edge is added once
+            if (other.triangle < slot) {  // smaller slots, and kNoNumber, so that each edge is added once
                 sand.addEdge(weights.edge(mesh, layer.stars(), side, other));
             }
         }

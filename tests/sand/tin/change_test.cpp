@@ -10,7 +10,7 @@
 namespace {
 
 using namespace mesh_checks;
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::Located;
 using sand::tin::Triangle;
 
@@ -24,7 +24,7 @@ Seen seen(const Mesh& mesh, std::size_t slot) {
     }
     const Triangle& triangle = mesh.triangles().triangles[slot];
     for (std::size_t i = 0; i < 3; ++i) {
-        const Place& place = mesh.triangles().places[static_cast<std::size_t>(triangle.corner[i])];
+        const LatticePoint& place = mesh.triangles().places[static_cast<std::size_t>(triangle.corner[i])];
         corners.push_back({triangle.corner[i], place.x, place.y, triangle.constrained[i] ? 1 : 0});
     }
     std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
@@ -98,8 +98,8 @@ TEST(Locate, FindsTheFirstOfAllTrianglesThatHoldAPlaceFromWherever) {
     };
     for (std::int32_t y = -2; y <= 17; ++y) {
         for (std::int32_t x = -2; x <= 22; ++x) {
-            const Place inside{std::clamp(x, 0, 20), std::clamp(y, 0, 15)};
-            std::int32_t expected = kNobody;
+            const LatticePoint inside{std::clamp(x, 0, 20), std::clamp(y, 0, 15)};
+            std::int32_t expected = kNoNumber;
             for (std::int32_t slot = 0; slot < static_cast<std::int32_t>(triangles.triangles.size()); ++slot) {
                 const Triangle& triangle = triangles.triangles[static_cast<std::size_t>(slot)];
                 if (!triangle.alive()) {
@@ -111,11 +111,11 @@ TEST(Locate, FindsTheFirstOfAllTrianglesThatHoldAPlaceFromWherever) {
                 const bool holds = sand::tin::doubledArea(at(0), at(1), inside) >= 0 &&
                                    sand::tin::doubledArea(at(1), at(2), inside) >= 0 &&
                                    sand::tin::doubledArea(at(2), at(0), inside) >= 0;
-                if (holds && (expected == kNobody || sorted(slot) < sorted(expected))) {
+                if (holds && (expected == kNoNumber || sorted(slot) < sorted(expected))) {
                     expected = slot;
                 }
             }
-            for (const std::int32_t from : {kNobody, 0, 7, 1'000'000, static_cast<std::int32_t>(random() % 50)}) {
+            for (const std::int32_t from : {kNoNumber, 0, 7, 1'000'000, static_cast<std::int32_t>(random() % 50)}) {
                 const Located found = locate(triangles, {x, y}, from);
                 ASSERT_EQ(found.triangle, expected) << x << ", " << y << " from " << from;
             }

@@ -15,14 +15,14 @@
 
 namespace {
 
+using mesh_checks::LatticePoint;
 using mesh_checks::Mesh;
-using mesh_checks::Place;
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::Triangle;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Oracle = CGAL::Constrained_Delaunay_triangulation_2<Kernel>;
 
-Kernel::Point_2 pointAt(const Place& place) { return {place.x, place.y}; }
+Kernel::Point_2 pointAt(const LatticePoint& place) { return {place.x, place.y}; }
 
 struct Edges {
     int shared = 0, onCircles = 0;
@@ -32,8 +32,8 @@ struct Edges {
 class Comparison {
 public:
     explicit Comparison(const Mesh& mesh) : mesh_(mesh.triangles()) {
-        const std::array corners{Place{0, 0}, Place{mesh_.width, 0}, Place{mesh_.width, mesh_.depth},
-                                 Place{0, mesh_.depth}};
+        const std::array corners{LatticePoint{0, 0}, LatticePoint{mesh_.width, 0},
+                                 LatticePoint{mesh_.width, mesh_.depth}, LatticePoint{0, mesh_.depth}};
         for (std::size_t i = 0; i < 4; ++i) {
             oracle_.insert_constraint(pointAt(corners[i]), pointAt(corners[(i + 1) % 4]));
         }
@@ -61,13 +61,13 @@ public:
     }
 
 private:
-    [[nodiscard]] const Place& place(sand::tin::Vertex vertex) const {
+    [[nodiscard]] const LatticePoint& place(sand::tin::Vertex vertex) const {
         return mesh_.places[static_cast<std::size_t>(vertex)];
     }
 
     void compare(const Triangle& triangle, std::size_t i, Edges& edges) const {
-        const Place &a = place(triangle.corner[i]), &b = place(triangle.corner[(i + 1) % 3]),
-                    &c = place(triangle.corner[(i + 2) % 3]);
+        const LatticePoint &a = place(triangle.corner[i]), &b = place(triangle.corner[(i + 1) % 3]),
+                           &c = place(triangle.corner[(i + 2) % 3]);
         Oracle::Face_handle face;
         int opposite = 0;
         if (oracle_.is_edge(handles_.at(b), handles_.at(c), face, opposite)) {
@@ -80,7 +80,7 @@ private:
         }
         ++edges.onCircles;
         const std::int32_t other = triangle.neighbour[i];
-        const Triangle beyond = other == kNobody ? Triangle{} : mesh_.triangles[static_cast<std::size_t>(other)];
+        const Triangle beyond = other == kNoNumber ? Triangle{} : mesh_.triangles[static_cast<std::size_t>(other)];
         for (std::size_t k = 0; beyond.alive() && k < 3; ++k) {
             const bool isThere = beyond.corner[(k + 1) % 3] == triangle.corner[(i + 2) % 3] &&
                                  beyond.corner[(k + 2) % 3] == triangle.corner[(i + 1) % 3];
@@ -95,7 +95,7 @@ private:
 
     const sand::tin::Triangles& mesh_;
     Oracle oracle_;
-    std::map<Place, Oracle::Vertex_handle> handles_;
+    std::map<LatticePoint, Oracle::Vertex_handle> handles_;
 };
 
 /// Makes random edits, and compares the meshes after every tenth.

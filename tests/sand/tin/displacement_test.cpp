@@ -23,21 +23,21 @@ using sand::tin::Imprint;
 
 constexpr double kCell = sand::kUnitsPerCell;
 
-Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool, const ProbePoint& at,
+Displacement::Work press(VertexSand& layer, Imprint& imprint, Displacement& tool, const ProbePoint& probe,
                          Rim rim = Rim::closed) {
-    return tool.drag(layer, imprint, rim, std::array{at});
+    return tool.drag(layer, imprint, rim, std::array{probe});
 }
 
 double lowest(const VertexSand& layer) {
     double result = 0;
-    forEachVertex(layer, [&](Vertex, const Place&, double height) { result = std::min(result, height); });
+    forEachVertex(layer, [&](Vertex, const LatticePoint&, double height) { result = std::min(result, height); });
     return result;
 }
 
 /// Expects that no vertex below the tool is above its underside.
-void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& at) {
-    const auto underside = tool.underside(at);
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
+void expectClear(const VertexSand& layer, const Displacement& tool, const ProbePoint& probe) {
+    const auto underside = tool.underside(probe);
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         EXPECT_LE(height, underside(place)) << "vertex " << vertex;
     });
 }
@@ -96,7 +96,7 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         const sand::Tool turned = ellipse.turnedTo(*sand::headingOf(degrees));
         const double depth = (at.z - turned.radius) * 256.0;
         int inside = 0;
-        forEachVertex(layer, [&, tool = at](Vertex vertex, const Place& place, double height) {
+        forEachVertex(layer, [&, tool = at](Vertex vertex, const LatticePoint& place, double height) {
             if (sand::TurnedShape(turned).covers({place.x - tool.x, place.y - tool.y})) {
                 EXPECT_EQ(height, depth) << "vertex " << vertex;
                 ++inside;
@@ -105,9 +105,9 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
         EXPECT_GT(inside, 32 + 60);
         const auto outline = sand::tin::placed(sand::tin::Outline::of(turned), at.x, at.y, layer.triangles());
         for (const auto& [from, to] : outline.edges) {
-            const auto vertexAt = [&](const Place& wanted) {
-                Vertex found = sand::tin::kNobody;
-                forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+            const auto vertexAt = [&](const LatticePoint& wanted) {
+                Vertex found = sand::tin::kNoNumber;
+                forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
                     found = place == wanted ? vertex : found;
                 });
                 return found;
@@ -121,8 +121,8 @@ TEST(TinTool, ThreeEllipsesLeaveTheirDepthAndConstrainedOutlines) {
 double lengthOfConstraints(const VertexSand& layer) {
     double length = 0;
     for (const auto& [a, b] : layer.mesh().constraints()) {
-        const Place &from = layer.triangles().places[sand::tin::index(a)],
-                    &to = layer.triangles().places[sand::tin::index(b)];
+        const LatticePoint &from = layer.triangles().places[sand::tin::index(a)],
+                           &to = layer.triangles().places[sand::tin::index(b)];
         length += std::hypot(to.x - from.x, to.y - from.y) / sand::kProbePerCell;
     }
     return length;
@@ -156,8 +156,8 @@ TEST(TinTool, LiftedItsOutlineDissolvesUnlessTheSceneKeepsIt) {
         Displacement tool(toolOf(static_cast<ToolKind>(kind), 7, *sand::headingOf(31)), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
-        const ProbePoint at = probeAt(20, 15, 6);
-        press(layer, imprint, tool, at);
+        const ProbePoint probe = probeAt(20, 15, 6);
+        press(layer, imprint, tool, probe);
         EXPECT_FALSE(layer.mesh().constraints().empty());
         EXPECT_FALSE(imprint.points.empty());
         const double deep = lowest(layer);
@@ -197,7 +197,7 @@ TEST(TinTool, PushesSandAheadAndToTheSidesAndNotBehind) {
     tool.drag(layer, imprint, Rim::closed, std::array{from, to});
     expectClear(layer, tool, to);
     double ahead = 0, behind = 0;
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         const double above =
             std::max(height, 0.0) * static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
         ahead += place.x > to.x ? above : 0;
@@ -216,8 +216,8 @@ TEST(TinTool, OutsideOrAboveTheSandItLeavesTheLayerAlone) {
     Displacement tool(toolOf(ToolKind::ellipsoid, 4), fineRules());
     const std::array<ProbePoint, 4> poses{probeAt(-20, 15, 0), probeAt(60, 60, -10), probeAt(15, 15, 4.5),
                                           ProbePoint{sand::kMaxProbe, -sand::kMaxProbe, -sand::kMaxProbe}};
-    for (const ProbePoint& at : poses) {
-        EXPECT_TRUE(press(layer, imprint, tool, at).touched.empty());
+    for (const ProbePoint& probe : poses) {
+        EXPECT_TRUE(press(layer, imprint, tool, probe).touched.empty());
     }
     tool.leave(layer, imprint);
     EXPECT_EQ(bytesOf(layer), before);
@@ -242,11 +242,11 @@ TEST(TinTool, LargerThanTheFieldItLeavesTheSandWhereItIs) {
     const Displacement::Work done = press(layer, imprint, tool, probeAt(6, 4, 30));
     EXPECT_TRUE(done.touched.empty());
     EXPECT_TRUE(layer.volume() == before);
-    forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, 0); });
+    forEachVertex(layer, [](Vertex, const LatticePoint&, double height) { EXPECT_EQ(height, 0); });
     const Displacement::Work spilt = press(layer, imprint, tool, probeAt(6, 4, 30), Rim::open);
     EXPECT_TRUE(spilt.outflow > 0);
     EXPECT_TRUE(layer.volume() + spilt.outflow == before);
-    forEachVertex(layer, [](Vertex, const Place&, double height) { EXPECT_EQ(height, -10 * kCell); });
+    forEachVertex(layer, [](Vertex, const LatticePoint&, double height) { EXPECT_EQ(height, -10 * kCell); });
 }
 
 TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
@@ -255,13 +255,13 @@ TEST(TinTool, AtACornerTheOpenRimSwallowsAndTheClosedOneKeeps) {
         Displacement tool(toolOf(ToolKind::sphere, 4), fineRules());
         Imprint imprint;
         const auto before = layer.volume();
-        const ProbePoint at = probeAt(0, 0, 2);
-        const Displacement::Work done = press(layer, imprint, tool, at, rim);
-        expectClear(layer, tool, at);
+        const ProbePoint probe = probeAt(0, 0, 2);
+        const Displacement::Work done = press(layer, imprint, tool, probe, rim);
+        expectClear(layer, tool, probe);
         EXPECT_TRUE(layer.volume() + done.outflow == before);
         // Each vertex of the ring takes sand in proportion to its star. A quarter of the ring lies in the field.
         double kept = 0, stars = 0;
-        forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
+        forEachVertex(layer, [&](Vertex vertex, const LatticePoint&, double height) {
             const auto star = static_cast<double>(layer.stars()[static_cast<std::size_t>(vertex)]);
             kept += std::max(height, 0.0) * star;
             stars += height > 0 ? star : 0;
@@ -352,11 +352,11 @@ TEST(TinTool, ACoarseMeshWithoutDetailTakesTheImprint) {
     Displacement tool(toolOf(ToolKind::rectangle, 5, *sand::headingOf(10)), DetailRules{});
     Imprint imprint;
     const auto before = layer.volume();
-    const ProbePoint at = probeAt(20, 20, 4);
-    const Displacement::Work done = press(layer, imprint, tool, at);
+    const ProbePoint probe = probeAt(20, 20, 4);
+    const Displacement::Work done = press(layer, imprint, tool, probe);
     EXPECT_EQ(done.touched.size(), 36U);  // 32 control points and the field's corners
     EXPECT_EQ(layer.mesh().constraints().size(), 32U);
-    expectClear(layer, tool, at);
+    expectClear(layer, tool, probe);
     EXPECT_TRUE(layer.volume() == before);
 }
 

@@ -28,7 +28,7 @@ void incline(VertexSand& layer, double slope, double degrees) {
     const double east = slope * std::cos(degrees * std::numbers::pi / 180) / kCell;
     const double north = slope * std::sin(degrees * std::numbers::pi / 180) / kCell;
     for (const Vertex vertex : mesh_checks::livingVertices(layer.mesh())) {
-        const Place& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
+        const LatticePoint& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
         layer.setHeight(vertex, static_cast<std::int32_t>(std::floor(east * place.x + north * place.y + 0.5)));
     }
 }
@@ -123,7 +123,7 @@ TEST(TinErosion, ActiveEdgesGiveWhatAllEdgesGive) {
         for (int lump = 0; lump < 5; ++lump) {
             const double x = 24 * chance(random), y = 24 * chance(random);
             for (const Vertex vertex : mesh_checks::livingVertices(some.mesh())) {
-                const Place& place = some.triangles().places[static_cast<std::size_t>(vertex)];
+                const LatticePoint& place = some.triangles().places[static_cast<std::size_t>(vertex)];
                 const double away = std::hypot(place.x / 256.0 - x, place.y / 256.0 - y);
                 if (away < 2.5) {
                     some.setHeight(vertex, 2 * kTalus * lump);
@@ -176,7 +176,7 @@ void restoreWhileTheMeshChanges(Rim rim) {
         fresh.changed(other, other.takeChange());
         // A tool is in the sand, moves on, and is away for some steps.
         const int moves = step / 4;
-        const sand::tin::Underside held = [moves](Place place) {
+        const sand::tin::Underside held = [moves](LatticePoint place) {
             const bool under = std::hypot(place.x - 1000.0 - 20 * moves, place.y - 1000.0) < 600;
             return under ? 1 << 15 : std::numeric_limits<std::int32_t>::max();
         };
@@ -203,7 +203,7 @@ TEST(TinErosion, NoSandRisesAboveAToolThatStandsInIt) {
     VertexSand layer = layerOf(Kind::jittered, 24);
     fill(layer, [](double x, double) { return x < 12 ? 9.0 : 0.0; });
     const std::int32_t underside = kTalus / 2;
-    const sand::tin::Underside held = [&](Place place) {
+    const sand::tin::Underside held = [&](LatticePoint place) {
         const bool under = std::hypot(place.x / 256.0 - 16, place.y / 256.0 - 12) < 3;
         return under ? underside : std::numeric_limits<std::int32_t>::max();
     };

@@ -82,8 +82,8 @@ bool isRing(int column, int row) {
 
 /// Raises the vertex in the middle of a cell by `cells` times the side of a cell.
 void lump(VertexSand& layer, int column, int row, int cells) {
-    const Place at{column * 256 + 128, row * 256 + 128};
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+    const LatticePoint at{column * 256 + 128, row * 256 + 128};
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
         if (place == at) {
             layer.add(vertex, layer.stars()[static_cast<std::size_t>(vertex)] * 65536 * cells);
         }
@@ -95,8 +95,8 @@ TEST(TinHoles, AnOutlineRunsRoundTheCellsWithoutData) {
     const Holes holes(cells, {{1, 1, 3}, {2, 1, 2}});
     EXPECT_TRUE(holes.isHole(2, 1));
     EXPECT_FALSE(holes.isHole(2, 2));
-    EXPECT_TRUE(holes.holds(Place{300, 300}));
-    EXPECT_FALSE(holes.holds(Place{300, 255}));
+    EXPECT_TRUE(holes.holds(LatticePoint{300, 300}));
+    EXPECT_FALSE(holes.holds(LatticePoint{300, 255}));
     EXPECT_TRUE(holes.borders({256, 256}, {768, 256}));
     EXPECT_FALSE(holes.borders({256, 512}, {512, 512})) << "holes on both sides";
     EXPECT_FALSE(holes.borders({768, 256}, {1024, 256})) << "ground on both sides";
@@ -115,8 +115,8 @@ TEST(TinHoles, AnOutlineRunsRoundTheCellsWithoutData) {
 TEST(TinHoles, CellsThatTouchAtACornerCloseIt) {
     const Holes holes(sand::tin::nominalCells(4 * 256, 4 * 256), {{1, 1, 2}, {2, 2, 3}});
     ASSERT_TRUE(holes.isPinch(2, 2));
-    EXPECT_TRUE(holes.holds(Place{500, 520}));
-    EXPECT_FALSE(holes.holds(Place{470, 520}));
+    EXPECT_TRUE(holes.holds(LatticePoint{500, 520}));
+    EXPECT_FALSE(holes.holds(LatticePoint{470, 520}));
     const VertexSand layer = layerAt(startOf(
         4, 4, [](int c, int r) { return c == r && (c == 1 || c == 2); }, levelAt));
     const std::int64_t lost = 2 * 32 * 32;  // parts of the square around the corner that lie beside both holes
@@ -149,7 +149,7 @@ TEST(TinHoles, APileFlowsRoundAHoleAndNotIn) {
     for (const auto& triangle : layer.triangles().triangles) {
         if (triangle.hole) {
             for (const Vertex corner : triangle.corner) {
-                const Place place = layer.triangles().places[static_cast<std::size_t>(corner)];
+                const LatticePoint place = layer.triangles().places[static_cast<std::size_t>(corner)];
                 const bool inside = place.x > 10 * 256 && place.x < 13 * 256 && place.y > 6 * 256 && place.y < 14 * 256;
                 EXPECT_FALSE(inside) << "a vertex lies in the hole";
             }
@@ -168,12 +168,12 @@ TEST(TinHoles, SandInARingCannotLeave) {
     }
     ASSERT_GT(pinches, 3) << "the ring needs corners through which sand could slip";
     // No vertex may have ground both inside and outside the ring. That includes the corners between two of its cells.
-    forEachVertex(layer, [&](Vertex vertex, const Place&, double) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint&, double) {
         bool in = false, out = false;
         sand::tin::aroundVertex(layer.triangles(), vertex, [&](std::int32_t slot, int) {
             const auto& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
             for (std::size_t k = 0; k < 3 && !triangle.hole; ++k) {
-                const Place& place = layer.triangles().places[static_cast<std::size_t>(triangle.corner[k])];
+                const LatticePoint& place = layer.triangles().places[static_cast<std::size_t>(triangle.corner[k])];
                 const double x = place.x - 12 * 256, y = place.y - 12 * 256;
                 in |= x * x + y * y < 6.5 * 256 * 6.5 * 256;
                 out |= x * x + y * y > 8.6 * 256 * 8.6 * 256;
@@ -184,7 +184,7 @@ TEST(TinHoles, SandInARingCannotLeave) {
     std::vector<double> outside;
     const auto heightsOutside = [&] {
         std::vector<double> heights;
-        forEachVertex(layer, [&](Vertex, const Place& place, double height) {
+        forEachVertex(layer, [&](Vertex, const LatticePoint& place, double height) {
             const double x = place.x - 12 * 256, y = place.y - 12 * 256;
             if (x * x + y * y > 8.3 * 256 * 8.3 * 256) {
                 heights.push_back(height);
@@ -234,7 +234,7 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
     };
     VertexSand layer = layerAt(startOf(24, 24, isRing, levelAt));
     const Wide before = layer.volume(), ground = layer.ground();
-    std::set<Place> corners;  // of the holes; no tool may remove them
+    std::set<LatticePoint> corners;  // of the holes; no tool may remove them
     for (const Holes::Part& part : layer.mesh().holes()->outline()) {
         corners.insert({part.from, part.to});
     }
@@ -256,17 +256,17 @@ TEST(TinHoles, ToolsOfAllKindsLeaveSandAndOutline) {
         sand::tin::settle(layer, kTalus, kTalus, 20);
         ASSERT_TRUE(layer.volume() == before && layer.ground() == ground) << "stroke " << stroke;
         ASSERT_TRUE(layer.mesh().hasOutline()) << "stroke " << stroke;
-        std::set<Place> places;
-        forEachVertex(layer, [&](Vertex, const Place& place, double) { places.insert(place); });
+        std::set<LatticePoint> places;
+        forEachVertex(layer, [&](Vertex, const LatticePoint& place, double) { places.insert(place); });
         ASSERT_TRUE(std::ranges::includes(places, corners)) << "stroke " << stroke << ": a corner of a hole is gone";
         // A tool digs down to its underside. Sand that slides makes no hole deeper than the deepest one.
         const std::int32_t underside = std::min(path[0].z, path[1].z) - unturned.radius;  // [probe unit]
         deepest = std::min(deepest, static_cast<double>(underside) * sand::kUnitsPerCell / sand::kProbePerCell);
-        forEachVertex(layer, [&](Vertex vertex, const Place&, double height) {
+        forEachVertex(layer, [&](Vertex vertex, const LatticePoint&, double height) {
             ASSERT_GE(height, deepest) << "stroke " << stroke << ", vertex " << vertex;
             ASSERT_GT(layer.stars()[static_cast<std::size_t>(vertex)], 0) << "vertex " << vertex << " lies in a hole";
         });
-        forEachVertex(layer, [&](Vertex, const Place&, double height) { lowest = std::min(lowest, height); });
+        forEachVertex(layer, [&](Vertex, const LatticePoint&, double height) { lowest = std::min(lowest, height); });
     }
     EXPECT_LT(lowest, 0.9 * deepest) << "the strokes did not dig, so that the bound shows nothing";
     EXPECT_EQ(mesh_checks::whatIsWrong(layer.mesh()), "");

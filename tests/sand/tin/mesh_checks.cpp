@@ -9,17 +9,17 @@
 namespace mesh_checks {
 namespace {
 
-using sand::tin::kNobody;
+using sand::tin::kNoNumber;
 using sand::tin::Triangle;
 using sand::tin::Wide;
 
-Wide area(const Place& a, const Place& b, const Place& c) {
+Wide area(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c) {
     return static_cast<Wide>(b.x - a.x) * (c.y - a.y) - static_cast<Wide>(b.y - a.y) * (c.x - a.x);
 }
 
 /// Returns the determinant itself, without any shortcut.
-Wide inCircle(const Place& a, const Place& b, const Place& c, const Place& d) {
-    const auto row = [&d](const Place& p) {
+Wide inCircle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c, const LatticePoint& d) {
+    const auto row = [&d](const LatticePoint& p) {
         const Wide x = p.x - d.x, y = p.y - d.y;
         return std::array<Wide, 3>{x, y, x * x + y * y};
     };
@@ -27,7 +27,9 @@ Wide inCircle(const Place& a, const Place& b, const Place& c, const Place& d) {
     return r[0] * (s[1] * t[2] - s[2] * t[1]) - r[1] * (s[0] * t[2] - s[2] * t[0]) + r[2] * (s[0] * t[1] - s[1] * t[0]);
 }
 
-std::string edgeName(const Place& a, const Place& b) { return fmt::format("({}, {})-({}, {})", a.x, a.y, b.x, b.y); }
+std::string edgeName(const LatticePoint& a, const LatticePoint& b) {
+    return fmt::format("({}, {})-({}, {})", a.x, a.y, b.x, b.y);
+}
 
 class Check {
 public:
@@ -52,7 +54,7 @@ public:
     }
 
 private:
-    const Place& place(Vertex vertex) const { return mesh_.places.at(static_cast<std::size_t>(vertex)); }
+    const LatticePoint& place(Vertex vertex) const { return mesh_.places.at(static_cast<std::size_t>(vertex)); }
     void fail(const std::string& what) {
         if (wrong_.empty()) {
             wrong_ = what;
@@ -60,11 +62,11 @@ private:
     }
 
     void checkVertices() {
-        std::set<Place> places;
+        std::set<LatticePoint> places;
         int living = 0;
         for (std::size_t i = 0; i < mesh_.places.size(); ++i) {
             const std::int32_t slot = mesh_.triangleAt.at(i);
-            if (slot == kNobody) {
+            if (slot == kNoNumber) {
                 continue;
             }
             ++living;
@@ -97,15 +99,15 @@ private:
     void checkSide(std::int32_t slot, const Triangle& triangle, std::size_t i) {
         const Vertex b = triangle.corner[(i + 1) % 3];
         const Vertex c = triangle.corner[(i + 2) % 3];
-        const Place& from = place(b);
-        const Place& to = place(c);
+        const LatticePoint& from = place(b);
+        const LatticePoint& to = place(c);
         const bool rim = (from.x == to.x && (to.x == 0 || to.x == mesh_.width)) ||
                          (from.y == to.y && (to.y == 0 || to.y == mesh_.depth));
         const std::int32_t other = triangle.neighbour[i];
-        if (rim != (other == kNobody)) {
+        if (rim != (other == kNoNumber)) {
             fail("neighbours and rim disagree at " + edgeName(from, to));
         }
-        if (other == kNobody) {
+        if (other == kNoNumber) {
             ++rim_;
             if (!triangle.constrained[i]) {
                 fail("a rim edge that is not constrained at " + edgeName(from, to));
@@ -125,13 +127,13 @@ private:
         fail("neighbours without a common edge at " + edgeName(from, to));
     }
 
-    void checkCircle(const Triangle& triangle, std::size_t i, const Place& d) {
+    void checkCircle(const Triangle& triangle, std::size_t i, const LatticePoint& d) {
         if (triangle.constrained[i]) {
             return;
         }
-        const Place& a = place(triangle.corner[i]);
-        const Place& b = place(triangle.corner[(i + 1) % 3]);
-        const Place& c = place(triangle.corner[(i + 2) % 3]);
+        const LatticePoint& a = place(triangle.corner[i]);
+        const LatticePoint& b = place(triangle.corner[(i + 1) % 3]);
+        const LatticePoint& c = place(triangle.corner[(i + 2) % 3]);
         const Wide inside = inCircle(a, b, c, d);
         if (inside > 0) {
             fail("a vertex in the circle of " + edgeName(b, c));
@@ -150,9 +152,9 @@ private:
 
 std::size_t below(std::mt19937& random, std::size_t count) { return random() % count; }
 
-Place anywhere(const Triangles& mesh, std::mt19937& random) {
-    Place place{static_cast<std::int32_t>(below(random, static_cast<std::size_t>(mesh.width) + 1)),
-                static_cast<std::int32_t>(below(random, static_cast<std::size_t>(mesh.depth) + 1))};
+LatticePoint anywhere(const Triangles& mesh, std::mt19937& random) {
+    LatticePoint place{static_cast<std::int32_t>(below(random, static_cast<std::size_t>(mesh.width) + 1)),
+                       static_cast<std::int32_t>(below(random, static_cast<std::size_t>(mesh.depth) + 1))};
     if (below(random, 8) == 0) {
         place.x = below(random, 2) == 0 ? 0 : mesh.width;
     }
@@ -163,11 +165,11 @@ Place anywhere(const Triangles& mesh, std::mt19937& random) {
 
 std::string whatIsWrong(const Mesh& mesh) { return Check(mesh).run(); }
 
-std::set<PlaceTriangle> trianglesOf(const Mesh& mesh) {
-    std::set<PlaceTriangle> all;
+std::set<LatticeTriangle> trianglesOf(const Mesh& mesh) {
+    std::set<LatticeTriangle> all;
     for (const Triangle& triangle : mesh.triangles().triangles) {
         if (triangle.alive()) {
-            PlaceTriangle places;
+            LatticeTriangle places;
             std::transform(triangle.corner.begin(), triangle.corner.end(), places.begin(),
                            [&](Vertex v) { return mesh.triangles().places[static_cast<std::size_t>(v)]; });
             std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
@@ -177,21 +179,21 @@ std::set<PlaceTriangle> trianglesOf(const Mesh& mesh) {
     return all;
 }
 
-std::set<std::pair<Place, Place>> constraintsOf(const Mesh& mesh) {
-    std::set<std::pair<Place, Place>> all;
+std::set<std::pair<LatticePoint, LatticePoint>> constraintsOf(const Mesh& mesh) {
+    std::set<std::pair<LatticePoint, LatticePoint>> all;
     for (const auto& [a, b] : mesh.constraints()) {
-        const Place& from = mesh.triangles().places[static_cast<std::size_t>(a)];
-        const Place& to = mesh.triangles().places[static_cast<std::size_t>(b)];
+        const LatticePoint& from = mesh.triangles().places[static_cast<std::size_t>(a)];
+        const LatticePoint& to = mesh.triangles().places[static_cast<std::size_t>(b)];
         all.insert({std::min(from, to), std::max(from, to)});
     }
     return all;
 }
 
-std::vector<std::optional<Place>> placesOf(const Mesh& mesh) {
-    std::vector<std::optional<Place>> places;
+std::vector<std::optional<LatticePoint>> placesOf(const Mesh& mesh) {
+    std::vector<std::optional<LatticePoint>> places;
     const Triangles& triangles = mesh.triangles();
     for (std::size_t i = 0; i < triangles.places.size(); ++i) {
-        places.push_back(triangles.triangleAt[i] == kNobody ? std::nullopt : std::optional(triangles.places[i]));
+        places.push_back(triangles.triangleAt[i] == kNoNumber ? std::nullopt : std::optional(triangles.places[i]));
     }
     return places;
 }
@@ -219,7 +221,7 @@ Mesh madeInAnotherOrder(const Mesh& mesh, std::mt19937& random) {
 std::vector<Vertex> livingVertices(const Mesh& mesh) {
     std::vector<Vertex> living;
     for (std::size_t i = 0; i < mesh.triangles().places.size(); ++i) {
-        if (mesh.triangles().triangleAt[i] != kNobody) {
+        if (mesh.triangles().triangleAt[i] != kNoNumber) {
             living.push_back(static_cast<Vertex>(i));
         }
     }
@@ -251,7 +253,7 @@ std::string editAtRandom(Mesh& mesh, std::mt19937& random, int most) {
         case 5:
         case 6:
         case 7: {
-            const Place place = anywhere(mesh.triangles(), random);
+            const LatticePoint place = anywhere(mesh.triangles(), random);
             mesh.insert(place);
             return fmt::format("insert {} {}", place.x, place.y);
         }

@@ -14,20 +14,20 @@
 /// Checks of a mesh that do not depend on how it was made. They share no code with the mesh.
 namespace mesh_checks {
 
+using sand::tin::LatticePoint;
 using sand::tin::Mesh;
-using sand::tin::Place;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
-using PlaceTriangle = std::array<Place, 3>;  // counter-clockwise from the smallest place
+using LatticeTriangle = std::array<LatticePoint, 3>;  // counter-clockwise from the smallest place
 
 /// Returns the first fault of a mesh, or an empty string. Checks areas, neighbours and Euler's formula. The circle of
 /// every unconstrained edge must be empty; if four places are on it, the diagonal must begin at the first place. All
 /// arithmetic is in exact integers.
 [[nodiscard]] std::string whatIsWrong(const Mesh& mesh);
 
-[[nodiscard]] std::set<PlaceTriangle> trianglesOf(const Mesh& mesh);
-[[nodiscard]] std::set<std::pair<Place, Place>> constraintsOf(const Mesh& mesh);
-[[nodiscard]] std::vector<std::optional<Place>> placesOf(const Mesh& mesh);
+[[nodiscard]] std::set<LatticeTriangle> trianglesOf(const Mesh& mesh);
+[[nodiscard]] std::set<std::pair<LatticePoint, LatticePoint>> constraintsOf(const Mesh& mesh);
+[[nodiscard]] std::vector<std::optional<LatticePoint>> placesOf(const Mesh& mesh);
 [[nodiscard]] Mesh restored(const Mesh& mesh);
 /// Returns a mesh with the same vertices and constraints, inserted in a random order.
 [[nodiscard]] Mesh madeInAnotherOrder(const Mesh& mesh, std::mt19937& random);

@@ -171,7 +171,7 @@ TEST(TinOpenRim, AToolBesideARimRefinesItOpenOrClosed) {
         const std::array path{tin_samples::probeAt(20, 3, 3)};
         (void)tool.drag(layer, imprint, rim, path);
         int beside = 0;
-        tin_samples::forEachVertex(layer, [&](Vertex, const sand::tin::Place& place, double) {
+        tin_samples::forEachVertex(layer, [&](Vertex, const sand::tin::LatticePoint& place, double) {
             beside += place.y == 0 && std::abs(place.x - 20 * 256) < 4 * 256 ? 1 : 0;
         });
         EXPECT_GE(beside, 7) << "the rim gets one vertex per cell";

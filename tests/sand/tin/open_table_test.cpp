@@ -55,7 +55,7 @@ void expectNothingAboveTheTable(const VertexSand& layer, int n) {
     const double most = steepestShare(layer);
     for (std::size_t i = 0; i < layer.heights().size(); ++i) {
         if (layer.triangles().alive(static_cast<Vertex>(i))) {
-            const Place& place = layer.triangles().places[i];
+            const LatticePoint& place = layer.triangles().places[i];
             const double rest = kHeight * tableOf(n).rest(place.x / 256.0, place.y / 256.0);
             ASSERT_LE(layer.heights()[i], most * rest + 1) << place.x << ", " << place.y;
             ASSERT_GE(layer.heights()[i], 0) << place.x << ", " << place.y;

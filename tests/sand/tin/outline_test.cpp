@@ -13,8 +13,8 @@ namespace {
 using sand::Heading;
 using sand::Tool;
 using sand::ToolKind;
+using sand::tin::LatticePoint;
 using sand::tin::Outline;
-using sand::tin::Place;
 
 Tool toolOf(int kind, std::int32_t radius, const Heading& heading = {}) {
     const auto which = static_cast<ToolKind>(kind);
@@ -45,7 +45,7 @@ void forEveryTool(const Check& check) {
 TEST(Outline, EveryPointLiesBelowTheTool) {
     forEveryTool([](const Tool& tool, const Outline& outline) {
         const sand::TurnedShape turned(tool);
-        for (const Place& point : outline.points) {
+        for (const LatticePoint& point : outline.points) {
             EXPECT_TRUE(turned.covers({point.x, point.y})) << point.x << ' ' << point.y;
         }
         EXPECT_TRUE(tool.kind == ToolKind::footprint || !outline.points.empty());
@@ -61,7 +61,7 @@ TEST(Outline, EdgesMakeClosedRings) {
             ++ends[b];
         }
         for (const auto& [point, count] : ends) {
-            const Place& place = outline.points[static_cast<std::size_t>(point)];
+            const LatticePoint& place = outline.points[static_cast<std::size_t>(point)];
             EXPECT_EQ(count, 2) << "edges end at " << place.x << ' ' << place.y;
         }
         if (tool.radius >= 655 && tool.kind != ToolKind::footprint) {
@@ -101,13 +101,13 @@ TEST(Outline, ASoleHasFourPartsWhoseOutlinesDoNotCross) {
 }
 
 /// Returns whether a place is inside the rings of an outline, by the number of edges that are east of it.
-bool isInside(const Outline& outline, const Place& place) {
+bool isInside(const Outline& outline, const LatticePoint& place) {
     bool inside = false;
     for (const auto& [from, to] : outline.edges) {
-        const Place &a = outline.points[static_cast<std::size_t>(from)],
-                    &b = outline.points[static_cast<std::size_t>(to)];
+        const LatticePoint &a = outline.points[static_cast<std::size_t>(from)],
+                           &b = outline.points[static_cast<std::size_t>(to)];
         if ((a.y > place.y) != (b.y > place.y)) {
-            const Place &low = a.y < b.y ? a : b, &high = a.y < b.y ? b : a;
+            const LatticePoint &low = a.y < b.y ? a : b, &high = a.y < b.y ? b : a;
             inside = inside != (sand::tin::doubledArea(low, high, place) > 0);
         }
     }
@@ -125,8 +125,8 @@ TEST(Outline, OfASoleHoldsNearlyAllOfEachPiece) {
                 const double angle = degrees / 57.29578;
                 const double along = piece.along + 0.96 * piece.halfLength * std::cos(angle);
                 const double across = piece.across + 0.96 * piece.halfWidth * std::sin(angle);
-                const Place place{static_cast<std::int32_t>(along * tool.radius),
-                                  static_cast<std::int32_t>(across * tool.halfWidth)};
+                const LatticePoint place{static_cast<std::int32_t>(along * tool.radius),
+                                         static_cast<std::int32_t>(across * tool.halfWidth)};
                 EXPECT_TRUE(isInside(outline, place)) << radius << ": " << place.x << ", " << place.y;
             }
         }
@@ -140,9 +140,9 @@ TEST(Outline, AToolTurnedByARightAngleHasItsPointsTurned) {
         const Heading turned{static_cast<std::int16_t>(-heading.y), heading.x, false};
         const Outline before = Outline::of(tool), after = Outline::of(tool.turnedTo(turned));
         EXPECT_EQ(before.edges, after.edges);
-        std::vector<Place> expected, points = after.points;
-        for (const Place& point : before.points) {
-            expected.push_back(sand::isRound(tool.kind) ? point : Place{-point.y, point.x});
+        std::vector<LatticePoint> expected, points = after.points;
+        for (const LatticePoint& point : before.points) {
+            expected.push_back(sand::isRound(tool.kind) ? point : LatticePoint{-point.y, point.x});
         }
         EXPECT_EQ(points, expected) << nameOf(tool);
     }
@@ -166,7 +166,7 @@ TEST(Outline, EndsAtTheRim) {
             const auto placed = sand::tin::placed(outline, x, y, field);
             for (const auto& [from, to] : placed.edges) {
                 EXPECT_FALSE(from == to);
-                for (const Place& end : {from, to}) {
+                for (const LatticePoint& end : {from, to}) {
                     EXPECT_TRUE(end.x >= 0 && end.y >= 0 && end.x <= field.width && end.y <= field.depth);
                     EXPECT_EQ(std::count(placed.points.begin(), placed.points.end(), end), 1);
                 }
@@ -174,7 +174,7 @@ TEST(Outline, EndsAtTheRim) {
             }
         }
         const auto corner = sand::tin::placed(outline, 0, 0, field);
-        const auto onRim = [](const Place& p) { return p.x == 0 || p.y == 0; };
+        const auto onRim = [](const LatticePoint& p) { return p.x == 0 || p.y == 0; };
         EXPECT_GE(std::count_if(corner.points.begin(), corner.points.end(), onRim), 2) << kind;
         EXPECT_TRUE(sand::tin::placed(outline, -5000, 0, field).points.empty());
     }

@@ -174,10 +174,10 @@ TEST(TinPile, PouredSandIsACone) {
 /// Returns the share of the sand between two surfaces, from the heights at the cell centres.
 double between(const VertexSand& one, const VertexSand& other, int n) {
     double sum = 0, all = 0;
-    std::int32_t here = sand::tin::kNobody, there = sand::tin::kNobody;
+    std::int32_t here = sand::tin::kNoNumber, there = sand::tin::kNoNumber;
     for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {
-            const Place place{x * kCell + kCell / 2, y * kCell + kCell / 2};
+            const LatticePoint place{x * kCell + kCell / 2, y * kCell + kCell / 2};
             const double height = heightAt(one, place, here);
             sum += std::abs(height - heightAt(other, place, there));
             all += height;
@@ -209,7 +209,7 @@ TEST(TinPile, TheSamePileOnGridAndTinAgrees) {
     rules.tuning.threshold = rules.tuning.startThreshold = kTalus;
     sand::grid::settle(field, rules);
     double sum = 0, all = 0;
-    std::int32_t triangle = sand::tin::kNobody;
+    std::int32_t triangle = sand::tin::kNoNumber;
     for (int y = 0; y < kSide; ++y) {
         for (int x = 0; x < kSide; ++x) {
             const double height = field.height(x, y) / kHeight;

@@ -24,18 +24,18 @@ using sand::tin::Imprint;
 struct Pressed {
     VertexSand layer = levelLayer(60, 60, 200);
     TurnedShape shape;
-    ProbePoint at = probeAt(30.3, 29.6, 2);
+    ProbePoint probe = probeAt(30.3, 29.6, 2);
     std::map<Vertex, std::int64_t> expected;
     std::int64_t remainder = 0;  // units that could not be shared evenly
 
     Pressed(const sand::Tool& tool, const ProbePoint& way) : shape(tool) {
         sand::tin::Displacement displacement(tool, fineRules());
         Imprint imprint;
-        const ProbePoint from{at.x - way.x, at.y - way.y, at.z};
+        const ProbePoint from{probe.x - way.x, probe.y - way.y, probe.z};
         if (way == ProbePoint{}) {
-            displacement.drag(layer, imprint, Rim::closed, std::array{at});
+            displacement.drag(layer, imprint, Rim::closed, std::array{probe});
         } else {
-            displacement.drag(layer, imprint, Rim::closed, std::array{from, at});
+            displacement.drag(layer, imprint, Rim::closed, std::array{from, probe});
         }
         share(way);
     }
@@ -49,9 +49,9 @@ private:
         std::map<Vertex, double> weights;
         std::int64_t taken = 0;
         double total = 0;
-        forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+        forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
             taken -= std::min<std::int64_t>(volume(vertex), 0);
-            const Offset offset{std::int64_t{place.x} - at.x, std::int64_t{place.y} - at.y};
+            const Offset offset{std::int64_t{place.x} - probe.x, std::int64_t{place.y} - probe.y};
             const std::int64_t part = way == ProbePoint{} ? 1 : shape.share(offset, {way.x, way.y});
             if (shape.takes(offset) && !shape.covers(offset) && part > 0) {
                 weights[vertex] =
@@ -76,7 +76,7 @@ private:
 
 void expectShares(const Pressed& pressed) {
     ASSERT_GT(pressed.expected.size(), 50U);
-    forEachVertex(pressed.layer, [&](Vertex vertex, const Place& place, double) {
+    forEachVertex(pressed.layer, [&](Vertex vertex, const LatticePoint& place, double) {
         const auto found = pressed.expected.find(vertex);
         const std::int64_t expected = found == pressed.expected.end() ? 0 : found->second;
         ASSERT_EQ(std::max<std::int64_t>(pressed.volume(vertex), 0), expected)

@@ -26,10 +26,10 @@ DetailRules rulesOf(std::int32_t spacing, double maxError, std::int32_t removals
 
 int refineAll(VertexSand& layer, const DetailRules& rules, const Box& box) {
     int came = 0;
-    std::vector<Place> there;
-    forEachVertex(layer, [&](Vertex, const Place& place, double) { there.push_back(place); });
+    std::vector<LatticePoint> there;
+    forEachVertex(layer, [&](Vertex, const LatticePoint& place, double) { there.push_back(place); });
     layer.edit([&](sand::tin::Mesh& mesh) {
-        came = sand::tin::refine(mesh, rules, box, [](const Place&) { return true; }, there, {});
+        came = sand::tin::refine(mesh, rules, box, [](const LatticePoint&) { return true; }, there, {});
     });
     return came;
 }
@@ -47,11 +47,11 @@ TEST(TinDetail, AVertexComesIntoEverySquareOnce) {
 TEST(TinDetail, RefinementKeepsAwayFromEdges) {
     VertexSand layer(sand::tin::Mesh(20 * 256, 20 * 256));
     layer.edit([](sand::tin::Mesh& mesh) {
-        const std::pair edge{Place{100, 300}, Place{5000, 4000}};
-        sand::tin::refine(mesh, rulesOf(256, 0, 0), {0, 0, 20 * 256, 20 * 256}, [](const Place&) { return true; }, {},
-                          {edge});
+        const std::pair edge{LatticePoint{100, 300}, LatticePoint{5000, 4000}};
+        sand::tin::refine(mesh, rulesOf(256, 0, 0), {0, 0, 20 * 256, 20 * 256},
+                          [](const LatticePoint&) { return true; }, {}, {edge});
         EXPECT_GT(mesh.vertexCount(), 350);
-        for (const Place& place : mesh.triangles().places) {
+        for (const LatticePoint& place : mesh.triangles().places) {
             EXPECT_FALSE(sand::tin::isNear(place, edge.first, edge.second, 64)) << place.x << ' ' << place.y;
         }
     });
@@ -86,7 +86,7 @@ TEST(TinDetail, ALevelLayerLosesAllThatNothingHolds) {
         EXPECT_LE(sand::tin::coarsen(layer, rules, next, keepOut), rules.removals);
     }
     int inside = 0;
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double height) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double height) {
         EXPECT_EQ(height, 0);
         const bool held = std::find(chain.begin(), chain.end(), vertex) != chain.end();
         EXPECT_TRUE(vertex < 4 || keepOut.holds(place) || held) << place.x << ' ' << place.y;
@@ -106,7 +106,7 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
     std::mt19937 random(kSeed);
     SCOPED_TRACE("seed 3");
     VertexSand layer = levelLayer(24, 24, 256);
-    forEachVertex(layer, [&](Vertex vertex, const Place& place, double) {
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint& place, double) {
         const double x = place.x / 256.0 - 12, y = place.y / 256.0 - 12;
         layer.setHeight(vertex, static_cast<std::int32_t>(kCell * (0.02 * x * x + 0.01 * x * y)) +
                                     static_cast<std::int32_t>(random() % 500));
@@ -119,7 +119,7 @@ TEST(TinDetail, NoRemovalMovesTheSurfaceByMoreThanItMay) {
         std::vector<double> heights;
         const auto look = [&] {
             heights.clear();
-            std::int32_t near = sand::tin::kNobody;
+            std::int32_t near = sand::tin::kNoNumber;
             for (std::int32_t y = 0; y <= 24 * 256; y += 128) {
                 for (std::int32_t x = 0; x <= 24 * 256; x += 128) {
                     heights.push_back(heightAt(layer, {x, y}, near));
@@ -162,7 +162,7 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
         const auto height = static_cast<std::int32_t>(random() % (rough ? 3000 : 100));
         both([&](VertexSand& one) { one.setHeight(vertex, height); });
     };
-    forEachVertex(layer, [&](Vertex vertex, const Place&, double) { shake(vertex); });
+    forEachVertex(layer, [&](Vertex vertex, const LatticePoint&, double) { shake(vertex); });
     static_cast<void>(layer.takeChange());
     int removed = 0;
     for (int step = 0; step < 2000; ++step) {
@@ -171,9 +171,9 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
             shake(vertex);
             coarsening.touch(layer.triangles(), {&vertex, 1});
         }
-        Vertex came = sand::tin::kNobody;
+        Vertex came = sand::tin::kNoNumber;
         if (step % 8 == 0) {
-            const Place place{somewhere(), somewhere()};
+            const LatticePoint place{somewhere(), somewhere()};
             both([&](VertexSand& one) { came = one.insert(place); });
         }
         if (step % 32 == 0) {

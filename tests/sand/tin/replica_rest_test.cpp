@@ -6,7 +6,7 @@
 #include <random>
 
 #include "tests/sand/tin/level_scene.hpp"
-#include "tests/sand/tin/tin_terrain.hpp"
+#include "tests/sand/tin/tin_replica.hpp"
 #include "tests/support/tin_piles.hpp"
 
 namespace tin_rests {
@@ -15,7 +15,7 @@ namespace {
 using sand::Edit;
 using sand::Replica;
 using sand::Step;
-using tin_samples::TinTerrain;
+using tin_samples::TinReplica;
 using tin_samples::verticesOf;
 
 /// Returns level sand. Its tool is a quarter as wide as the field and is pressed at random places.
@@ -29,49 +29,49 @@ scene::Scene levelSand(int side, std::uint32_t seed) {
 
 // Triangles that slide under a tool are forgotten, because the tool holds their sand. They are added again beside
 // triangles that start to slide. A replica that has just joined never forgot them.
-TEST(TinTerrainUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
+TEST(TinReplicaUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
     constexpr std::uint32_t kSeed = 1;
     const scene::Scene scene = levelSand(100, kSeed);
-    Replica terrain(scene), joined(scene);
+    Replica replica(scene), joined(scene);
     std::mt19937 random(kSeed);
     const auto somewhere = [&random] {
         return static_cast<std::int32_t>(std::floor((26 + tin_piles::chance(random) * 48) * sand::kProbePerCell));
     };
     std::uint64_t number = 0;
-    terrain.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
+    replica.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
     for (int imprint = 0; imprint < 6; ++imprint) {
         const std::int32_t x = somewhere();
-        joined.decodeState(terrain.encodeState());
+        joined.decodeState(replica.encodeState());
         for (int i = 0; i < 6; ++i) {
             Step step{.epoch = 1, .number = ++number, .engaged = i == 0, .path = {}};
             if (i == 0) {
                 step.path = {{x, somewhere(), 11 * sand::kProbePerCell}};
             }
-            terrain.apply(step);
+            replica.apply(step);
             joined.apply(step);
-            ASSERT_EQ(joined.stateHash(), terrain.stateHash()) << "seed " << kSeed << ", step " << number;
+            ASSERT_EQ(joined.stateHash(), replica.stateHash()) << "seed " << kSeed << ", step " << number;
         }
     }
 }
-TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
-    Replica terrain(scene());
+TEST_F(TinReplica, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
+    Replica replica(scene());
     std::uint64_t number = 0;
-    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
+    replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
     for (int vertices = 0; number < 4000;) {  // until no vertex is left that could be removed
         const int before = vertices;
         for (int i = 0; i < 100; ++i) {
-            terrain.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
+            replica.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}});
         }
-        vertices = verticesOf(terrain);
-        if (terrain.settled() && vertices == before) {
+        vertices = verticesOf(replica);
+        if (replica.settled() && vertices == before) {
             break;
         }
     }
     ASSERT_LT(number, 4000U);
-    const int rested = verticesOf(terrain);
+    const int rested = verticesOf(replica);
     Replica joined(scene());  // the coarsening of `joined` has not examined any vertex yet
-    joined.decodeState(terrain.encodeState());
-    sand::Tuning softer = terrain.rules().tuning;
+    joined.decodeState(replica.encodeState());
+    sand::Tuning softer = replica.rules().tuning;
     softer.threshold /= 4;
     softer.startThreshold /= 4;
     for (int i = 0; i < 300; ++i) {
@@ -80,16 +80,16 @@ TEST_F(TinTerrain, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
                         .engaged = false,
                         .path = {},
                         .edit = i == 0 ? Edit::tuned(softer) : Edit(Edit::none)};
-        terrain.apply(step);
+        replica.apply(step);
         joined.apply(step);
-        ASSERT_EQ(joined.stateHash(), terrain.stateHash()) << "step " << number;
+        ASSERT_EQ(joined.stateHash(), replica.stateHash()) << "step " << number;
     }
-    EXPECT_LT(verticesOf(terrain), rested) << "flat sand needs fewer vertices";
+    EXPECT_LT(verticesOf(replica), rested) << "flat sand needs fewer vertices";
 }
 
-TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
+TEST_F(TinReplica, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     const scene::Scene start = scene();
-    Replica terrain(start), fresh(start);
+    Replica replica(start), fresh(start);
     for (std::uint64_t number = 1; number <= 160; ++number) {
         // The tool is held still for nine steps, in which the sand comes to rest. Then it is pressed a little farther
         // on.
@@ -98,17 +98,17 @@ TEST_F(TinTerrain, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
                         .number = number,
                         .engaged = true,
                         .path = {{3000 + 600 * place, 8000 + 150 * (place % 3), 2500 + 40 * (place % 5)}}};
-        fresh.decodeState(terrain.encodeState());
+        fresh.decodeState(replica.encodeState());
         fresh.apply(step);
-        terrain.apply(step);
-        ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << "step " << number;
+        replica.apply(step);
+        ASSERT_EQ(fresh.stateHash(), replica.stateHash()) << "step " << number;
     }
 }
 
 // A flat tool comes down exactly to the height of one vertex of a slope at rest, and takes no sand. This vertex now
 // leans on the tool. A vertex that leans may only make its triangles flatter, also where the sand beside it lies beyond
 // an obtuse angle. So the slope stays at rest.
-TEST_F(TinTerrain, NoSandSlidesBecauseItLeansOnAToolWhichHasMovedNone) {
+TEST_F(TinReplica, NoSandSlidesBecauseItLeansOnAToolWhichHasMovedNone) {
     constexpr int kPoints = 60, kRise = 9;  // kRise / 16: slopes of 0.56 under a talus of 0.67
     std::mt19937 random(3);
     std::ofstream survey(folder_ / "survey.csv");
@@ -126,34 +126,34 @@ TEST_F(TinTerrain, NoSandSlidesBecauseItLeansOnAToolWhichHasMovedNone) {
                                           << "\n[material]\ntalus_deg = 34\n[tool]\nshape = \"circle\"\nradius = 0.5\n";
     const scene::Scene scene = scene::loadScene(folder_ / "slope.toml");
     int slid = 0;
-    for (sand::ProbePoint at : places) {
-        at.z += scene.rules.tuning.tool.radius;
-        Replica terrain(scene), fresh(scene);
-        terrain.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
-        ASSERT_TRUE(terrain.settled());
-        fresh.decodeState(terrain.encodeState());
-        for (Replica* one : {&terrain, &fresh}) {
-            one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {at}});
+    for (sand::ProbePoint probe : places) {
+        probe.z += scene.rules.tuning.tool.radius;
+        Replica replica(scene), fresh(scene);
+        replica.apply({.epoch = 1, .number = 1, .engaged = false, .path = {}});
+        ASSERT_TRUE(replica.settled());
+        fresh.decodeState(replica.encodeState());
+        for (Replica* one : {&replica, &fresh}) {
+            one->apply({.epoch = 1, .number = 2, .engaged = true, .path = {probe}});
         }
-        ASSERT_EQ(fresh.stateHash(), terrain.stateHash()) << at.x << ", " << at.y;
-        slid += terrain.settled() ? 0 : 1;
+        ASSERT_EQ(fresh.stateHash(), replica.stateHash()) << probe.x << ", " << probe.y;
+        slid += replica.settled() ? 0 : 1;
     }
     EXPECT_EQ(slid, 0);
 }
 
-TEST_F(TinTerrain, ComesToRestAndThenCostsNoChange) {
-    Replica terrain(scene());
+TEST_F(TinReplica, ComesToRestAndThenCostsNoChange) {
+    Replica replica(scene());
     std::uint64_t number = 0;
-    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
-    while (number < 4000 && !terrain.settled()) {
-        terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
+    replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
+    while (number < 4000 && !replica.settled()) {
+        replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
     }
-    ASSERT_TRUE(terrain.settled()) << "a tool that is held still must not pump sand without end";
-    (void)terrain.takeChange();
-    const auto held = terrain.copySand()->encode();
-    terrain.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
-    EXPECT_EQ(terrain.copySand()->encode(), held);
-    const sand::SurfaceChange change = terrain.takeChange();
+    ASSERT_TRUE(replica.settled()) << "a tool that is held still must not pump sand without end";
+    (void)replica.takeChange();
+    const auto held = replica.copySand()->encode();
+    replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {}});
+    EXPECT_EQ(replica.copySand()->encode(), held);
+    const sand::SurfaceChange change = replica.takeChange();
     EXPECT_FALSE(change.whole);
     const auto& parts = std::get<sand::TinChange>(change.parts);
     EXPECT_TRUE(parts.triangles.empty() && parts.vertices.empty());

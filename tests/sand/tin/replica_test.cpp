@@ -10,7 +10,7 @@
 #include "base/float_environment.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "tests/sand/tin/same_session.hpp"
-#include "tests/sand/tin/tin_terrain.hpp"
+#include "tests/sand/tin/tin_replica.hpp"
 #include "tests/support/other_floats.hpp"
 
 namespace {
@@ -19,9 +19,9 @@ using sand::Edit;
 using sand::Replica;
 using sand::Step;
 using tin_samples::session;
-using tin_samples::TinTerrain;
+using tin_samples::TinReplica;
 
-TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
+TEST_F(TinReplica, ASessionIsTheSameTwiceAndFromItsMiddle) {
     const scene::Scene start = scene();
     ASSERT_NE(start.tin, nullptr);
     ASSERT_LT(start.tin->places.size(), 64U * 64U / 2);
@@ -29,48 +29,48 @@ TEST_F(TinTerrain, ASessionIsTheSameTwiceAndFromItsMiddle) {
 }
 
 // A copy computes the heights of all vertices again from volumes and areas.
-TEST_F(TinTerrain, ACopyIsTheSameAlthoughItsCallerRoundsUp) {
-    const Replica terrain(scene());
-    const auto heightsOf = [](const Replica& replica) { return samples::tinOf(replica).heights; };
+TEST_F(TinReplica, ACopyIsTheSameAlthoughItsCallerRoundsUp) {
+    const Replica replica(scene());
+    const auto heightsOf = [](const Replica& one) { return samples::tinOf(one).heights; };
     const test::OtherFloats other;
-    const Replica copy(terrain);  // NOLINT(performance-unnecessary-copy-initialization): the copy is tested
+    const Replica copy(replica);  // NOLINT(performance-unnecessary-copy-initialization): the copy is tested
     EXPECT_EQ(base::unusualFloats(), "");
-    EXPECT_EQ(heightsOf(copy), heightsOf(terrain));
+    EXPECT_EQ(heightsOf(copy), heightsOf(replica));
 }
 
-TEST_F(TinTerrain, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
+TEST_F(TinReplica, OverAnOpenRimASessionIsTheSameTwiceAndCountsWhatFalls) {
     const scene::Scene start = scene("max_error = 0.01\n", "", "rim = \"open\"\n");
     // After each step, volume and outflow must add up to the first volume.
     tin_samples::expectSameSession(start, scene::Scene::decode(start.encode()), session(7, 120), 37);
-    Replica terrain(start);
+    Replica replica(start);
     for (const Step& step : session(7, 120)) {
-        const std::int64_t before = terrain.outflow();
-        terrain.apply(step);
+        const std::int64_t before = replica.outflow();
+        replica.apply(step);
         if (step.edit.kind == Edit::none) {
-            EXPECT_GE(terrain.outflow(), before) << "step " << step.number;
+            EXPECT_GE(replica.outflow(), before) << "step " << step.number;
         }
     }
-    EXPECT_GT(terrain.outflow(), terrain.volume() / 100);
-    terrain.apply({.epoch = 1, .number = 121, .engaged = false, .path = {}, .edit = Edit::reset});
-    EXPECT_EQ(terrain.outflow(), 0);
-    EXPECT_EQ(terrain.copySand()->encode(), Replica(start).copySand()->encode());
+    EXPECT_GT(replica.outflow(), replica.volume() / 100);
+    replica.apply({.epoch = 1, .number = 121, .engaged = false, .path = {}, .edit = Edit::reset});
+    EXPECT_EQ(replica.outflow(), 0);
+    EXPECT_EQ(replica.copySand()->encode(), Replica(start).copySand()->encode());
 }
 
-TEST_F(TinTerrain, OverAnOpenRimSandFallsBeforeTheSessionWhereTheSceneSettles) {
+TEST_F(TinReplica, OverAnOpenRimSandFallsBeforeTheSessionWhereTheSceneSettles) {
     const scene::Scene settled = scene("max_error = 0.01\n", "settle = true\n", "rim = \"open\"\n");
-    Replica terrain(settled);
-    EXPECT_EQ(terrain.outflow(), 0) << "the outflow must not count sand that fell before the session";
-    EXPECT_LT(terrain.volume(), Replica(scene("max_error = 0.01\n", "", "rim = \"open\"\n")).volume());
+    Replica replica(settled);
+    EXPECT_EQ(replica.outflow(), 0) << "the outflow must not count sand that fell before the session";
+    EXPECT_LT(replica.volume(), Replica(scene("max_error = 0.01\n", "", "rim = \"open\"\n")).volume());
     for (std::uint64_t number = 1; number <= 20; ++number) {
-        terrain.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
+        replica.apply({.epoch = 1, .number = number, .engaged = false, .path = {}});
     }
     // The start rounds heights to whole units. The sand that this adds, half a unit of height at most, may fall.
-    EXPECT_LE(terrain.outflow(), std::int64_t{6} * 64 * 64 * 65536 / 2);
+    EXPECT_LE(replica.outflow(), std::int64_t{6} * 64 * 64 * 65536 / 2);
 }
 
 // docs/terrain.md has these figures. The volume of the sand is exact. Samples are not, because the surface bends
 // between them. Their error falls with the square of their distance.
-TEST_F(TinTerrain, CutAndFillDifferByWhatSamplesMiss) {
+TEST_F(TinReplica, CutAndFillDifferByWhatSamplesMiss) {
     const Replica before(scene());
     Replica after(scene());
     for (Step step : session(7, 120)) {
@@ -95,7 +95,7 @@ TEST_F(TinTerrain, CutAndFillDifferByWhatSamplesMiss) {
     EXPECT_NEAR(fine, 0.00006, 0.00001);
 }
 
-TEST_F(TinTerrain, TravelsWholeWithItsScene) {
+TEST_F(TinReplica, TravelsWholeWithItsScene) {
     const scene::Scene start = scene("max_error = 0.02\nspacing = 0.05\nkeep_constraints = true\n");
     const scene::Scene read = scene::Scene::decode(start.encode());
     ASSERT_NE(read.tin, nullptr);
@@ -106,7 +106,7 @@ TEST_F(TinTerrain, TravelsWholeWithItsScene) {
     EXPECT_EQ(read.referenceHeight(), start.referenceHeight());
 }
 
-TEST_F(TinTerrain, AStartAnswersForItsVerticesAndItsNominalCells) {
+TEST_F(TinReplica, AStartAnswersForItsVerticesAndItsNominalCells) {
     const scene::Scene start = scene();
     EXPECT_EQ(start.volume(), Replica(start).volume());
     const std::int64_t vertices = static_cast<std::int64_t>(start.tin->places.size());
@@ -121,57 +121,57 @@ TEST_F(TinTerrain, AStartAnswersForItsVerticesAndItsNominalCells) {
     EXPECT_THROW((void)start.data(), std::logic_error);
 }
 
-TEST_F(TinTerrain, ResetUndoAndLoadPutTheSandBack) {
+TEST_F(TinReplica, ResetUndoAndLoadPutTheSandBack) {
     const scene::Scene start = scene();
-    Replica terrain(start);
-    const std::int64_t volume = terrain.volume();
-    const auto untouched = terrain.surface().valuesOf(0);
-    const base::Bytes saved = terrain.copySand()->encode();
+    Replica replica(start);
+    const std::int64_t volume = replica.volume();
+    const auto untouched = replica.surface().valuesOf(0);
+    const base::Bytes saved = replica.copySand()->encode();
     for (const Step& step : session(3, 20)) {
-        terrain.apply(step);
+        replica.apply(step);
     }
-    EXPECT_NE(terrain.surface().valuesOf(0), untouched);
-    terrain.apply({.epoch = 1, .number = 21, .engaged = false, .path = {}, .edit = Edit::reset});
-    EXPECT_EQ(terrain.surface().valuesOf(0), untouched);
-    EXPECT_EQ(terrain.copySand()->encode(), saved);
-    EXPECT_EQ(terrain.volume(), volume);
-    terrain.apply({.epoch = 1, .number = 22, .engaged = true, .path = {{8000, 8000, 2000}}});
-    ASSERT_NE(terrain.copySand()->encode(), saved);
-    terrain.apply({.epoch = 1, .number = 23, .engaged = false, .path = {}, .edit = Edit::undo});
-    EXPECT_EQ(terrain.copySand()->encode(), saved);
-    terrain.apply({.epoch = 1, .number = 24, .engaged = true, .path = {{8000, 8000, 2000}}});
-    terrain.apply({.epoch = 1, .number = 25, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
-    EXPECT_EQ(terrain.copySand()->encode(), saved);
+    EXPECT_NE(replica.surface().valuesOf(0), untouched);
+    replica.apply({.epoch = 1, .number = 21, .engaged = false, .path = {}, .edit = Edit::reset});
+    EXPECT_EQ(replica.surface().valuesOf(0), untouched);
+    EXPECT_EQ(replica.copySand()->encode(), saved);
+    EXPECT_EQ(replica.volume(), volume);
+    replica.apply({.epoch = 1, .number = 22, .engaged = true, .path = {{8000, 8000, 2000}}});
+    ASSERT_NE(replica.copySand()->encode(), saved);
+    replica.apply({.epoch = 1, .number = 23, .engaged = false, .path = {}, .edit = Edit::undo});
+    EXPECT_EQ(replica.copySand()->encode(), saved);
+    replica.apply({.epoch = 1, .number = 24, .engaged = true, .path = {{8000, 8000, 2000}}});
+    replica.apply({.epoch = 1, .number = 25, .engaged = false, .path = {}, .edit = Edit::loaded(saved)});
+    EXPECT_EQ(replica.copySand()->encode(), saved);
 }
 
 // A slide would hide a vertex that the tool has changed and that was not marked for the undo.
-TEST_F(TinTerrain, AnUndoRestoresSandThatDoesNotSlide) {
+TEST_F(TinReplica, AnUndoRestoresSandThatDoesNotSlide) {
     scene::Scene start = scene();
     start.rules.tuning.threshold = start.rules.tuning.startThreshold = sand::kLargestThreshold;
-    Replica terrain(start);
-    const auto stroke = [&terrain](std::int32_t x) {
+    Replica replica(start);
+    const auto stroke = [&replica](std::int32_t x) {
         for (std::int32_t y = 4000; y <= 12000; y += 1000) {
-            terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{x, y, 2000}}});
+            replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = true, .path = {{x, y, 2000}}});
         }
-        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}});
+        replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = false, .path = {}});
     };
     stroke(5000);
-    const base::Bytes first = terrain.copySand()->encode();
+    const base::Bytes first = replica.copySand()->encode();
     stroke(5600);
-    ASSERT_NE(terrain.copySand()->encode(), first);
-    terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
-    EXPECT_EQ(terrain.copySand()->encode(), first);
+    ASSERT_NE(replica.copySand()->encode(), first);
+    replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
+    EXPECT_EQ(replica.copySand()->encode(), first);
 }
 
-TEST_F(TinTerrain, AnUndoRestoresTheConstraintsOfEarlierStrokes) {
-    Replica terrain(scene("max_error = 0.01\nkeep_constraints = true\n"));
-    const auto stroke = [&terrain](std::int32_t x) {
-        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = true, .path = {{x, 8000, 2000}}});
-        terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}});
+TEST_F(TinReplica, AnUndoRestoresTheConstraintsOfEarlierStrokes) {
+    Replica replica(scene("max_error = 0.01\nkeep_constraints = true\n"));
+    const auto stroke = [&replica](std::int32_t x) {
+        replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = true, .path = {{x, 8000, 2000}}});
+        replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = false, .path = {}});
     };
-    const auto constraints = [&terrain] {
+    const auto constraints = [&replica] {
         int sides = 0;
-        for (const sand::tin::Triangle& triangle : samples::tinOf(terrain).triangles.triangles) {
+        for (const sand::tin::Triangle& triangle : samples::tinOf(replica).triangles.triangles) {
             for (std::size_t k = 0; k < 3; ++k) {
                 sides += triangle.alive() && triangle.neighbour[k] >= 0 && triangle.constrained[k] ? 1 : 0;
             }
@@ -179,41 +179,41 @@ TEST_F(TinTerrain, AnUndoRestoresTheConstraintsOfEarlierStrokes) {
         return sides;
     };
     stroke(4000);
-    const base::Bytes first = terrain.copySand()->encode();
+    const base::Bytes first = replica.copySand()->encode();
     const int sides = constraints();
     ASSERT_GT(sides, 0);
     stroke(12000);
     ASSERT_GT(constraints(), sides);
-    terrain.apply({.epoch = 1, .number = terrain.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
+    replica.apply({.epoch = 1, .number = replica.stepNumber() + 1, .engaged = false, .path = {}, .edit = Edit::undo});
     EXPECT_EQ(constraints(), sides);
-    EXPECT_EQ(terrain.copySand()->encode(), first);
+    EXPECT_EQ(replica.copySand()->encode(), first);
 }
 
-TEST_F(TinTerrain, AFlippedBitShowsInTheNextAudit) {
-    Replica terrain(scene());
-    const std::uint64_t right = terrain.stateHash();
-    terrain.corrupt(40, 13, 3);
-    EXPECT_EQ(terrain.stateHash(), right) << "corrupt() must not update the hash";
-    terrain.audit(terrain.hashTiles().tileCount());
-    EXPECT_NE(terrain.stateHash(), right);
+TEST_F(TinReplica, AFlippedBitShowsInTheNextAudit) {
+    Replica replica(scene());
+    const std::uint64_t right = replica.stateHash();
+    replica.corrupt(40, 13, 3);
+    EXPECT_EQ(replica.stateHash(), right) << "corrupt() must not update the hash";
+    replica.audit(replica.hashTiles().tileCount());
+    EXPECT_NE(replica.stateHash(), right);
 }
 
-TEST_F(TinTerrain, ChangesNameAllThatChanged) {
-    Replica terrain(scene());
-    ASSERT_TRUE(terrain.takeChange().whole);
-    auto triangles = samples::tinOf(terrain).triangles;
-    auto heights = samples::tinOf(terrain).heights;
+TEST_F(TinReplica, ChangesNameAllThatChanged) {
+    Replica replica(scene());
+    ASSERT_TRUE(replica.takeChange().whole);
+    auto triangles = samples::tinOf(replica).triangles;
+    auto heights = samples::tinOf(replica).heights;
     for (const Step& step : session(11, 40)) {
         if (step.edit.any()) {
             continue;
         }
         Step next = step;
-        next.number = terrain.stepNumber() + 1;
-        terrain.apply(next);
-        const sand::SurfaceChange change = terrain.takeChange();
+        next.number = replica.stepNumber() + 1;
+        replica.apply(next);
+        const sand::SurfaceChange change = replica.takeChange();
         ASSERT_FALSE(change.whole);
         const auto& [changedTriangles, changedVertices] = std::get<sand::TinChange>(change.parts);
-        const sand::tin::Triangles& now = samples::tinOf(terrain).triangles;
+        const sand::tin::Triangles& now = samples::tinOf(replica).triangles;
         for (std::size_t slot = 0; slot < now.triangles.size(); ++slot) {
             const bool same = slot < triangles.triangles.size() &&
                               triangles.triangles[slot].corner == now.triangles[slot].corner &&
@@ -225,13 +225,13 @@ TEST_F(TinTerrain, ChangesNameAllThatChanged) {
             const bool alive = now.alive(static_cast<sand::tin::Vertex>(vertex));
             const bool same = vertex < heights.size() &&
                               alive == triangles.alive(static_cast<sand::tin::Vertex>(vertex)) &&
-                              (!alive || (heights[vertex] == samples::tinOf(terrain).heights[vertex] &&
+                              (!alive || (heights[vertex] == samples::tinOf(replica).heights[vertex] &&
                                           triangles.places[vertex] == now.places[vertex]));
             ASSERT_TRUE(same || std::ranges::binary_search(changedVertices, static_cast<std::int32_t>(vertex)))
                 << "step " << next.number << ", vertex " << vertex;
         }
         triangles = now;
-        heights = samples::tinOf(terrain).heights;
+        heights = samples::tinOf(replica).heights;
     }
 }
 }  // namespace

@@ -112,7 +112,7 @@ TEST(TinSettle, OnlyWhatLiesAroundMovesAndNothingElse) {
     EXPECT_TRUE(settled.atRest);
     ASSERT_FALSE(settled.moved.empty());
     for (const Vertex vertex : settled.moved) {
-        const Place& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
+        const LatticePoint& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
         EXPECT_LE(std::hypot(place.x / 256.0 - 20, place.y / 256.0 - 20), 7);
     }
 }

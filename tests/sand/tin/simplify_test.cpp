@@ -11,7 +11,7 @@
 
 namespace {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::Raster;
 using sand::tin::Simplified;
 using sand::tin::simplify;
@@ -46,7 +46,7 @@ std::vector<double> errorsOf(const Simplified& tin, const Raster& raster) {
         if (std::isnan(raster.heights[i])) {
             continue;
         }
-        const auto found = sand::tin::locate(mesh.triangles(), raster.placeOf(i), sand::tin::kNobody);
+        const auto found = sand::tin::locate(mesh.triangles(), raster.placeOf(i), sand::tin::kNoNumber);
         const auto& triangle = mesh.triangles().triangles[static_cast<std::size_t>(found.triangle)];
         double sum = 0, area = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -90,7 +90,7 @@ TEST(Simplify, WithoutAnErrorItEndsWithEverySample) {
     const Simplified tin = simplify(kWidth, kDepth, rasterOf(heights), {0});
     EXPECT_LE(tin.maxError, 1e-15);
     EXPECT_LE(tin.places.size(), heights.size() + 4);
-    std::vector<Place> places = tin.places;
+    std::vector<LatticePoint> places = tin.places;
     std::sort(places.begin(), places.end());
     EXPECT_EQ(std::adjacent_find(places.begin(), places.end()), places.end());
 }
@@ -130,7 +130,7 @@ TEST(Simplify, SamplesWithoutDataCountForNothing) {
 
 TEST(Simplify, NeedsFewerPointsThanARegularGrid) {
     const std::vector<double> heights = dunes();
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     std::vector<double> chosen;
     for (std::size_t y = 0; y < kRows; y += 3) {
         for (std::size_t x = 0; x < kColumns; x += 3) {

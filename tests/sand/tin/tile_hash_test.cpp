@@ -13,8 +13,8 @@
 namespace tin_hash {
 namespace {
 
+using sand::tin::LatticePoint;
 using sand::tin::Mesh;
-using sand::tin::Place;
 using sand::tin::TileHash;
 using sand::tin::TinState;
 using sand::tin::Vertex;
@@ -26,7 +26,7 @@ constexpr std::int32_t kSide = 2560;  // [probe unit]
 std::uint64_t hashOf(const VertexSand& layer, const TinState& state = {}) { return TileHash(layer).update(state); }
 
 /// Returns sand with further vertices at `places`, and with the volume 1000 in vertex 4, the first of them.
-VertexSand layerWith(const std::vector<Place>& places) {
+VertexSand layerWith(const std::vector<LatticePoint>& places) {
     Mesh mesh(kSide, kSide);
     static_cast<void>(mesh.insert(places));
     VertexSand layer(std::move(mesh));
@@ -77,8 +77,8 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
     const VertexSand layer = layerWith({{1000, 1200}});
     const auto with = [&layer](const std::function<void(TinState&)>& change) {
         TinState state;
-        state.imprint.stand.emplace();
-        state.imprint.stand->tool = {sand::ToolKind::ellipse, 500, 200};
+        state.imprint.pose.emplace();
+        state.imprint.pose->tool = {sand::ToolKind::ellipse, 500, 200};
         state.imprint.points = {{4, {1000, 1200}}};
         state.imprint.edges = {{0, 4}};
         change(state);
@@ -89,14 +89,14 @@ TEST(TinHash, TellsOutflowAndCoarseningAndTheToolsImprint) {
     hashes.add("an imprint", with([](TinState&) {}));
     hashes.add("outflow", with([](TinState& state) { state.outflow = 1; }));
     hashes.add("the next to go", with([](TinState& state) { state.nextToGo = 1; }));
-    hashes.add("x", with([](TinState& state) { state.imprint.stand->at.x = 1; }));
-    hashes.add("y", with([](TinState& state) { state.imprint.stand->at.y = 1; }));
-    hashes.add("z", with([](TinState& state) { state.imprint.stand->at.z = 1; }));
-    hashes.add("kind", with([](TinState& state) { state.imprint.stand->tool.kind = sand::ToolKind::footprint; }));
-    hashes.add("radius", with([](TinState& state) { state.imprint.stand->tool.radius = 501; }));
-    hashes.add("width", with([](TinState& state) { state.imprint.stand->tool.halfWidth = 201; }));
-    hashes.add("heading", with([](TinState& state) { state.imprint.stand->tool.heading = *sand::headingOf(1); }));
-    hashes.add("mirrored", with([](TinState& state) { state.imprint.stand->tool.heading.mirrored = true; }));
+    hashes.add("x", with([](TinState& state) { state.imprint.pose->probe.x = 1; }));
+    hashes.add("y", with([](TinState& state) { state.imprint.pose->probe.y = 1; }));
+    hashes.add("z", with([](TinState& state) { state.imprint.pose->probe.z = 1; }));
+    hashes.add("kind", with([](TinState& state) { state.imprint.pose->tool.kind = sand::ToolKind::footprint; }));
+    hashes.add("radius", with([](TinState& state) { state.imprint.pose->tool.radius = 501; }));
+    hashes.add("width", with([](TinState& state) { state.imprint.pose->tool.halfWidth = 201; }));
+    hashes.add("heading", with([](TinState& state) { state.imprint.pose->tool.heading = *sand::headingOf(1); }));
+    hashes.add("mirrored", with([](TinState& state) { state.imprint.pose->tool.heading.mirrored = true; }));
     hashes.add("no point", with([](TinState& state) { state.imprint.points.clear(); }));
     hashes.add("another point", with([](TinState& state) { state.imprint.points[0].vertex = 3; }));
     hashes.add("a point elsewhere", with([](TinState& state) { state.imprint.points[0].place.y = 1201; }));

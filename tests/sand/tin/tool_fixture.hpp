@@ -10,7 +10,7 @@
 
 namespace tin_samples {
 
-using sand::tin::Place;
+using sand::tin::LatticePoint;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
 
@@ -19,7 +19,7 @@ using sand::tin::VertexSand;
 inline VertexSand levelLayer(int columns, int rows, std::int32_t spacing) {
     const std::int32_t width = columns * sand::kProbePerCell, depth = rows * sand::kProbePerCell;
     sand::tin::Mesh mesh(width, depth);
-    std::vector<Place> places;
+    std::vector<LatticePoint> places;
     for (std::int32_t y = spacing / 2; y <= depth; y += spacing) {
         for (std::int32_t x = spacing / 2; x <= width; x += spacing) {
             places.push_back({x, y});
@@ -39,7 +39,7 @@ inline base::Bytes bytesOf(const VertexSand& layer) {
 
 /// Returns the height of the linear surface [unit]. The search begins at triangle `near`, and sets `near` to the
 /// triangle that it finds.
-inline double heightAt(const VertexSand& layer, const Place& place, std::int32_t& near) {
+inline double heightAt(const VertexSand& layer, const LatticePoint& place, std::int32_t& near) {
     const auto& mesh = layer.triangles();
     const auto found = sand::tin::locate(mesh, place, near);
     near = found.triangle;
@@ -52,8 +52,8 @@ inline double heightAt(const VertexSand& layer, const Place& place, std::int32_t
     }
     return sum / weights;
 }
-inline double heightAt(const VertexSand& layer, const Place& place) {
-    std::int32_t near = sand::tin::kNobody;
+inline double heightAt(const VertexSand& layer, const LatticePoint& place) {
+    std::int32_t near = sand::tin::kNoNumber;
     return heightAt(layer, place, near);
 }
 

@@ -74,7 +74,7 @@ TEST(VertexSand, KeepsAnInclinedPlaneWithinRounding) {
     std::mt19937 random(4);
     VertexSand layer = layerOf(3000, 2000, 40, random);
     const auto plane = [&layer](Vertex vertex) {
-        const Place& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
+        const LatticePoint& place = layer.triangles().places[static_cast<std::size_t>(vertex)];
         return 300 * place.x - 700 * place.y + 12345;
     };
     for (const Vertex vertex : livingVertices(layer.mesh())) {

@@ -150,8 +150,9 @@ TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
         "t.tif: has no coordinate system, and cells of 1 x 1 at (0, 0), as if it had no georeferencing; slopes are "
         "wrong if its cells have another size: gdal_edit.py -a_ullr WEST NORTH EAST SOUTH t.tif";
     Raster raster{.columns = 3, .rows = 2, .heights = {1, 2, 3, 4, 5, 6}, .epsg = 0};
-    using Place = std::array<double, 6>;
-    for (const Place& place : {Place{0, 1, 0, 0, 0, 1}, Place{0, 1, 0, 0, 0, -1}, Place{0, 1, 0, 2, 0, -1}}) {
+    using Transform = std::array<double, 6>;
+    for (const Transform& place :
+         {Transform{0, 1, 0, 0, 0, 1}, Transform{0, 1, 0, 0, 0, -1}, Transform{0, 1, 0, 2, 0, -1}}) {
         raster.place = place;
         writeRaster("t.tif", raster);
         EXPECT_EQ(warningsOf(terrainOf("dem", "t.tif")), Lines{warning}) << place[3] << ' ' << place[5];
@@ -162,12 +163,12 @@ TEST_F(NoData, ARasterWithoutGeoreferencingIsWarnedOf) {
     EXPECT_NE(ran.output.find("sandwall-relax: warning: " + path("t.tif") + ": has no coordinate system"),
               std::string::npos)
         << ran.output;
-    for (const Place& place : {Place{0, 2, 0, 0, 0, -2}, Place{7, 1, 0, 0, 0, -1}}) {
+    for (const Transform& place : {Transform{0, 2, 0, 0, 0, -2}, Transform{7, 1, 0, 0, 0, -1}}) {
         raster.place = place;
         writeRaster("t.tif", raster);
         EXPECT_EQ(warningsOf(terrainOf("dem", "t.tif")), Lines{}) << "a place that a user has chosen";
     }
-    raster.place = Place{0, 1, 0, 2, 0, -1};
+    raster.place = Transform{0, 1, 0, 2, 0, -1};
     raster.epsg = 32633;
     writeRaster("t.tif", raster);
     EXPECT_EQ(warningsOf(terrainOf("dem", "t.tif")), Lines{}) << "a coordinate system";

@@ -26,7 +26,7 @@ constexpr int kRows = 16;
 /// A session on a DEM of hills with a hole, and the output of sandwall-replay for its journal.
 class Results : public Import {
 protected:
-    Results() : terrain_(samples::flatScene(1, 1)) {}
+    Results() : replica_(samples::flatScene(1, 1)) {}
 
     void SetUp() override {
         Import::SetUp();
@@ -38,15 +38,15 @@ protected:
         writeRaster("t.tif", raster);
         scene_ = scene::loadScene(write(
             "s.toml", "[terrain]\nkind = \"dem\"\nfile = \"t.tif\"\ndatum = 100\n[material]\n[tool]\nradius = 5\n"));
-        terrain_ = sand::Replica(scene_);
+        replica_ = sand::Replica(scene_);
         std::mt19937 random(71);
         master::JournalWriter writer(path("s.journal"), scene_, "test");
         for (std::uint64_t number = 1; number <= 8; ++number) {
             const sand::Step step = samples::randomStep(number, scene_.rules, random);
-            writer.append({number, terrain_.stateHash(), {step}});
-            terrain_.apply(step);
+            writer.append({number, replica_.stateHash(), {step}});
+            replica_.apply(step);
         }
-        writer.finish(terrain_.stepNumber(), terrain_.stateHash());
+        writer.finish(replica_.stepNumber(), replica_.stateHash());
     }
     [[nodiscard]] support::Ran replay(const std::string& options) const {
         return support::runProgram("sandwall-replay", path("s.journal") + " " + options);
@@ -57,12 +57,12 @@ protected:
     }
     /// Returns how much the sand of a cell has risen [scene unit].
     [[nodiscard]] double risen(int column, int row) const {
-        return (samples::fieldOf(terrain_).height(column, row) - scene_.terrain.height(column, row)) *
+        return (samples::fieldOf(replica_).height(column, row) - scene_.terrain.height(column, row)) *
                scene_.terrain.unit();
     }
 
     scene::Scene scene_;
-    sand::Replica terrain_;
+    sand::Replica replica_;
 };
 
 TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
@@ -80,7 +80,7 @@ TEST_F(Results, HeightsGoBackWhereTheTerrainCameFrom) {
                 continue;
             }
             ASSERT_NEAR(grid.at(column, row),
-                        100 + samples::fieldOf(terrain_).height(column, row) * samples::fieldOf(terrain_).unit(), 1e-6);
+                        100 + samples::fieldOf(replica_).height(column, row) * samples::fieldOf(replica_).unit(), 1e-6);
         }
     }
 }
@@ -112,7 +112,7 @@ TEST_F(Results, CutAndFillAreExact) {
     std::int64_t fill = 0;
     for (int row = 0; row < kRows; ++row) {
         for (int column = 0; column < kColumns; ++column) {
-            const auto change = samples::fieldOf(terrain_).height(column, row) - scene_.terrain.height(column, row);
+            const auto change = samples::fieldOf(replica_).height(column, row) - scene_.terrain.height(column, row);
             cut += std::max(-change, 0);
             fill += std::max(change, 0);
         }
@@ -137,7 +137,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
         vertices, triangles);
     ASSERT_EQ(ply.substr(0, header.size()), header);
     ASSERT_EQ(ply.size(), header.size() + vertices * 24 + triangles * 13);
-    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(terrain_), scene_);
+    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(replica_), scene_);
     std::vector<std::array<double, 3>> written(vertices);
     std::memcpy(written.data(), ply.data() + header.size(), vertices * 24);
     EXPECT_EQ(written, mesh.vertices);
@@ -160,7 +160,7 @@ TEST_F(Results, AMeshHasTheSurfaceOfTheCellsWithData) {
 
 TEST_F(Results, AMeshAsTextIsTheSameMesh) {
     ASSERT_EQ(replay("--mesh " + path("m.obj")).status, 0);
-    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(terrain_), scene_);
+    const scene::Mesh mesh = scene::meshOf(samples::fieldOf(replica_), scene_);
     std::istringstream stream(bytes("m.obj"));
     for (const auto& vertex : mesh.vertices) {
         std::string letter;
@@ -190,9 +190,9 @@ TEST_F(Import, PointsGoBackWhereTheyWereSurveyed) {
           "500000,5200000,1200.5\n500040,5200000,1201\n500000,5200030,1202\n500040,5200030,1203\n"
           "500021.25,5200011.5,1199\n");
     const scene::Scene scene = load("[terrain]\nkind = \"points\"\nfile = \"p.csv\"\ndatum = 1200\n[tin]\ncell = 1\n");
-    sand::Replica terrain(scene);
+    sand::Replica replica(scene);
     master::JournalWriter writer(path("s.journal"), scene, "test");
-    writer.finish(terrain.stepNumber(), terrain.stateHash());
+    writer.finish(replica.stepNumber(), replica.stateHash());
     const support::Ran ran = support::runProgram(
         "sandwall-replay", path("s.journal") + " --volumes --heights " + path("h.asc") + " --mesh " + path("m.obj"));
     ASSERT_EQ(ran.status, 0) << ran.output;

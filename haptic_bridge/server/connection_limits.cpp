@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "haptic_bridge/server/guest_limits.hpp"
+#include "haptic_bridge/server/connection_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -10,13 +10,13 @@ namespace {
 
 void refill(double& allowed, std::int64_t& countedNs, std::int64_t nowNs) {
     const double seconds = static_cast<double>(std::max<std::int64_t>(0, nowNs - countedNs)) * 1e-9;
-    allowed = std::min(GuestLimits::kBurst, allowed + seconds * GuestLimits::kPerSecond);
+    allowed = std::min(ConnectionLimits::kBurst, allowed + seconds * ConnectionLimits::kPerSecond);
     countedNs = nowNs;
 }
 
 }  // namespace
 
-boost::asio::ip::address guestOf(const boost::asio::ip::address& address) {
+boost::asio::ip::address countedAddress(const boost::asio::ip::address& address) {
     if (address.is_v4()) {
         return address;
     }
@@ -28,8 +28,8 @@ boost::asio::ip::address guestOf(const boost::asio::ip::address& address) {
     return boost::asio::ip::address_v6(bytes);
 }
 
-GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& from, std::int64_t nowNs) {
-    const auto address = guestOf(from);
+ConnectionLimits::Visits& ConnectionLimits::visitsOf(const boost::asio::ip::address& from, std::int64_t nowNs) {
+    const auto address = countedAddress(from);
     if (!visits_.contains(address) && visits_.size() >= kAddresses) {
         std::erase_if(visits_, [nowNs](const auto& entry) {
             Visits visits = entry.second;
@@ -43,7 +43,7 @@ GuestLimits::Visits& GuestLimits::visitsOf(const boost::asio::ip::address& from,
     return visits;
 }
 
-bool GuestLimits::mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
+bool ConnectionLimits::mayCome(const boost::asio::ip::address& address, std::int64_t nowNs) {
     Visits& visits = visitsOf(address, nowNs);
     if (visits.allowed < 1) {
         return false;
@@ -52,7 +52,7 @@ bool GuestLimits::mayCome(const boost::asio::ip::address& address, std::int64_t 
     return true;
 }
 
-void GuestLimits::refused(const boost::asio::ip::address& address, std::int64_t nowNs) {
+void ConnectionLimits::refused(const boost::asio::ip::address& address, std::int64_t nowNs) {
     Visits& visits = visitsOf(address, nowNs);
     visits.allowed = std::max(kDeepest, visits.allowed - kPenalty);
 }
@@ -61,19 +61,19 @@ std::optional<std::string> RefusalLog::add(RefusalCode code, const std::string& 
                                            std::int64_t nowNs) {
     count(code);
     std::pair key{address, code};
-    if (!said_.contains(key) && said_.size() >= kRemembered) {
-        std::erase_if(said_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
-        if (said_.size() >= kRemembered) {
+    if (!printed_.contains(key) && printed_.size() >= kRemembered) {
+        std::erase_if(printed_, [nowNs](const auto& entry) { return nowNs - entry.second.ns >= kQuietNs; });
+        if (printed_.size() >= kRemembered) {
             key = {"", code};
         }
     }
-    const auto [said, first] = said_.try_emplace(key, Said{nowNs, 0});
-    if (!first && nowNs - said->second.ns < kQuietNs) {
-        ++said->second.more;
+    const auto [printed, first] = printed_.try_emplace(key, Printed{nowNs, 0});
+    if (!first && nowNs - printed->second.ns < kQuietNs) {
+        ++printed->second.more;
         return std::nullopt;
     }
-    const std::uint64_t more = said->second.more;
-    said->second = {nowNs, 0};
+    const std::uint64_t more = printed->second.more;
+    printed->second = {nowNs, 0};
     return more == 0 ? line : fmt::format("{} (and {} more of this kind since the last such line)", line, more);
 }
 
@@ -85,7 +85,7 @@ void Gate::refused(RefusalCode code, const boost::asio::ip::address& address, co
     if (line.empty()) {
         refusals_.count(code);
     } else if (const auto text =
-                   refusals_.add(code, guestOf(address).to_string(), address.to_string() + ": " + line, nowNs)) {
+                   refusals_.add(code, countedAddress(address).to_string(), address.to_string() + ": " + line, nowNs)) {
         log_(*text);
     }
 }

@@ -14,11 +14,11 @@ namespace haptic_bridge {
 
 /// Returns the address by which unauthenticated connections are counted. This is an IPv4 address, also if it is mapped
 /// into IPv6, or the /64 network of an IPv6 address. One machine may use every address of such a network.
-[[nodiscard]] boost::asio::ip::address guestOf(const boost::asio::ip::address& address);
+[[nodiscard]] boost::asio::ip::address countedAddress(const boost::asio::ip::address& address);
 
-/// Limits how often connections may come from one address, as guestOf() returns it: kBurst at once, then kPerSecond. An
-/// address that was refused must wait longer. The caller passes the time.
-class GuestLimits {
+/// Limits how often connections may come from one address, as countedAddress() returns it: kBurst at once, then
+/// kPerSecond. An address that was refused must wait longer. The caller passes the time.
+class ConnectionLimits {
 public:
     static constexpr double kBurst = 16, kPerSecond = 8;
     static constexpr double kPenalty = 1;    // a refusal counts as this many further connections
@@ -54,16 +54,16 @@ public:
     [[nodiscard]] const RefusalCounts& counts() const { return counts_; }
 
 private:
-    struct Said {
+    struct Printed {
         std::int64_t ns = 0;
         std::uint64_t more = 0;
     };
     RefusalCounts counts_{};
-    std::map<std::pair<std::string, RefusalCode>, Said> said_;
+    std::map<std::pair<std::string, RefusalCode>, Printed> printed_;
 };
 
-/// Admits unauthenticated connections as often as GuestLimits allows, and logs refusals with the reason. `log` gets
-/// lines for the user.
+/// Admits unauthenticated connections as often as ConnectionLimits allows, and logs refusals with the reason. `log`
+/// gets lines for the user.
 class Gate {
 public:
     explicit Gate(std::function<void(const std::string&)> log) : log_(std::move(log)) {}
@@ -77,7 +77,7 @@ public:
 
 private:
     std::function<void(const std::string&)> log_;
-    GuestLimits limits_;
+    ConnectionLimits limits_;
     RefusalLog refusals_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits on unauthenticated connections: their number, their rate, and how often a refusal is printed.
-#include "haptic_bridge/server/guest_limits.hpp"
+#include "haptic_bridge/server/connection_limits.hpp"
 
 #include <memory>
 
@@ -12,18 +12,18 @@ namespace {
 using namespace haptic_bridge;
 using namespace test;
 
-TEST_F(LinkSecurityTest, ManyGuestsAtOnceDoNotTouchWhoIsLinked) {
+TEST_F(LinkSecurityTest, ManyConnectionsAtOnceDoNotTouchTheLink) {
     ServerProcess server(folder_, arguments({}));
     Client master(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(master, 10));
-    std::vector<std::unique_ptr<RawPeer>> guests;
-    guests.reserve(60);
+    std::vector<std::unique_ptr<RawPeer>> connections;
+    connections.reserve(60);
     for (int i = 0; i < 60; ++i) {
-        guests.push_back(std::make_unique<RawPeer>(server.port()));
+        connections.push_back(std::make_unique<RawPeer>(server.port()));
     }
     ASSERT_TRUE(wall.follow(master, 100)) << master.link().message;
-    guests.clear();
+    connections.clear();
     EXPECT_EQ(wall.divergences + wall.outOfOrder, 0);
     EXPECT_EQ(master.counters().reconnects, 0U);
     master.stop();
@@ -33,8 +33,8 @@ TEST_F(LinkSecurityTest, ManyGuestsAtOnceDoNotTouchWhoIsLinked) {
     EXPECT_TRUE(wall.follow(next, 120)) << next.link().message;
 }
 
-TEST(GuestLimits, HoldsBackWhoComesOftenAndNobodyElse) {
-    GuestLimits limits;
+TEST(ConnectionLimits, HoldsBackWhoComesOftenAndNobodyElse) {
+    ConnectionLimits limits;
     const auto often = boost::asio::ip::make_address("192.0.2.1"), other = boost::asio::ip::make_address("192.0.2.2");
     std::int64_t now = 1'000'000'000;
     int came = 0;
@@ -61,8 +61,8 @@ TEST(GuestLimits, HoldsBackWhoComesOftenAndNobodyElse) {
 /// Returns one of many addresses.
 boost::asio::ip::address stranger(unsigned number) { return boost::asio::ip::address_v4(0x0a000000U + number); }
 
-TEST(GuestLimits, AFullTableForgetsOnlyWhoHasNoDebt) {
-    GuestLimits limits;
+TEST(ConnectionLimits, AFullTableForgetsOnlyWhoHasNoDebt) {
+    ConnectionLimits limits;
     const auto debtor = boost::asio::ip::make_address("192.0.2.1");
     const auto connections = [&limits](const boost::asio::ip::address& address, std::int64_t now) {
         int came = 0;
@@ -74,7 +74,7 @@ TEST(GuestLimits, AFullTableForgetsOnlyWhoHasNoDebt) {
     for (int i = 0; i < 100; ++i) {
         limits.refused(debtor, 0);
     }
-    for (unsigned i = 0; i + 1 < GuestLimits::kAddresses; ++i) {
+    for (unsigned i = 0; i + 1 < ConnectionLimits::kAddresses; ++i) {
         ASSERT_TRUE(limits.mayCome(stranger(i), 0));
     }
     // The table is full, and every address in it has connected. All further ones share one count.
@@ -93,12 +93,12 @@ TEST(GuestLimits, AFullTableForgetsOnlyWhoHasNoDebt) {
     EXPECT_EQ(connections(debtor, 5 * kSecond), 16);
 }
 
-TEST(GuestLimits, TakeANetworkOfIpv6ForOneGuest) {
-    const auto of = [](const char* text) { return guestOf(boost::asio::ip::make_address(text)).to_string(); };
+TEST(ConnectionLimits, TakeANetworkOfIpv6ForOneAddress) {
+    const auto of = [](const char* text) { return countedAddress(boost::asio::ip::make_address(text)).to_string(); };
     EXPECT_EQ(of("192.0.2.1"), "192.0.2.1");
     EXPECT_EQ(of("::ffff:192.0.2.1"), "192.0.2.1");
     EXPECT_EQ(of("2001:db8:1:2:3:4:5:6"), "2001:db8:1:2::");
-    GuestLimits limits;
+    ConnectionLimits limits;
     int came = 0;
     for (int i = 0; i < 100; ++i) {
         came += limits.mayCome(boost::asio::ip::make_address("2001:db8::" + std::to_string(i)), 1) ? 1 : 0;

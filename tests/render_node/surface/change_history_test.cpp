@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render_node/surface/damage_history.hpp"
+#include "render_node/surface/change_history.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "render_node/grid/mesh.hpp"
 #include "render_node/surface/frustum.hpp"
 
-namespace damage {
+namespace history {
 namespace {
 
 /// Numbers of the changes that a part stands for.
@@ -23,7 +23,7 @@ struct Changes {
     }
 };
 
-using History = render_node::DamageHistory<Changes>;
+using History = render_node::ChangeHistory<Changes>;
 constexpr std::uint64_t kMost = History::kMostParts;
 
 std::set<std::uint64_t> changesSince(const History& history, std::uint64_t revision) {
@@ -44,7 +44,7 @@ std::set<std::uint64_t> numbers(std::uint64_t first, std::uint64_t last) {
 
 // A picture that was not drawn for long is drawn again wherever the sand has changed since. If the history has joined
 // what the picture lacks with older changes, these are drawn again too.
-TEST(DamageHistory, LosesNoChangeHoweverManyThereAre) {
+TEST(ChangeHistory, LosesNoChangeHoweverManyThereAre) {
     History history;
     for (std::uint64_t last = 1; last <= 2 * kMost + 50; ++last) {
         history.add(last, {{last}});
@@ -58,7 +58,7 @@ TEST(DamageHistory, LosesNoChangeHoweverManyThereAre) {
     }
 }
 
-TEST(DamageHistory, GivesAllPartsOfARevision) {
+TEST(ChangeHistory, GivesAllPartsOfARevision) {
     History history;
     for (std::uint64_t number = 1; number <= 3 * kMost; ++number) {
         history.add((number + 9) / 10, {{number}});  // ten changes in each revision
@@ -72,13 +72,13 @@ TEST(DamageHistory, GivesAllPartsOfARevision) {
         << "a joined part has the revision of its latest change";
 }
 
-TEST(DamageHistory, JoinsBoxesOfATin) {
+TEST(ChangeHistory, JoinsBoxesOfATin) {
     const render_node::Box both = around(render_node::Box{{1, 2, 3}, {4, 5, 6}}, {{0, 3, 2}, {3, 7, 8}});
     EXPECT_EQ(both.low, glm::dvec3(0, 2, 2));
     EXPECT_EQ(both.high, glm::dvec3(4, 7, 8));
 }
 
-TEST(DamageHistory, JoinsVerticesAndHeightsOfAGrid) {
+TEST(ChangeHistory, JoinsVerticesAndHeightsOfAGrid) {
     const render_node::ChangedVertices low{{10, 20, 30, 40}, {1, 2}}, high{{5, 25, 20, 60}, {1.5F, 3}};
     for (const render_node::ChangedVertices& both : {around(low, high), around(high, low)}) {
         EXPECT_EQ(both.vertices, (sand::CellRect{5, 20, 30, 60}));
@@ -88,4 +88,4 @@ TEST(DamageHistory, JoinsVerticesAndHeightsOfAGrid) {
 }
 
 }  // namespace
-}  // namespace damage
+}  // namespace history

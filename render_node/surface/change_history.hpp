@@ -14,7 +14,7 @@ namespace render_node {
 /// The list has a bounded length, because old entries are joined. A query for an old revision may return too large a
 /// part, but never too small a part.
 template <class Where>
-class DamageHistory {
+class ChangeHistory {
 public:
     struct Part {
         std::uint64_t revision;  // of the change; the latest one if parts were joined
