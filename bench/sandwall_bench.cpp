@@ -6,7 +6,7 @@
 #include "bench/session/latency.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace {
 

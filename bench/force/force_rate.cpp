@@ -9,7 +9,7 @@
 #include "sand/force/force_model.hpp"
 #include "sand/force/law.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace bench {
 namespace {

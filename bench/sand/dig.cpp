@@ -9,7 +9,7 @@
 #include "bench/timing.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace bench {
 namespace {

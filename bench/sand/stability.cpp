@@ -5,7 +5,7 @@
 
 #include "bench/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 

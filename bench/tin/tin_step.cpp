@@ -9,7 +9,7 @@
 #include "bench/timing.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/tin_piles.hpp"
 
 namespace bench {

@@ -26,7 +26,7 @@
 #include "scene/export/raster.hpp"
 #include "scene/export/results.hpp"
 #include "scene/import/raster_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace {
 

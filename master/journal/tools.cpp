@@ -17,7 +17,7 @@
 #include "sand/force/vec3.hpp"
 #include "scene/import/raster_memory.hpp"
 #include "scene/load/memory.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 namespace {

@@ -14,7 +14,7 @@
 #include "master/journal/saved_sand.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/described/faults.hpp"
 #include "tests/described/samples.hpp"
 #include "tests/described/types.hpp"

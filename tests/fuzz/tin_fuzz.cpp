@@ -5,7 +5,7 @@
 
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
 #include "tests/fuzz/tin_scene.hpp"

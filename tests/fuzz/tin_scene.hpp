@@ -6,7 +6,7 @@
 
 #include "sand/grid/dunes.hpp"
 #include "sand/tin/refine/start_maker.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace fuzz {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/render_node/wall_painter.hpp"
 
 namespace {

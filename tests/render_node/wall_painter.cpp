@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "pictures/stereo_packing.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_of.hpp"
 
 namespace sample {

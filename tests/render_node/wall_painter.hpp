@@ -11,7 +11,7 @@
 #include "render_node/overlay/test_pattern.hpp"
 #include "render_node/scene_painter.hpp"
 #include "render_node/stereo_composer.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 #include "walls/canvas.hpp"
 #include "walls/projection.hpp"

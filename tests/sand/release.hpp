@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 /// Sand that a tool holds back, and ways to release it.
 namespace release {

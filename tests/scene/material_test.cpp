@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 #include <gtest/gtest.h>
 

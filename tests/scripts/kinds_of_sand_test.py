@@ -143,7 +143,7 @@ class KindsOfSand(unittest.TestCase):
             "render_node/sand_box.cpp": "const auto& field = std::get<sand::GridData>(terrain.surface().data()).field;",
             "master/session.cpp": "if (std::holds_alternative<sand::GridData>(terrain.surface().data())) {",
             "lockstep/frame_barrier.cpp": "const sand::SurfaceChange change; std::visit(Send{}, change.parts);",
-            "scene/scene.cpp": "const SurfaceData data; return data.index() == 1;",
+            "scene/model/scene.cpp": "const SurfaceData data; return data.index() == 1;",
             "sand/replica.cpp": "const auto* grid = dynamic_cast<const grid::GridSurface*>(surface_.get());",
             "master/journal/verify.cpp": "if (terrain.tinView() == nullptr) {",
             "render_node/grid/mesh.cpp": "if (std::holds_alternative<sand::GridData>(data)) {",

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "haptic_bridge/hand/hand_settings.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/tin_scene.hpp"
 #include "tests/haptic_bridge/loop/dice.hpp"
 

@@ -17,7 +17,7 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace test {

@@ -9,7 +9,7 @@
 #include "master/journal/tools.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/refusal.hpp"
 

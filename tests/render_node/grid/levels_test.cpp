@@ -11,7 +11,7 @@
 #include "pictures/compare.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/render_node/wall_painter.hpp"
 
 namespace {

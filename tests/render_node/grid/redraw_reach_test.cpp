@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/render_node/redraw.hpp"
 
 namespace {

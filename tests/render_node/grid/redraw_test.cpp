@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render_node/tool/force.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "render_node/tile_painter.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/render_node/wall_painter.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_tin.hpp"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "base/input_error.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 namespace {

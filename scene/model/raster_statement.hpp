@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/field_forms.hpp"
-#include "scene/georeference.hpp"
+#include "scene/model/georeference.hpp"
 
 namespace scene {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/georeference.hpp"
+#include "scene/model/georeference.hpp"
 
 namespace scene {
 

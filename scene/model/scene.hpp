@@ -11,9 +11,9 @@
 #include "base/field_forms.hpp"
 #include "sand/force/force_constants.hpp"
 #include "sand/start.hpp"
-#include "scene/georeference.hpp"
-#include "scene/material.hpp"
-#include "scene/raster_statement.hpp"
+#include "scene/model/georeference.hpp"
+#include "scene/model/material.hpp"
+#include "scene/model/raster_statement.hpp"
 
 namespace scene {
 

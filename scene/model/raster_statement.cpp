@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/raster_statement.hpp"
+#include "scene/model/raster_statement.hpp"
 
 #include <fmt/format.h>
 
