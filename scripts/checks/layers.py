@@ -23,6 +23,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_SOURCES = 25
 PRIVATE = "// Private to this folder."
 OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
+# Folders of a module alone. It may include what the library that loads it may include.
+LOADED_BY = {"scene/gdal": "scene_import"}
 
 
 class Project:
@@ -61,9 +63,9 @@ class Project:
         own = self.owner.get(stem + ".cpp")
         if own and self.targets[own]["type"] != "MODULE_LIBRARY":
             return own
-        while folder and folder not in self.library:
+        while folder and folder not in self.library and folder not in LOADED_BY:
             folder = os.path.dirname(folder)
-        return self.library.get(folder)
+        return self.library.get(folder) or LOADED_BY.get(folder)
 
     def usable(self, target, public_only):
         """Returns the targets whose headers the sources of `target` may include; if `public_only`, its headers."""

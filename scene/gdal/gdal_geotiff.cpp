@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/gdal_geotiff.hpp"
+#include "scene/gdal/gdal_geotiff.hpp"
 
 #include <cpl_vsi.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "base/input_error.hpp"
-#include "scene/import/gdal/gdal_reference.hpp"
-#include "scene/import/gdal/length_unit.hpp"
+#include "scene/gdal/gdal_reference.hpp"
+#include "scene/gdal/length_unit.hpp"
 
 namespace scene {
 namespace {

@@ -9,10 +9,10 @@
 #include <string>
 
 #include "base/input_error.hpp"
-#include "scene/import/gdal/function_text.hpp"
-#include "scene/import/gdal/gdal_geotiff.hpp"
-#include "scene/import/gdal/gdal_reference.hpp"
-#include "scene/import/gdal/header_in_memory.hpp"
+#include "scene/gdal/function_text.hpp"
+#include "scene/gdal/gdal_geotiff.hpp"
+#include "scene/gdal/gdal_reference.hpp"
+#include "scene/gdal/header_in_memory.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/header_in_memory.hpp"
+#include "scene/gdal/header_in_memory.hpp"
 
 #include <cpl_vsi.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/gdal_reference.hpp"
+#include "scene/gdal/gdal_reference.hpp"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "base/text_reader.hpp"
-#include "scene/import/gdal/claims.hpp"
-#include "scene/import/gdal/length_unit.hpp"
+#include "scene/gdal/claims.hpp"
+#include "scene/gdal/length_unit.hpp"
 #include "scene/import/metric_system.hpp"
 #include "scene/import/prj_file.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/gdal/gdal_session.hpp"
 #include "scene/import/esri_grid.hpp"
-#include "scene/import/gdal/gdal_session.hpp"
 
 namespace scene {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/length_unit.hpp"
+#include "scene/gdal/length_unit.hpp"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // Private to this folder.
 #pragma once
 
-#include "scene/import/gdal/gdal_raster.hpp"
+#include "scene/gdal/gdal_raster.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/function_text.hpp"
+#include "scene/gdal/function_text.hpp"
 
 #include <fmt/format.h>
 #include <muParser.h>

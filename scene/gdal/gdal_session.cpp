@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/gdal_session.hpp"
+#include "scene/gdal/gdal_session.hpp"
 
 #include <cpl_error.h>
 #include <fmt/format.h>

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "scene/import/gdal/gdal_raster.hpp"
+#include "scene/gdal/gdal_raster.hpp"
 
 namespace scene {
 

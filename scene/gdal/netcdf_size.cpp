@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/import/gdal/claims.hpp"
+#include "scene/gdal/claims.hpp"
 
 namespace scene {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/claims.hpp"
+#include "scene/gdal/claims.hpp"
 
 #include <cpl_string.h>
 #include <fmt/format.h>

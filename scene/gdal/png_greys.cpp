@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/png_greys.hpp"
+#include "scene/gdal/png_greys.hpp"
 
 #include <png.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/gdal/gdal_raster.hpp"
+#include "scene/gdal/gdal_raster.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <string_view>
 
 #include "base/input_error.hpp"
-#include "scene/import/gdal/claims.hpp"
-#include "scene/import/gdal/png_greys.hpp"
+#include "scene/gdal/claims.hpp"
+#include "scene/gdal/png_greys.hpp"
 #include "scene/import/importer.hpp"
 
 namespace scene {
