@@ -5,7 +5,7 @@
 #include <array>
 #include <memory>
 
-#include "bench/timing.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/force/force_model.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/arm_loop.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "bench/csv.hpp"
+#include "bench/report/csv.hpp"
 
 /// The curves of the report. Each function writes the definitions of its columns, their names and the rows.
 namespace bench {

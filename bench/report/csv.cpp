@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/csv.hpp"
+#include "bench/report/csv.hpp"
 
 #include <fcntl.h>
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <random>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/model/ground.hpp"
 
