@@ -10,7 +10,7 @@ namespace haptic_bridge {
 /// Fills `surface` with the sand that a hand at `probe` feels after the last step of `terrain`. Sets neither its times
 /// nor its number of edits. Both the thread that makes steps and a replay call this function.
 inline void takeSurface(const sand::Replica& terrain, const sand::ProbePoint& probe, FeltSand& surface) {
-    surface.patch.take(terrain, probe);
+    surface.patch.take(terrain.surface(), terrain.rules(), terrain.cellSize(), probe);
     surface.probe = {probe.x, probe.y, 0};
     surface.tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     surface.talus = static_cast<double>(terrain.rules().tuning.threshold) / sand::kUnitsPerCell;

@@ -23,7 +23,8 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& terrain) {
     if (!terrain.engaged() || !(radius > 0)) {
         return std::nullopt;
     }
-    const sand::force::SurfacePatch patch(terrain);
+    sand::force::SurfacePatch patch;
+    patch.take(terrain.surface(), terrain.rules(), terrain.cellSize(), terrain.probe());
     const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, place);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);

@@ -49,7 +49,8 @@ double upward(const std::string& shape, const std::string& tin, sand::ForceLaw l
     sand::ForceConstants constants;
     constants.law = law;
     constants.unitLength = 0.96;
-    const SurfacePatch patch(terrain);
+    SurfacePatch patch;
+    patch.take(terrain.surface(), terrain.rules(), terrain.cellSize(), terrain.probe());
     EXPECT_EQ(patch.facets().empty(), tin.empty());
     const auto tool = sand::force::contourOf(terrain.tool(), terrain.cellSize());
     const sand::ProbePoint at = terrain.probe();
