@@ -18,7 +18,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
-FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "sand", "scene", "tracking", "walls")
+FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls")
 
 # The four places that may ask for the kind.
 PLACES = {
@@ -145,7 +145,7 @@ class KindsOfSand(unittest.TestCase):
             "lockstep/frame_barrier.cpp": "const sand::SurfaceChange change; std::visit(Send{}, change.parts);",
             "scene/model/scene.cpp": "const SurfaceData data; return data.index() == 1;",
             "sand/replica.cpp": "const auto* grid = dynamic_cast<const grid::GridSurface*>(surface_.get());",
-            "master/journal/verify.cpp": "if (terrain.tinView() == nullptr) {",
+            "replay/verify.cpp": "if (terrain.tinView() == nullptr) {",
             "render_node/grid/mesh.cpp": "if (std::holds_alternative<sand::GridData>(data)) {",
             "render_node/tin/mesh.cpp": "const auto& field = std::get<sand::GridData>(data).field;",
             "render_node/tool/reach.cpp": "for (const auto& cells : std::get<sand::CellChange>(change.parts).cells) {",

@@ -82,6 +82,12 @@ class Layers(unittest.TestCase):
             self.assertEqual(linked(name) & network, set(), name)
         self.assertIn("haptic_link", linked("haptic_server"))
 
+    def test_neither_the_journal_nor_the_master_links_the_force_loop(self):
+        self.assertIn("haptic_loop", linked("sandwall-replay"))
+        for name in ("journal", "sandwall-master"):
+            self.assertIn("scene_load", linked(name))
+            self.assertNotIn("haptic_loop", linked(name), name)
+
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()
         self.assertTrue(drawn, "run scripts/checks/layers.py build/release --svg docs/layers.svg")

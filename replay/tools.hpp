@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace master {
+namespace replay {
 
 /// Functions of sandwall-replay, except the replay itself. They read a journal record by record, so that the memory
 /// does not grow with the session. All throw base::InputError if the journal cannot be used.
@@ -34,4 +34,4 @@ void requireStep(const std::filesystem::path& journal, std::uint64_t last, std::
 /// base::InputError if `file` exists.
 void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file);
 
-}  // namespace master
+}  // namespace replay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/tools.hpp"
+#include "replay/tools.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -19,7 +19,7 @@
 #include "scene/load/memory.hpp"
 #include "scene/model/scene.hpp"
 
-namespace master {
+namespace replay {
 namespace {
 
 constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "reset", "undo", "tune", "load"};
@@ -65,11 +65,11 @@ std::string pathText(const sand::Step& step, double unit) {
 }  // namespace
 
 void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes) {
-    const JournalReader reader(journal);
-    const sand::FieldSize size = sand::FieldSize::of(rulesOf(reader));
+    const master::JournalReader reader(journal);
+    const sand::FieldSize size = sand::FieldSize::of(master::rulesOf(reader));
     if (!size.bytesOfReplica()) {
         if (use == DecodedFor::replica) {
-            scene::requireReplica(sceneOf(reader), journal.string(), freeBytes);
+            scene::requireReplica(master::sceneOf(reader), journal.string(), freeBytes);
         }
     } else if (use == DecodedFor::replica) {
         scene::requireReplica(size, journal.string(), freeBytes);
@@ -96,16 +96,16 @@ void requireStep(const std::filesystem::path& journal, std::uint64_t last, std::
 
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file,
                  std::optional<std::uint64_t> until) {
-    JournalReader reader(journal);
-    ExportedTool tool(sceneOf(reader));
+    master::JournalReader reader(journal);
+    ExportedTool tool(master::sceneOf(reader));
     host::WholeFile out(file);
     out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
     bool orderlyEnd = false;
     std::uint64_t last = 0;
     while (const auto record = reader.next()) {
-        orderlyEnd = std::holds_alternative<JournalEnd>(*record) ||
-                     (orderlyEnd && !std::holds_alternative<JournalResumed>(*record));
-        const auto* frame = std::get_if<JournalFrame>(&*record);
+        orderlyEnd = std::holds_alternative<master::JournalEnd>(*record) ||
+                     (orderlyEnd && !std::holds_alternative<master::JournalResumed>(*record));
+        const auto* frame = std::get_if<master::JournalFrame>(&*record);
         if (frame == nullptr) {
             continue;
         }
@@ -131,8 +131,8 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
     if (std::filesystem::exists(file, error)) {
         throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
     }
-    JournalReader reader(journal);
-    scene::Scene scene = sceneOf(reader);
+    master::JournalReader reader(journal);
+    scene::Scene scene = master::sceneOf(reader);
     scene.material = reader.header().material.value_or(scene::Material());
     if (file.has_parent_path()) {
         try {
@@ -141,13 +141,13 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
             error.clear();  // the writer reports it
         }
     }
-    JournalWriter writer(file, scene, reader.header().buildId);
+    master::JournalWriter writer(file, scene, reader.header().buildId);
     std::uint64_t records = 0, step = 0;
     std::string damage;
     try {
         while (const auto record = reader.next()) {
             ++records;
-            const auto* frame = std::get_if<JournalFrame>(&*record);
+            const auto* frame = std::get_if<master::JournalFrame>(&*record);
             step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
             writer.keep(*record);
         }
@@ -163,4 +163,4 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
                reader.allBytes());
 }
 
-}  // namespace master
+}  // namespace replay

@@ -21,7 +21,7 @@
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
-#include "master/journal/tools.hpp"
+#include "replay/tools.hpp"
 #include "sand/replica.hpp"
 #include "scene/export/raster.hpp"
 #include "scene/export/results.hpp"
@@ -101,7 +101,7 @@ private:
 };
 
 /// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
-int replay(const master::Journal& journal, std::uint64_t until, sand::Replica& terrain, Forces& forces) {
+int replaySteps(const master::Journal& journal, std::uint64_t until, sand::Replica& terrain, Forces& forces) {
     int differing = 0;
     forces.feel(terrain);
     for (const master::JournalFrame& frame : journal.frames) {
@@ -189,32 +189,33 @@ void writeOutputs(const sand::Replica& terrain, const scene::Scene& scene, const
 int run(const Options& options) {
     const std::int64_t free = host::freeMemoryOfProcess();
     if (!options.recovered.empty()) {
-        master::requireMemory(options.file, master::DecodedFor::scene, free);
-        master::recoverJournal(options.file, options.recovered);
+        replay::requireMemory(options.file, replay::DecodedFor::scene, free);
+        replay::recoverJournal(options.file, options.recovered);
         return 0;
     }
     if (options.verify) {
-        master::requireMemory(options.file, master::DecodedFor::replica, free);
-        return master::verifyJournal(options.file);
+        replay::requireMemory(options.file, replay::DecodedFor::replica, free);
+        return replay::verifyJournal(options.file);
     }
     checkOutputs(options);
     const bool onlyExports = !options.steps.empty() && options.plain();
-    master::requireMemory(options.file, onlyExports ? master::DecodedFor::scene : master::DecodedFor::replica, free);
+    replay::requireMemory(options.file, onlyExports ? replay::DecodedFor::scene : replay::DecodedFor::replica, free);
     if (!options.steps.empty()) {
-        master::exportSteps(options.file, options.steps, options.until);
+        replay::exportSteps(options.file, options.steps, options.until);
         if (onlyExports) {
             return 0;  // the export needs no sand
         }
     }
     const master::Journal journal = master::readJournal(options.file);
     if (options.steps.empty()) {  // the export has printed it
-        master::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
+        replay::sayWhatIsMissing(options.file, journal.tornBytes, journal.end.has_value());
     }
     sand::Replica terrain(journal.scene);
     Forces forces(journal, options);
-    int differing = replay(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
+    int differing =
+        replaySteps(journal, options.until.value_or(std::numeric_limits<std::uint64_t>::max()), terrain, forces);
     forces.finish();
-    master::requireStep(options.file, terrain.stepNumber(), options.until);
+    replay::requireStep(options.file, terrain.stepNumber(), options.until);
     const bool whole = journal.end && journal.end->step == terrain.stepNumber();
     if (whole && journal.end->hash != terrain.stateHash()) {
         host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", terrain.stepNumber(),

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "master/journal/checkpoint.hpp"
-#include "master/journal/format.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "scene/import/esri_grid.hpp"

@@ -12,16 +12,16 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "master/journal/resume.hpp"
-#include "master/journal/tools.hpp"
+#include "replay/tools.hpp"
 
-namespace master {
+namespace replay {
 namespace {
 
 class Verification {
 public:
     explicit Verification(const std::filesystem::path& journal)
-        : journal_(journal), reader_(journal), start_(sceneOf(reader_)), terrain_(start_) {
-        for (const std::uint64_t step : checkpointsOf(journal)) {
+        : journal_(journal), reader_(journal), start_(master::sceneOf(reader_)), terrain_(start_) {
+        for (const std::uint64_t step : master::checkpointsOf(journal)) {
             checkpoints_.emplace(step, std::string());
         }
     }
@@ -36,7 +36,7 @@ public:
         return differing_ == 0 && badCheckpoints_ == 0 ? 0 : 1;
     }
 
-    void operator()(const JournalFrame& frame) {
+    void operator()(const master::JournalFrame& frame) {
         firstFrame_ = firstFrame_ == 0 ? frame.frame : firstFrame_;
         lastFrame_ = std::max(lastFrame_, frame.frame);
         end_.reset();
@@ -56,29 +56,29 @@ public:
             compareCheckpoint();
         }
     }
-    void operator()(const JournalEnd& end) {
+    void operator()(const master::JournalEnd& end) {
         end_ = end;
         compare(end);
     }
-    void operator()(const JournalResumed& resumed) {
+    void operator()(const master::JournalResumed& resumed) {
         ++resumes_;
         cutBytes_ += resumed.cutBytes;
         end_.reset();
         compare(resumed.sand);
     }
-    void operator()(const JournalTicks&) { ++ticks_; }
+    void operator()(const master::JournalTicks&) { ++ticks_; }
     void operator()(const scene::Material&) {}
-    void operator()(const JournalContinued&) {}
-    void operator()(const JournalDoubt& doubt) {
+    void operator()(const master::JournalContinued&) {}
+    void operator()(const master::JournalDoubt& doubt) {
         ++doubts_;
         // Later steps of the majority's sand are not in the journal, so only this hash can be compared.
         outvoted_ += doubt.sand.step == terrain_.stepNumber() && doubt.sand.hash != terrain_.stateHash() ? 1 : 0;
     }
-    void operator()(const JournalChecked& checked) { compare(checked.sand); }
-    void operator()(const JournalForce&) {}
+    void operator()(const master::JournalChecked& checked) { compare(checked.sand); }
+    void operator()(const master::JournalForce&) {}
 
 private:
-    void compare(const JournalEnd& said) {
+    void compare(const master::JournalEnd& said) {
         ++hashes_;
         if (said.step == terrain_.stepNumber() && said.hash == terrain_.stateHash()) {
             return;
@@ -94,7 +94,8 @@ private:
             return;
         }
         try {
-            sand::Replica sand = sandOfCheckpoint(checkpointFile(journal_, found->first), reader_.header(), start_);
+            sand::Replica sand =
+                master::sandOfCheckpoint(master::checkpointFile(journal_, found->first), reader_.header(), start_);
             found->second =
                 sand.stateHash() == terrain_.stateHash() ? "the replay's sand" : "differs from the replay's sand";
         } catch (const base::FormatError& error) {
@@ -103,7 +104,7 @@ private:
         badCheckpoints_ += found->second == "the replay's sand" ? 0 : 1;
     }
     void say() {
-        const FileOrigin& origin = reader_.header().origin;
+        const master::FileOrigin& origin = reader_.header().origin;
         fmt::print("origin       sandwall {}, journal format {}, algorithm {}\n", origin.release, origin.format,
                    origin.algorithm);
         fmt::print("records      {} whole, {} bytes\n", records_, reader_.wholeBytes());
@@ -126,7 +127,7 @@ private:
     }
 
     std::filesystem::path journal_;
-    JournalReader reader_;
+    master::JournalReader reader_;
     sand::Replica start_, terrain_;
     std::map<std::uint64_t, std::string> checkpoints_;  // by step: the result for each
     std::uint64_t records_ = 0, ticks_ = 0, hashes_ = 0, differing_ = 0, badCheckpoints_ = 0, resumes_ = 0;
@@ -136,11 +137,11 @@ private:
     std::uint64_t leftOut_ = 0;  // steps
     std::string firstLeftOut_;
     std::int64_t cutBytes_ = 0;
-    std::optional<JournalEnd> end_;
+    std::optional<master::JournalEnd> end_;
 };
 
 }  // namespace
 
 int verifyJournal(const std::filesystem::path& journal) { return Verification(journal).run(); }
 
-}  // namespace master
+}  // namespace replay
