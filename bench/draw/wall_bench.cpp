@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    render_node::SandMesh mesh_;
+    render_node::GridMesh mesh_;
     render_node::GlProgram program_;
 };
 

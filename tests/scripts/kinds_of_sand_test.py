@@ -72,12 +72,12 @@ ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\
 OF_DATA = re.compile(r"\b(?:SurfaceData|SurfaceChange|GridData|TinData|CellChange|TinChange)\b|\bsurface(?:\(\)|_)(?:\.|->)data\(\)|\btakeChange\(\)")
 ANY_VARIANT = re.compile(r"\bstd::(?:visit\s*\(|get_if\s*<\s*\d|get\s*<\s*\d)|\bholds_alternative\s*<|\.index\(\)")
 # A class of one kind of sand, or a former function that asked for the kind.
-CLASS = re.compile(r"\b(?:GridSurface|TinSurface|SandMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
+CLASS = re.compile(r"\b(?:GridSurface|TinSurface|GridMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
 START = re.compile(r"\btin\s*(?:==|!=)\s*nullptr|\bnullptr\s*(?:==|!=)\s*[\w.>-]*\btin\b|"
                    r"(?:\bif\s*\(|&&|\|\||!|\()\s*!?(?:\w+(?:\.|->))+tin\s*(?:\)|&&|\|\||\?)")
 # Anything of one kind: a header, a namespace, a class, FieldSize::nominal, or the word tin in a name or in a text. The
 # other words that begin with Grid are rasters and walls.
-KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Surface)\b|\bCellChange\b|\bSandMesh\b|"
+KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Mesh|Surface|Vert\w+)\b|\bCellChange\b|"
                   r"\b(?:is|has)Grid\b|(?:\.|->)nominal\b|\b[tT]in(?![a-z])\w*|\b\w*[a-z0-9_]Tin(?![a-z])\w*|\b\w+_tin(?![a-z])\w*")
 
 

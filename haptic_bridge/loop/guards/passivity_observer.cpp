@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "haptic_bridge/loop/guards/passivity.hpp"
+#include "haptic_bridge/loop/guards/passivity_observer.hpp"
 
 #include <algorithm>
 
