@@ -9,7 +9,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
-namespace fuzz {
+namespace samples {
 
 /// Returns a scene with dunes of 24 x 16 nominal cells as a TIN.
 inline scene::Scene tinScene() {
@@ -23,4 +23,4 @@ inline scene::Scene tinScene() {
     return scene;
 }
 
-}  // namespace fuzz
+}  // namespace samples

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/render_node/golden.hpp"
+#include "tests/support/golden_pictures.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/render_node/wall_painter.hpp"
+#include "tests/support/wall_painter.hpp"
 
 #include <algorithm>
 #include <array>

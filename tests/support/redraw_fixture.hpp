@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "render_node/gl/gl_context.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace sample {
 
