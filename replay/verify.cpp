@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "replay/verify.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "master/journal/resume.hpp"
-#include "replay/tools.hpp"
 
 namespace replay {
 namespace {

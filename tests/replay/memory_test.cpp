@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "replay/tools.hpp"
+#include "replay/checks.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/master/journal/huge_journal.hpp"
 #include "tests/support/refusal.hpp"

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "replay/tools.hpp"
+#include "replay/export.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <algorithm>
 #include <array>
-#include <cstdint>
+#include <string>
 #include <string_view>
+#include <variant>
 
-#include "base/input_error.hpp"
-#include "host/print_line.hpp"
-#include "host/regular_file.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
+#include "replay/checks.hpp"
 #include "sand/force/vec3.hpp"
-#include "scene/import/raster_memory.hpp"
-#include "scene/load/memory.hpp"
 #include "scene/model/scene.hpp"
 
 namespace replay {
@@ -64,36 +60,6 @@ std::string pathText(const sand::Step& step, double unit) {
 
 }  // namespace
 
-void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes) {
-    const master::JournalReader reader(journal);
-    const sand::FieldSize size = sand::FieldSize::of(master::rulesOf(reader));
-    if (!size.bytesOfReplica()) {
-        if (use == DecodedFor::replica) {
-            scene::requireReplica(master::sceneOf(reader), journal.string(), freeBytes);
-        }
-    } else if (use == DecodedFor::replica) {
-        scene::requireReplica(size, journal.string(), freeBytes);
-    } else {
-        scene::requireBytes(size.bytesOfHeights(), freeBytes, journal.string(),
-                            fmt::format("{} x {} heights", size.columns, size.rows), "take a machine with more memory");
-    }
-}
-
-void sayWhatIsMissing(const std::filesystem::path& journal, std::int64_t tornBytes, bool orderlyEnd) {
-    if (tornBytes > 0) {
-        host::printLine("{}: the last {} bytes are an incomplete write and were left out", journal.string(), tornBytes);
-    }
-    if (!orderlyEnd) {
-        host::printLine("{}: has no orderly end; the session was cut off", journal.string());
-    }
-}
-
-void requireStep(const std::filesystem::path& journal, std::uint64_t last, std::optional<std::uint64_t> until) {
-    if (until && last < *until) {
-        throw base::InputError(fmt::format("{}: ends at step {}, before --until {}", journal.string(), last, *until));
-    }
-}
-
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file,
                  std::optional<std::uint64_t> until) {
     master::JournalReader reader(journal);
@@ -124,43 +90,6 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
     requireStep(journal, last, until);
     out.keep();
     sayWhatIsMissing(journal, reader.tornBytes(), orderlyEnd);
-}
-
-void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {
-    std::error_code error;
-    if (std::filesystem::exists(file, error)) {
-        throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
-    }
-    master::JournalReader reader(journal);
-    scene::Scene scene = master::sceneOf(reader);
-    scene.material = reader.header().material.value_or(scene::Material());
-    if (file.has_parent_path()) {
-        try {
-            host::makeFolders(file.parent_path());
-        } catch (const std::filesystem::filesystem_error&) {
-            error.clear();  // the writer reports it
-        }
-    }
-    master::JournalWriter writer(file, scene, reader.header().buildId);
-    std::uint64_t records = 0, step = 0;
-    std::string damage;
-    try {
-        while (const auto record = reader.next()) {
-            ++records;
-            const auto* frame = std::get_if<master::JournalFrame>(&*record);
-            step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
-            writer.keep(*record);
-        }
-    } catch (const base::InputError& found) {
-        damage = found.what();
-    }
-    writer.sync();
-    const std::int64_t lost = reader.allBytes() - reader.wholeBytes();
-    if (!damage.empty()) {
-        fmt::print("{}\n", damage);
-    }
-    fmt::print("{}: {} records, to step {}; {} of {} bytes are lost\n", file.string(), records, step, lost,
-               reader.allBytes());
 }
 
 }  // namespace replay
