@@ -2,11 +2,11 @@
 // Measures the curves of docs/report. Each curve is a subcommand; scripts/report.sh runs and draws all of them.
 #include <string_view>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "bench/session/latency.hpp"
 #include "host/command_line.hpp"
 #include "host/version.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace {
 

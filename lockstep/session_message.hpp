@@ -10,7 +10,7 @@
 #include "lockstep/cluster.hpp"
 #include "lockstep/fault.hpp"
 #include "lockstep/message_limits.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace lockstep {
 

@@ -20,7 +20,7 @@
 #include "master/operator/operator_command.hpp"
 #include "master/operator/operator_input.hpp"
 #include "master/view_source.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
 namespace master {

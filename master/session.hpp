@@ -20,7 +20,7 @@
 #include "master/session_record.hpp"
 #include "master/steps/step_source.hpp"
 #include "master/summary.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
 namespace master {

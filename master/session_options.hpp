@@ -17,7 +17,7 @@
 #include "master/operator_desk.hpp"
 #include "master/session_record.hpp"
 #include "master/steps/step_source.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

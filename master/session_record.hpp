@@ -17,7 +17,7 @@
 #include "master/rank_labels.hpp"
 #include "master/recovery.hpp"
 #include "master/summary.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

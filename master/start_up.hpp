@@ -7,7 +7,7 @@
 
 #include "lockstep/cluster.hpp"
 #include "lockstep/session_message.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
 /// The master's checks before the first frame: the hosts can hold the sand, and every rank can take part.

@@ -14,7 +14,7 @@
 #include "lockstep/statistics.hpp"
 #include "master/incidents.hpp"
 #include "master/summary_parts.hpp"
-#include "scene/raster_statement.hpp"
+#include "scene/model/raster_statement.hpp"
 #include "tracking/head_tracker.hpp"
 
 namespace master {

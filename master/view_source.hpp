@@ -7,7 +7,7 @@
 
 #include "lockstep/frame_message.hpp"
 #include "lockstep/test_pattern.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tracking/tracked_viewer.hpp"
 #include "walls/orbit.hpp"
 #include "walls/wall.hpp"

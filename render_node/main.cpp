@@ -11,7 +11,7 @@
 #include "render_node/gl_check.hpp"
 #include "render_node/tile_session.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 int main(int argc, char** argv) {
     // Options about this program and this host are answered before a job, and need no MPI.

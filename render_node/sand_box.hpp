@@ -6,7 +6,7 @@
 #include "render_node/gl/solid_mesh.hpp"
 #include "render_node/surface/frustum.hpp"
 #include "render_node/surface/sand_rim.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace render_node {
 

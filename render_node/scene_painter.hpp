@@ -18,7 +18,7 @@
 #include "render_node/tool/mesh.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace render_node {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/projection.hpp"
 
 namespace render_node {

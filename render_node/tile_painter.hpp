@@ -17,7 +17,7 @@
 #include "render_node/stereo_composer.hpp"
 #include "render_node/tool/force.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {

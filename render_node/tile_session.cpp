@@ -25,7 +25,7 @@
 #include "render_node/pointer/next_key.hpp"
 #include "render_node/pointer/pointer_reader.hpp"
 #include "render_node/tile_painter.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace render_node {

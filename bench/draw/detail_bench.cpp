@@ -2,11 +2,11 @@
 // Measures picture error and draw time for each bound of the level of detail, on a large field under a moving head.
 #include <cstdlib>
 
-#include "bench/csv.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/csv.hpp"
+#include "bench/report/timing.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 
 namespace {

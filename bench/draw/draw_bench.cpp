@@ -8,7 +8,7 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 
 namespace {

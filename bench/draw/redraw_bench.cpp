@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/timing.hpp"
+#include "bench/report/timing.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/scene_painter.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/timing.hpp"
+#include "bench/report/timing.hpp"
 #include "host/command_line.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
@@ -56,7 +56,7 @@ public:
     }
 
 private:
-    render_node::SandMesh mesh_;
+    render_node::GridMesh mesh_;
     render_node::GlProgram program_;
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "tests/haptic_bridge/loop/logging_arm.hpp"
 #include "tests/support/hand_in_sand.hpp"

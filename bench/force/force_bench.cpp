@@ -5,8 +5,9 @@
 #include <array>
 #include <memory>
 
-#include "bench/timing.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/force/force_model.hpp"
+#include "sand/replica.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
@@ -127,7 +128,7 @@ void surfacePatchOfFineTin(benchmark::State& state) {
     const sand::Replica replica(start);
     sand::force::SurfacePatch patch;
     for (auto step : state) {
-        patch.take(replica, middle(kSide));
+        patch.take(replica.surface(), replica.rules(), replica.cellSize(), middle(kSide));
         benchmark::DoNotOptimize(patch);
     }
 }

@@ -4,12 +4,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/curves.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/force/force_model.hpp"
 #include "sand/force/law.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace bench {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/curves.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/force/force_model.hpp"
 
 namespace bench {

@@ -2,7 +2,7 @@
 // Measures the distance of a pile from the right one: the bound that its fluxes prove, and the true value.
 #include "sand/grid/certificate.hpp"
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "bench/sand/integer_n4.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"

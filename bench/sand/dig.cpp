@@ -3,13 +3,13 @@
 #include <cmath>
 #include <numbers>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace bench {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures one edit. Resting sand in other places should add no time.
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 #include "sand/grid/erosion.hpp"
 
 namespace bench {

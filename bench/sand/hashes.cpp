@@ -2,7 +2,7 @@
 // Prints the hash of the sand after many edits, by code path, number of threads and block size.
 #include <random>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "bench/sand/relaxations.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/grid/erosion.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sand/model/height_field.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace bench {
 

@@ -4,10 +4,10 @@
 #include <functional>
 #include <numeric>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 
 namespace bench {
 namespace {

@@ -2,10 +2,10 @@
 // Measures the piles at rest: their error, their number of sweeps, and their radius by direction.
 #include <map>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 
 namespace bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "sand/grid/dunes.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 

@@ -4,10 +4,10 @@
 #include <random>
 #include <thread>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/baseline_schemes.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/grid/erosion.hpp"
 

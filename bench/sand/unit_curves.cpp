@@ -2,7 +2,7 @@
 // Measures the errors that the numbers cause: height bits, hysteresis band, and the sources of one pile's error.
 #include <cmath>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
 

@@ -2,10 +2,10 @@
 // Measures the error of each method by its run time.
 #include <cmath>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 
 namespace bench {
 namespace {

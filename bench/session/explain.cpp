@@ -6,9 +6,9 @@
 #include <random>
 #include <sstream>
 
-#include "bench/curves.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "bench/timing.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <random>
 
-#include "bench/curves.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/tin/tool/displacement.hpp"
 
 namespace bench {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/curves.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/grid/dunes.hpp"
 #include "scene/import/esri_grid.hpp"
 

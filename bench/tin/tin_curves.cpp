@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bench/curves.hpp"
-#include "bench/timing.hpp"
+#include "bench/report/curves.hpp"
+#include "bench/report/timing.hpp"
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
 #include "tests/support/oracles.hpp"

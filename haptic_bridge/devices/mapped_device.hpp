@@ -6,7 +6,7 @@
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/device_troubles.hpp"
 #include "haptic_bridge/hand/hand_settings.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

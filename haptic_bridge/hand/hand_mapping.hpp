@@ -5,7 +5,7 @@
 #include "haptic_bridge/hand/hand_settings.hpp"
 #include "sand/model/mean_height.hpp"
 #include "sand/model/step.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -14,7 +14,7 @@
 #include "haptic_bridge/link/message_forms.hpp"
 #include "haptic_bridge/link/report.hpp"
 #include "sand/model/step.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 /// Messages of the link between a haptic server, which owns the device, and the master of a wall.
 ///

@@ -8,7 +8,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "host/clock.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 namespace {

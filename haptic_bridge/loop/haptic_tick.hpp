@@ -17,7 +17,7 @@
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/tick.hpp"
 #include "sand/force/force_model.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

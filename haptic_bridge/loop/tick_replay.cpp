@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "haptic_bridge/loop/felt_sand.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -9,7 +9,7 @@
 #include "haptic_bridge/loop/haptic_tick.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

@@ -12,7 +12,7 @@
 #include "haptic_bridge/server/step_clock.hpp"
 #include "host/clock.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

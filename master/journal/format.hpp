@@ -12,8 +12,8 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/file_origin.hpp"
 #include "sand/model/step.hpp"
-#include "scene/material.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/material.hpp"
+#include "scene/model/scene.hpp"
 
 /// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
 namespace master {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 namespace {

@@ -10,7 +10,7 @@
 #include "master/journal/format.hpp"
 #include "master/journal/reader.hpp"
 #include "master/journal/writer.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -16,7 +16,7 @@
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/checkpoint.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 namespace {

@@ -15,7 +15,7 @@
 #include "master/journal/resume.hpp"
 #include "master/journal/writer.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

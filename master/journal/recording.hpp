@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "master/journal/journal.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

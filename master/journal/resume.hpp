@@ -11,7 +11,7 @@
 
 #include "master/journal/reader.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -8,7 +8,7 @@
 
 #include "base/field_forms.hpp"
 #include "sand/model/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -10,7 +10,7 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 namespace {

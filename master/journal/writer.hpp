@@ -9,7 +9,7 @@
 #include "master/journal/format.hpp"
 #include "master/journal/part_file.hpp"
 #include "master/journal/reader.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -9,7 +9,7 @@
 
 #include "master/operator/control_socket.hpp"
 #include "sand/model/step.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 namespace master {
 

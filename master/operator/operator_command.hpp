@@ -8,7 +8,7 @@
 
 #include "lockstep/overlays.hpp"
 #include "lockstep/test_pattern.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 #include "walls/wall.hpp"
 
 namespace master {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "lockstep/overlays.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 namespace master {
 

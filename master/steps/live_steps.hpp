@@ -14,7 +14,7 @@
 #include "master/steps/step_source.hpp"
 #include "master/steps/waiting_edits.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -12,7 +12,7 @@
 #include "master/steps/position_source.hpp"
 #include "master/steps/step_source.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

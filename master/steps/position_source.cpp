@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -10,7 +10,7 @@
 #include "haptic_bridge/hand/hand.hpp"
 #include "haptic_bridge/hand/hand_mapping.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace master {
 

@@ -17,6 +17,6 @@ inline constexpr int kMostChangedParts = 36;
 ///
 /// The squares are as small as kMostChangedParts allows, and at least 32 cells wide. Small parts follow the sand
 /// closely, and a list of few parts is quick to read.
-[[nodiscard]] std::vector<sand::CellRect> changedParts(std::span<const SandSurface::Overwritten> overwritten);
+[[nodiscard]] std::vector<sand::CellRect> changedParts(std::span<const GridVertices::Overwritten> overwritten);
 
 }  // namespace render_node

@@ -10,20 +10,20 @@
 namespace render_node {
 namespace {
 
-/// Describes the layout of SandVertex in the bound vertex array.
+/// Describes the layout of GridVertex in the bound vertex array.
 void describeVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(SandVertex),
+        glVertexAttribPointer(index, count, type, normalised, sizeof(GridVertex),
                               reinterpret_cast<const void*>(offset));
     };
-    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(SandVertex, height));
-    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(SandVertex, column));
-    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(SandVertex, normalEast));
-    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(SandVertex, open));
+    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(GridVertex, height));
+    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(GridVertex, column));
+    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(GridVertex, normalEast));
+    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(GridVertex, open));
 }
 
-GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices * sizeof(SandVertex)); }
+GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices * sizeof(GridVertex)); }
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void ChunkGeometry::markStale(const sand::CellRect& vertices) {
     stale_ = stale_.joinedWith(vertices.clippedTo(vertices_));
 }
 
-void ChunkGeometry::refresh(const SandSurface& surface) {
+void ChunkGeometry::refresh(const GridVertices& surface) {
     if (stale_.empty()) {
         return;
     }
@@ -42,7 +42,7 @@ void ChunkGeometry::refresh(const SandSurface& surface) {
         sendAll(surface);
     } else {
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
-        std::vector<SandVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
+        std::vector<GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
         const int across = vertices_.x1 - vertices_.x0;
         for (int y = stale_.y0; y < stale_.y1; ++y) {
             surface.vertices(stale_.x0, y, row);
@@ -53,10 +53,10 @@ void ChunkGeometry::refresh(const SandSurface& surface) {
     stale_ = {};
 }
 
-void ChunkGeometry::sendAll(const SandSurface& surface) {
-    const std::vector<SandVertex> vertices = verticesOf(surface, vertices_, level_);
+void ChunkGeometry::sendAll(const GridVertices& surface) {
+    const std::vector<GridVertex> vertices = verticesOf(surface, vertices_, level_);
     const bool first = bytes_ == 0;
-    bytes_ = vertices.size() * sizeof(SandVertex);
+    bytes_ = vertices.size() * sizeof(GridVertex);
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
     glBufferData(GL_ARRAY_BUFFER, bytesOf(vertices.size()), vertices.data(), GL_DYNAMIC_DRAW);

@@ -18,7 +18,7 @@ public:
     /// Marks vertices whose look the sand has changed.
     void markStale(const sand::CellRect& vertices);
     /// Computes the marked vertices and sends them to GL.
-    void refresh(const SandSurface& surface);
+    void refresh(const GridVertices& surface);
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] GLuint array() const { return array_.id(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  // memory in GL; 0 before the first refresh()
@@ -26,7 +26,7 @@ public:
     std::uint64_t used = 0;  // number of the draw() that used it last; the owner sets it
 
 private:
-    void sendAll(const SandSurface& surface);
+    void sendAll(const GridVertices& surface);
 
     sand::CellRect vertices_, stale_;  // of the vertex grid
     int level_;

@@ -112,8 +112,8 @@ private:
 
 }  // namespace
 
-std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::CellRect& vertices, int level) {
-    std::vector<SandVertex> out;
+std::vector<GridVertex> verticesOf(const GridVertices& surface, const sand::CellRect& vertices, int level) {
+    std::vector<GridVertex> out;
     const int stride = 1 << level;
     const auto across = static_cast<std::size_t>(vertices.x1 - vertices.x0);
     for (int row = vertices.y0; row < vertices.y1; row += stride) {

@@ -20,7 +20,7 @@ namespace render_node {
 
 /// Returns the errors of the levels up to `coarsest` in a square part of the vertex grid. The errors of coarser levels
 /// are 0. The part may extend beyond the field. `sun` points towards the sun and has length 1.
-[[nodiscard]] LevelErrors errorsOf(const SandSurface& surface, const sand::CellRect& vertices, const glm::vec3& sun,
+[[nodiscard]] LevelErrors errorsOf(const GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun,
                                    int coarsest);
 
 /// Level of a chunk and of its four edges: south, east, north, west. No edge is coarser than the chunk.
@@ -34,7 +34,8 @@ struct ChunkLevels {
 /// Returns the vertices of a chunk of side × side quads at one level. The vertices of the level's grid come first, row
 /// by row from the south-west. Above level 0 all vertices of the four edges follow, counter-clockwise. They are needed
 /// beside a finer chunk or the rim.
-[[nodiscard]] std::vector<SandVertex> verticesOf(const SandSurface& surface, const sand::CellRect& vertices, int level);
+[[nodiscard]] std::vector<GridVertex> verticesOf(const GridVertices& surface, const sand::CellRect& vertices,
+                                                 int level);
 
 /// Neighbouring triangles with consecutive indices in trianglesOf(), so that a part of a chunk can be drawn.
 struct TriangleBlock {

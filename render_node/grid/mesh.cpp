@@ -28,7 +28,7 @@ int sideFor(int quads, int coarsest) {
 
 }  // namespace
 
-SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
+GridMesh::GridMesh(const sand::HeightField& field, const glm::vec3& sun)
     : surface_(field),
       sun_(sun),
       coarsest_(coarsestLevel(field.columns(), field.rows())),
@@ -44,7 +44,7 @@ SandMesh::SandMesh(const sand::HeightField& field, const glm::vec3& sun)
     }
 }
 
-void SandMesh::makeChunks() {
+void GridMesh::makeChunks() {
     chunks_.reserve(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
     for (int y = 0; y < down_; ++y) {
         for (int x = 0; x < across_; ++x) {
@@ -55,7 +55,7 @@ void SandMesh::makeChunks() {
     }
 }
 
-void SandMesh::makeGroups() {
+void GridMesh::makeGroups() {
     for (int y = 0; y < down_; y += kGroup) {
         for (int x = 0; x < across_; x += kGroup) {
             Group group;
@@ -69,10 +69,10 @@ void SandMesh::makeGroups() {
 }
 
 /// Returns the vertices that look different after these cells have changed.
-sand::CellRect SandMesh::verticesOver(const sand::CellRect& cells) const {
+sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
     // Cell c lies under vertex c + 1. The normals and the shade of the vertices around it depend on the cell.
     const sand::CellRect reached =
-        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(SandSurface::kReach);
+        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(GridVertices::kReach);
     // The outermost ring repeats the ring next to it. Vertices of chunks beyond the grid repeat the outermost ring.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
@@ -80,8 +80,8 @@ sand::CellRect SandMesh::verticesOver(const sand::CellRect& cells) const {
             end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
 }
 
-HeightRange SandMesh::heightsAround(const sand::CellRect& vertices,
-                                    std::span<const SandSurface::Overwritten> overwritten) const {
+HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
+                                    std::span<const GridVertices::Overwritten> overwritten) const {
     const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(longestStride()));
     HeightRange heights = surface_.heights(cells);
     for (const auto& [changed, before] : overwritten) {
@@ -92,9 +92,9 @@ HeightRange SandMesh::heightsAround(const sand::CellRect& vertices,
     return heights;
 }
 
-bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
+bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
     const sand::HeightField& field = std::get<sand::GridData>(data).field;
-    std::vector<SandSurface::Overwritten> overwritten;
+    std::vector<GridVertices::Overwritten> overwritten;
     if (change.whole) {
         surface_.takeOver(field, field.bounds(), overwritten);
     } else {
@@ -118,14 +118,14 @@ bool SandMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     return rim;
 }
 
-sand::CellRect SandMesh::chunksAround(const sand::CellRect& vertices) const {
+sand::CellRect GridMesh::chunksAround(const sand::CellRect& vertices) const {
     // A vertex on an edge belongs to both chunks.
     return sand::CellRect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
                           (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
         .clippedTo({0, 0, across_, down_});
 }
 
-void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices) {
+void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices) {
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
             Chunk& changed = chunk(x, y);
@@ -146,7 +146,7 @@ void SandMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
     }
 }
 
-Box SandMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
+Box GridMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
     // A hundredth of a cell more, for rounding of GL's floats.
     const double margin = 0.01 * double{surface_.cellSize()};
     const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
@@ -155,7 +155,7 @@ Box SandMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) 
 }
 
 template <class Visit>
-void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
+void GridMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
     for (const Group& group : groups_) {
         if (culling && !inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
             continue;
@@ -170,7 +170,7 @@ void SandMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visi
     }
 }
 
-int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
+int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     Chunk& asked = chunk(x, y);
     if (asked.chosenFor != choice_) {
         if (!asked.measured && !rule.needsEveryCell()) {
@@ -185,7 +185,7 @@ int SandMesh::levelOf(int x, int y, const LevelRule& rule) {
 
 /// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the
 /// rim have level 0, because the cut sides of the sand have all vertices.
-ChunkLevels SandMesh::levelsOf(int x, int y, const LevelRule& rule) {
+ChunkLevels GridMesh::levelsOf(int x, int y, const LevelRule& rule) {
     if (coarsest_ == 0) {
         return {};
     }
@@ -198,7 +198,7 @@ ChunkLevels SandMesh::levelsOf(int x, int y, const LevelRule& rule) {
     return levels;
 }
 
-DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
+DrawnLevels GridMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
     if (coarsest_ == 0) {
         return {};
     }
@@ -216,7 +216,7 @@ DrawnLevels SandMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRul
 }
 
 /// Returns whether the level of a chunk may be visible: in the chunk, or along the edges of the chunks around it.
-bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
+bool GridMesh::mayMatter(int x, int y, const LevelRule& rule) const {
     const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
     for (int v = beside.y0; v < beside.y1; ++v) {
         for (int u = beside.x0; u < beside.x1; ++u) {
@@ -230,7 +230,7 @@ bool SandMesh::mayMatter(int x, int y, const LevelRule& rule) const {
 }
 
 /// Returns the longest side along an axis of the triangles that are drawn at these vertices [cell].
-int SandMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const {
+int GridMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const {
     int level = 0;
     const sand::CellRect chunks = levels.empty() ? sand::CellRect{} : chunksAround(vertices);
     for (int y = chunks.y0; y < chunks.y1; ++y) {
@@ -242,12 +242,12 @@ int SandMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& le
 }
 
 /// Returns the box around these vertices and around `margin` more vertices on each side.
-Box SandMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
+Box GridMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
     const sand::CellRect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
 }
 
-std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
+std::vector<Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
     std::vector<Box> changed;
     for (const auto& [since, part] : changes_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
@@ -256,7 +256,7 @@ std::vector<Box> SandMesh::changesSince(std::uint64_t revision, DrawnLevels& lev
     return changed;
 }
 
-void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
+void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
                             std::vector<Box>& changed) {
     ++choice_;
     for (const Group& group : groups_) {
@@ -281,7 +281,7 @@ void SandMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
     }
 }
 
-ChunkGeometry& SandMesh::geometryOf(Chunk& chunk, int level) {
+ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, int level) {
     auto found = std::ranges::find(chunk.geometries, level, &ChunkGeometry::level);
     if (found == chunk.geometries.end()) {
         found = chunk.geometries.emplace(found, chunk.vertices, level);
@@ -293,7 +293,7 @@ ChunkGeometry& SandMesh::geometryOf(Chunk& chunk, int level) {
     return *found;
 }
 
-const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
+const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
     const auto found = indices_.find(levels);
     if (found != indices_.end()) {
         return found->second;
@@ -313,13 +313,13 @@ const SandMesh::Indices& SandMesh::indicesOf(const ChunkLevels& levels) {
     return made;
 }
 
-void SandMesh::prepare(const GlProgram& program) const {
+void GridMesh::prepare(const GlProgram& program) const {
     program.set("uCell", surface_.cellSize());
     program.set("uCells", glm::vec2(surface_.columns(), surface_.rows()));
     program.set("uFirst", 0.5F);
 }
 
-SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
+GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
                                const std::function<void(const Box&)>& before) {
     Drawn drawn;
     ++choice_;
@@ -343,7 +343,7 @@ SandMesh::Drawn SandMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
 }
 
 /// Draws the blocks that reach into `frustum`, or all blocks if it is null. Returns the number of triangles.
-int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
+int GridMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const {
     const auto draw = [](int first, int count) {
         glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_SHORT,
                        reinterpret_cast<const void*>(static_cast<std::size_t>(first) * sizeof(std::uint16_t)));
@@ -376,7 +376,7 @@ int SandMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
     return triangles;
 }
 
-void SandMesh::dropUnused() {
+void GridMesh::dropUnused() {
     if (bytes_ <= kManyBytes) {
         return;
     }

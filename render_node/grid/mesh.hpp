@@ -34,10 +34,10 @@ struct ChangedVertices {
 /// at the coarsest level that the camera's rule allows. Only these chunks are computed and sent to GL. A chunk is
 /// computed again when the sand in its reach has changed and a camera sees it. If vertices take much memory, the
 /// vertices of chunks that were not drawn lately are removed.
-class SandMesh final : public DrawnSurface {
+class GridMesh final : public DrawnSurface {
 public:
     /// `sun` points towards the sun and has length 1.
-    SandMesh(const sand::HeightField& field, const glm::vec3& sun);
+    GridMesh(const sand::HeightField& field, const glm::vec3& sun);
 
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                               std::span<const glm::dmat4> cameras) override;
@@ -85,7 +85,7 @@ private:
     /// Returns the range of heights of all triangles that reach these vertices, now and before the heights were
     /// overwritten.
     [[nodiscard]] HeightRange heightsAround(const sand::CellRect& vertices,
-                                            std::span<const SandSurface::Overwritten> overwritten) const;
+                                            std::span<const GridVertices::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
@@ -106,7 +106,7 @@ private:
     int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
     void dropUnused();
 
-    SandSurface surface_;
+    GridVertices surface_;
     glm::vec3 sun_;
     int coarsest_;                 // level
     int across_, down_;            // chunks

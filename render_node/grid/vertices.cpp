@@ -12,14 +12,14 @@
 namespace render_node {
 namespace {
 
-constexpr int kLanes = SandSurface::kBlock;
+constexpr int kLanes = GridVertices::kBlock;
 constexpr float kFarAbove = std::numeric_limits<float>::infinity();
 constexpr float kFarBelow = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
 /// Lowest and highest of many heights, kept separately for each lane of a vector.
-class SandSurface::RangeByLanes {
+class GridVertices::RangeByLanes {
 public:
     RangeByLanes() {
         lowest_.fill(kFarAbove);
@@ -39,7 +39,7 @@ private:
 };
 
 /// Comparison, conversion and copying of a block's heights, row by row.
-class SandSurface::BlockWalk {
+class GridVertices::BlockWalk {
 public:
     /// Copies a row of `cells` heights, at most kLanes, starting in the west.
     template <class Count>
@@ -80,7 +80,7 @@ private:
     RangeByLanes before_, now_;
 };
 
-SandSurface::SandSurface(const sand::HeightField& field)
+GridVertices::GridVertices(const sand::HeightField& field)
     : columns_(field.columns()),
       rows_(field.rows()),
       cellSize_(static_cast<float>(field.cellSize())),
@@ -91,12 +91,12 @@ SandSurface::SandSurface(const sand::HeightField& field)
     takeOver(field, field.bounds(), all);
 }
 
-std::size_t SandSurface::blockAt(int x, int y) const {
+std::size_t GridVertices::blockAt(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(blocksAcross_) + static_cast<std::size_t>(x);
 }
 
-void SandSurface::takeOver(const sand::HeightField& field, const sand::CellRect& cells,
-                           std::vector<Overwritten>& overwritten) {
+void GridVertices::takeOver(const sand::HeightField& field, const sand::CellRect& cells,
+                            std::vector<Overwritten>& overwritten) {
     for (int y = cells.y0 / kBlock; y * kBlock < cells.y1; ++y) {
         for (int x = cells.x0 / kBlock; x * kBlock < cells.x1; ++x) {
             takeOverBlock(field, x, y, overwritten);
@@ -104,8 +104,8 @@ void SandSurface::takeOver(const sand::HeightField& field, const sand::CellRect&
     }
 }
 
-void SandSurface::takeOverBlock(const sand::HeightField& field, int blockX, int blockY,
-                                std::vector<Overwritten>& overwritten) {
+void GridVertices::takeOverBlock(const sand::HeightField& field, int blockX, int blockY,
+                                 std::vector<Overwritten>& overwritten) {
     const sand::CellRect cells =
         sand::CellRect{blockX * kBlock, blockY * kBlock, (blockX + 1) * kBlock, (blockY + 1) * kBlock}.clippedTo(
             field.bounds());
@@ -127,12 +127,12 @@ void SandSurface::takeOverBlock(const sand::HeightField& field, int blockX, int 
     }
 }
 
-sand::CellRect SandSurface::cellsUnder(const sand::CellRect& vertices) const {
+sand::CellRect GridVertices::cellsUnder(const sand::CellRect& vertices) const {
     return {std::clamp(vertices.x0 - 1, 0, columns_ - 1), std::clamp(vertices.y0 - 1, 0, rows_ - 1),
             std::clamp(vertices.x1 - 2, 0, columns_ - 1) + 1, std::clamp(vertices.y1 - 2, 0, rows_ - 1) + 1};
 }
 
-HeightRange SandSurface::heights(const sand::CellRect& cells) const {
+HeightRange GridVertices::heights(const sand::CellRect& cells) const {
     const auto endBlock = [](int end, int all) { return end == all ? blocksFor(end) : end / kBlock; };
     const sand::CellRect blocks{blocksFor(cells.x0), blocksFor(cells.y0), endBlock(cells.x1, columns_),
                                 endBlock(cells.y1, rows_)};
@@ -158,7 +158,7 @@ HeightRange SandSurface::heights(const sand::CellRect& cells) const {
     return found;
 }
 
-void SandSurface::add(const sand::CellRect& cells, RangeByLanes& range) const {
+void GridVertices::add(const sand::CellRect& cells, RangeByLanes& range) const {
     if (cells.empty()) {
         return;
     }
@@ -177,13 +177,13 @@ void SandSurface::add(const sand::CellRect& cells, RangeByLanes& range) const {
     placesRead_ += std::int64_t{cells.x1 - cells.x0} * (cells.y1 - cells.y0);
 }
 
-float SandSurface::height(int column, int row) const {
+float GridVertices::height(int column, int row) const {
     const auto x = static_cast<std::size_t>(std::clamp(column, 0, columns_ - 1));
     const auto y = static_cast<std::size_t>(std::clamp(row, 0, rows_ - 1));
     return heights_[y * static_cast<std::size_t>(columns_) + x];
 }
 
-SandRim SandSurface::rim() const {
+SandRim GridVertices::rim() const {
     SandRim rim;
     const auto add = [&](std::size_t side, int column, int row) {
         rim.sides[side].emplace_back(east(column), north(row), height(column - 1, row - 1));
@@ -199,11 +199,11 @@ SandRim SandSurface::rim() const {
     return rim;
 }
 
-float SandSurface::along(int vertex, int cells) const {
+float GridVertices::along(int vertex, int cells) const {
     return std::clamp(static_cast<float>(vertex) - 0.5F, 0.0F, static_cast<float>(cells)) * cellSize_;
 }
 
-glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
+glm::vec2 GridVertices::slope(int vertexColumn, int vertexRow) const {
     const int x = std::clamp(vertexColumn - 1, 0, columns_ - 1);
     const int y = std::clamp(vertexRow - 1, 0, rows_ - 1);
     // The slope at the rim is one-sided. A field of one column has slope 0 across it.
@@ -218,13 +218,13 @@ glm::vec2 SandSurface::slope(int vertexColumn, int vertexRow) const {
             rise(height(x, south), height(x, north), north - south)};
 }
 
-float SandSurface::mottling(int column, int row) const {
+float GridVertices::mottling(int column, int row) const {
     const int x = std::clamp(column - 1, 0, columns_ - 1);
     const int y = std::clamp(row - 1, 0, rows_ - 1);
     return static_cast<float>(mottlingAt(x, y)) / 255;
 }
 
-SandVertex SandSurface::vertex(int column, int row) const {
+GridVertex GridVertices::vertex(int column, int row) const {
     const int x = std::clamp(column - 1, 0, columns_ - 1);
     const int y = std::clamp(row - 1, 0, rows_ - 1);
     const float here = height(x, y);
@@ -234,7 +234,7 @@ SandVertex SandSurface::vertex(int column, int row) const {
     return vertexUnder(open, column, row);
 }
 
-void SandSurface::vertices(int firstColumn, int row, std::span<SandVertex> out) const {
+void GridVertices::vertices(int firstColumn, int row, std::span<GridVertex> out) const {
     const int last = firstColumn + static_cast<int>(out.size()) - 1;
     const bool inside = row - 1 >= kReach && row - 1 + kReach < rows_;
     // Places whose whole reach lies within the field need no clamping.
@@ -260,12 +260,12 @@ void SandSurface::vertices(int firstColumn, int row, std::span<SandVertex> out) 
     }
 }
 
-SandVertex SandSurface::vertexUnder(float open, int column, int row) const {
+GridVertex GridVertices::vertexUnder(float open, int column, int row) const {
     const int x = std::clamp(column - 1, 0, columns_ - 1);
     const int y = std::clamp(row - 1, 0, rows_ - 1);
     const glm::vec2 steep = slope(column, row);
     const float scale = 32767 / std::sqrt(1 + steep.x * steep.x + steep.y * steep.y);
-    SandVertex vertex{};
+    GridVertex vertex{};
     vertex.height = height(x, y);
     vertex.column = static_cast<std::uint16_t>(std::min(column, columns_ + 1));
     vertex.row = static_cast<std::uint16_t>(std::min(row, rows_ + 1));

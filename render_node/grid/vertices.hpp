@@ -14,27 +14,27 @@
 namespace render_node {
 
 /// Vertex of the sand, as the shader reads it.
-struct SandVertex {
+struct GridVertex {
     float height;                          // [scene unit]
     std::uint16_t column, row;             // place in the vertex grid
     std::int16_t normalEast, normalNorth;  // 1/32767
     std::uint16_t open;                    // share of the sky that is visible from the vertex, 1/65535
     std::uint16_t mottling;                // slow change of shade from place to place, 1/65535
 };
-static_assert(sizeof(SandVertex) == 16);
+static_assert(sizeof(GridVertex) == 16);
 
 /// Drawn surface of a height field, on the CPU: heights, normals and the visible share of the sky.
 ///
 /// There is a vertex over the centre of each cell, and one more ring on the outer edges of the field. So a field of c ×
 /// r cells has (c+2) × (r+2) vertices, and even one cell makes a surface. Not thread-safe.
-class SandSurface {
+class GridVertices {
 public:
     /// Distance up to which a vertex depends on cells around its own [cell].
     static constexpr int kReach = kSkyDistances.back();
     // [cell], as in the sand's lists of changes, and as many as an AVX2 vector has floats.
     static constexpr int kBlock = 8;
 
-    explicit SandSurface(const sand::HeightField& field);
+    explicit GridVertices(const sand::HeightField& field);
 
     /// Cells of one block that differed from the drawn ones: the smallest rectangle around them, and their earlier
     /// heights.
@@ -72,10 +72,10 @@ public:
     }
 
     /// Returns a vertex of the grid. A column or row beyond the grid repeats its last one.
-    [[nodiscard]] SandVertex vertex(int column, int row) const;
+    [[nodiscard]] GridVertex vertex(int column, int row) const;
     /// Writes neighbouring vertices of a row to `out`, starting with column `firstColumn`. Several times as fast as
     /// vertex().
-    void vertices(int firstColumn, int row, std::span<SandVertex> out) const;
+    void vertices(int firstColumn, int row, std::span<GridVertex> out) const;
     /// Returns the slope of the sand at a vertex, towards east and towards north.
     [[nodiscard]] glm::vec2 slope(int vertexColumn, int vertexRow) const;
     /// Returns the slow change of shade from place to place, 0 … 1.
@@ -89,7 +89,7 @@ private:
     [[nodiscard]] static int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
     [[nodiscard]] std::size_t blockAt(int x, int y) const;
     [[nodiscard]] float along(int vertex, int cells) const;
-    [[nodiscard]] SandVertex vertexUnder(float open, int column, int row) const;
+    [[nodiscard]] GridVertex vertexUnder(float open, int column, int row) const;
 
     int columns_, rows_;
     float cellSize_;

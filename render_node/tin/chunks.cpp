@@ -20,7 +20,7 @@ struct Ordered {
 
 }  // namespace
 
-void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
+void TinVertices::replace(std::int32_t slot, const TinTriangle& now) {
     if (triangle(slot).alive()) {
         leaveChunk(slot);
     }
@@ -36,7 +36,7 @@ void TinSurface::replace(std::int32_t slot, const TinTriangle& now) {
     chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
 }
 
-TinSurface::InChunk TinSurface::homeOf(const TinTriangle& triangle) const {
+TinVertices::InChunk TinVertices::homeOf(const TinTriangle& triangle) const {
     double x = 0, y = 0;  // [probe unit], sum of three corners
     for (const Vertex corner : triangle.corner) {
         x += vertices_[static_cast<std::size_t>(corner)].x;
@@ -50,7 +50,7 @@ TinSurface::InChunk TinSurface::homeOf(const TinTriangle& triangle) const {
 
 /// Moves a triangle to the right chunk and part after its corners have moved. Its corners still have the same numbers,
 /// because a removed vertex's number can be given to a vertex at another place.
-void TinSurface::keepHome(std::int32_t slot) {
+void TinVertices::keepHome(std::int32_t slot) {
     const TinTriangle same = triangle(slot);
     const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(same);
     if (in.chunk != home.chunk || in.part != home.part) {
@@ -58,7 +58,7 @@ void TinSurface::keepHome(std::int32_t slot) {
     }
 }
 
-void TinSurface::leaveChunk(std::int32_t slot) {
+void TinVertices::leaveChunk(std::int32_t slot) {
     InChunk& in = inChunk_[static_cast<std::size_t>(slot)];
     TinChunk& chunk = chunks_[static_cast<std::size_t>(in.chunk)];
     const std::int32_t last = chunk.slots.back();
@@ -69,18 +69,18 @@ void TinSurface::leaveChunk(std::int32_t slot) {
     in = {};
 }
 
-glm::dvec3 TinSurface::at(Vertex number) const {
+glm::dvec3 TinVertices::at(Vertex number) const {
     const TinVertex& drawn = vertices_[static_cast<std::size_t>(number)];
     return {drawn.x * probe_, drawn.y * probe_, drawn.height};
 }
 
-Box TinSurface::boxOf(const TinTriangle& triangle) const {
+Box TinVertices::boxOf(const TinTriangle& triangle) const {
     const glm::dvec3 a = at(triangle.corner[0]), b = at(triangle.corner[1]), c = at(triangle.corner[2]);
     const double margin = 0.01 * cellSize_;  // for rounding of GL's floats
     return {glm::min(a, glm::min(b, c)) - margin, glm::max(a, glm::max(b, c)) + margin};
 }
 
-bool TinSurface::settle(TinChunk& chunk) {
+bool TinVertices::settle(TinChunk& chunk) {
     if (!chunk.changed) {
         return false;
     }
@@ -98,7 +98,7 @@ bool TinSurface::settle(TinChunk& chunk) {
     return true;
 }
 
-const std::vector<TinChunk::Part>& TinSurface::partsOf(TinChunk& chunk) const {
+const std::vector<TinChunk::Part>& TinVertices::partsOf(TinChunk& chunk) const {
     if (chunk.partsReshaped) {
         chunk.parts.clear();
         int last = -1;
@@ -118,7 +118,7 @@ const std::vector<TinChunk::Part>& TinSurface::partsOf(TinChunk& chunk) const {
     return chunk.parts;
 }
 
-const Box& TinSurface::boxOf(TinChunk& chunk) const {
+const Box& TinVertices::boxOf(TinChunk& chunk) const {
     if (chunk.reshaped) {
         chunk.box = boxOf(triangles_[static_cast<std::size_t>(chunk.slots.front())]);
         for (const std::int32_t slot : chunk.slots) {

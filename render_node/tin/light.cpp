@@ -79,7 +79,7 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
 
 }  // namespace
 
-std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
+std::uint16_t TinVertices::mottlingOf(std::int32_t x, std::int32_t y) {
     const int fromX = std::max(0, x - kCell / 2), fromY = std::max(0, y - kCell / 2);
     const int column = fromX / kCell, row = fromY / kCell, alongX = fromX % kCell, alongY = fromY % kCell;
     const auto between = [&](int at) {
@@ -91,7 +91,7 @@ std::uint16_t TinSurface::mottlingOf(std::int32_t x, std::int32_t y) {
 
 /// Returns the vertices whose light has changed because of these triangles. Adds the triangles around them to the
 /// changes.
-std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
+std::vector<Vertex> TinVertices::relight(const SurfaceView& tin, const std::vector<std::int32_t>& reshaped) {
     lit_.clear();
     for (const std::int32_t slot : reshaped) {
         if (triangle(slot).alive()) {
@@ -124,7 +124,7 @@ std::vector<Vertex> TinSurface::relight(const SurfaceView& tin, const std::vecto
     return others;
 }
 
-void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle) {
+void TinVertices::addToRelief(const SurfaceView& tin, const TinTriangle& triangle) {
     if (triangle.alive()) {
         const auto corner = [&](std::size_t i) {
             const auto number = static_cast<std::size_t>(triangle.corner[i]);
@@ -134,7 +134,7 @@ void TinSurface::addToRelief(const SurfaceView& tin, const TinTriangle& triangle
     }
 }
 
-std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
+std::optional<Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
     const Triangles& mesh = tin.triangles;
     Reach changed;
     const auto addVertex = [&](Vertex vertex) {
@@ -187,7 +187,7 @@ std::optional<Box> TinSurface::reachOf(const SurfaceView& tin, const sand::TinCh
     return reach;
 }
 
-bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
+bool TinVertices::lightFrom(const SurfaceView& tin, Vertex number) {
     thread_local std::vector<Pair> around;  // reused, because thousands of vertices per frame need one
     const glm::dvec3 normal = 32767.0 * glm::normalize(normalAt(tin, number, around));
     const auto east = static_cast<std::int16_t>(normal.x), north = static_cast<std::int16_t>(normal.y);
@@ -198,7 +198,7 @@ bool TinSurface::lightFrom(const SurfaceView& tin, Vertex number) {
     return other;
 }
 
-bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
+bool TinVertices::openTo(const SurfaceView& tin, Vertex number) {
     TinVertex& drawn = vertex(number);
     const auto here = static_cast<float>(tin.heights[static_cast<std::size_t>(number)]);
     float share = 0;
@@ -221,7 +221,7 @@ bool TinSurface::openTo(const SurfaceView& tin, Vertex number) {
 }
 
 /// Adds to lit_ the vertices whose sky these cells of the relief may change.
-void TinSurface::addVerticesAround(const std::vector<sand::CellRect>& cells) {
+void TinVertices::addVerticesAround(const std::vector<sand::CellRect>& cells) {
     for (const sand::CellRect& rect : cells) {
         const sand::CellRect reach = rect.grownBy(kLightReach);
         const LatticePoint southWest{reach.x0 * kCell, reach.y0 * kCell}, northEast{reach.x1 * kCell, reach.y1 * kCell};

@@ -109,7 +109,7 @@ bool TinMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& c
     return takeOver(surface_.update(tin, all));
 }
 
-bool TinMesh::takeOver(const TinSurface::Change& change) {
+bool TinMesh::takeOver(const TinVertices::Change& change) {
     if (change.boxes.empty() && change.vertices.empty()) {
         return false;
     }

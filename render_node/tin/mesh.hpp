@@ -49,13 +49,13 @@ private:
     };
     template <class Visit>  // void(std::size_t chunk)
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
-    [[nodiscard]] bool takeOver(const TinSurface::Change& change);
+    [[nodiscard]] bool takeOver(const TinVertices::Change& change);
     void sendAllVertices();
     void sendVertices(std::span<const sand::tin::Vertex> changed);
     void sendTriangles(std::size_t chunk);
     void sendMarks(std::size_t chunk);
 
-    TinSurface surface_;
+    TinVertices surface_;
     TinBacklog backlog_;
     float probe_;      // [scene unit]
     glm::vec2 field_;  // [probe unit]

@@ -21,7 +21,7 @@ constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // a coarse 
 
 }  // namespace
 
-TinTriangle TinSurface::drawnOf(const sand::tin::Triangle& triangle) {
+TinTriangle TinVertices::drawnOf(const sand::tin::Triangle& triangle) {
     TinTriangle drawn;
     if (!triangle.isGround()) {
         return drawn;
@@ -35,12 +35,12 @@ TinTriangle TinSurface::drawnOf(const sand::tin::Triangle& triangle) {
     return drawn;
 }
 
-double TinSurface::chunkSideFor(const Triangles& mesh) {
+double TinVertices::chunkSideFor(const Triangles& mesh) {
     const double wanted = std::ceil(std::sqrt(static_cast<double>(mesh.triangles.size()) / kTrianglesPerChunk));
     return std::max(mesh.width, mesh.depth) / std::clamp(wanted, kFewestChunksAcross, kMostChunksAcross);
 }
 
-TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide)
+TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSide)
     : cellSize_(cellSize),
       unit_(cellSize / sand::kUnitsPerCell),
       probe_(cellSize / kCell),
@@ -74,14 +74,14 @@ TinSurface::TinSurface(const SurfaceView& tin, double cellSize, double chunkSide
     }
 }
 
-void TinSurface::grow(const Triangles& mesh) {
+void TinVertices::grow(const Triangles& mesh) {
     vertices_.resize(std::max(vertices_.size(), mesh.places.size()));
     triangles_.resize(std::max(triangles_.size(), mesh.triangles.size()));
     inChunk_.resize(triangles_.size());
 }
 
-TinSurface::Change TinSurface::replaceWhole(const SurfaceView& tin) {
-    TinSurface anew(tin, cellSize_, chunkSide_);
+TinVertices::Change TinVertices::replaceWhole(const SurfaceView& tin) {
+    TinVertices anew(tin, cellSize_, chunkSide_);
     anew.ever_ = around(ever_, anew.ever_);
     *this = std::move(anew);
     Change change;
@@ -92,7 +92,7 @@ TinSurface::Change TinSurface::replaceWhole(const SurfaceView& tin) {
     return change;
 }
 
-TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinChange& sandChange) {
+TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinChange& sandChange) {
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
@@ -138,7 +138,7 @@ TinSurface::Change TinSurface::update(const SurfaceView& tin, const sand::TinCha
     return change;
 }
 
-TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
+TinVertex TinVertices::placed(const SurfaceView& tin, Vertex number) const {
     const bool known = static_cast<std::size_t>(number) < vertices_.size();
     TinVertex now = known ? vertices_[static_cast<std::size_t>(number)] : TinVertex{};
     if (!tin.triangles.alive(number)) {
@@ -153,7 +153,7 @@ TinVertex TinSurface::placed(const SurfaceView& tin, Vertex number) const {
 }
 
 /// Returns the vertices among `asked` that are new, removed, or at another place than drawn.
-std::vector<Vertex> TinSurface::moved(const SurfaceView& tin, std::span<const Vertex> asked) const {
+std::vector<Vertex> TinVertices::moved(const SurfaceView& tin, std::span<const Vertex> asked) const {
     std::vector<Vertex> others;
     for (const Vertex number : asked) {
         if (static_cast<std::size_t>(number) >= vertices_.size()) {
@@ -169,7 +169,7 @@ std::vector<Vertex> TinSurface::moved(const SurfaceView& tin, std::span<const Ve
 }
 
 /// Copies places and heights of `vertices`. Returns whether the rim has changed.
-bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) {
+bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices) {
     bool rim = false;
     for (const Vertex number : vertices) {
         rim |= keepRim(number, false);
@@ -190,7 +190,7 @@ bool TinSurface::move(const SurfaceView& tin, std::span<const Vertex> vertices) 
     return rim;
 }
 
-void TinSurface::moveSquare(Vertex number, const TinVertex& before) {
+void TinVertices::moveSquare(Vertex number, const TinVertex& before) {
     const TinVertex& drawn = vertex(number);
     if (before.x >= 0) {
         squares_.remove(number, {before.x, before.y});
@@ -202,7 +202,7 @@ void TinSurface::moveSquare(Vertex number, const TinVertex& before) {
 }
 
 /// Adds a vertex to the rim, or removes it, if it lies on the rim. Returns whether it does.
-bool TinSurface::keepRim(Vertex number, bool present) {
+bool TinVertices::keepRim(Vertex number, bool present) {
     const TinVertex& drawn = vertex(number);
     if (drawn.x < 0) {
         return false;
@@ -223,7 +223,7 @@ bool TinSurface::keepRim(Vertex number, bool present) {
     return onRim;
 }
 
-SandRim TinSurface::rim() const {
+SandRim TinVertices::rim() const {
     SandRim rim;
     for (std::size_t side = 0; side < rim_.size(); ++side) {
         for (const auto& [along, number] : rim_[side]) {

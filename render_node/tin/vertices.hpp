@@ -49,11 +49,11 @@ struct TinChunk {
         Box box;
     };
     std::vector<std::int32_t> slots;  // slots of its triangles
-    bool changed = false;             // `slots` has other triangles or is not sorted; see TinSurface::settle()
+    bool changed = false;             // `slots` has other triangles or is not sorted; see TinVertices::settle()
     bool reshaped = false;            // a triangle has changed its shape since the box was measured
     bool partsReshaped = true;        // a triangle has changed its shape since the parts were measured
     Box box;
-    std::vector<Part> parts;  // made by TinSurface::partsOf()
+    std::vector<Part> parts;  // made by TinVertices::partsOf()
 };
 
 /// Sorts numbers and removes duplicates.
@@ -66,10 +66,10 @@ void sortOnce(std::vector<Number>& numbers) {
 /// Drawn surface of a TIN, on the CPU: vertices with their light, triangles by slot, and lists of changes.
 ///
 /// It depends only on the TIN at the start and on the TIN now, not on the TINs between them. Not thread-safe.
-class TinSurface {
+class TinVertices {
 public:
-    TinSurface(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */)
-        : TinSurface(tin, cellSize, chunkSideFor(tin.triangles)) {}
+    TinVertices(const sand::tin::SurfaceView& tin, double cellSize /* [scene unit] */)
+        : TinVertices(tin, cellSize, chunkSideFor(tin.triangles)) {}
 
     /// Changes by one update.
     struct Change {
@@ -109,7 +109,7 @@ private:
     struct InChunk {
         int chunk = -1, part = 0, at = 0;
     };
-    TinSurface(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
+    TinVertices(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
     [[nodiscard]] static double chunkSideFor(const sand::tin::Triangles& mesh);
     [[nodiscard]] static TinTriangle drawnOf(const sand::tin::Triangle& triangle);
     void grow(const sand::tin::Triangles& mesh);

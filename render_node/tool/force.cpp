@@ -23,7 +23,8 @@ std::optional<ForceArrow> ToolForce::arrow(const sand::Replica& replica) {
     if (!replica.engaged() || !(radius > 0)) {
         return std::nullopt;
     }
-    const sand::force::SurfacePatch patch(replica);
+    sand::force::SurfacePatch patch;
+    patch.take(replica.surface(), replica.rules(), replica.cellSize(), replica.probe());
     const auto tool = sand::force::contourOf(replica.tool(), replica.cellSize());
     const auto felt = sand::force::respond(constants_, patch, tool, place);
     const Vec3 whole = sand::force::lawfulForce(felt, velocity_);

@@ -78,17 +78,16 @@ bool SurfacePatch::takeFacets(const tin::SurfaceView& tin, double cellSize, Prob
     return true;
 }
 
-void SurfacePatch::take(const Replica& replica, const ProbePoint& probe) {
-    const double cell = replica.cellSize(), radius = replica.toolRadius();
-    const SurfaceData data = replica.surface().data();
+void SurfacePatch::take(const Surface& surface, const Rules& rules, double cellSize, const ProbePoint& probe) {
+    const double radius = rules.tuning.tool.radius * cellSize / kProbePerCell;
+    const SurfaceData data = surface.data();
     if (const auto* grid = std::get_if<GridData>(&data)) {
         takeCells(grid->field, probe, radius);
-    } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cell, probe, radius)) {
-        const Rules& rules = replica.rules();
-        sample({rules.columns, rules.rows, cell, kMostHeights}, probe, radius, [&](int column, int row) {
-            return replica.surface().height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
+    } else if (const tin::SurfaceView& tin = std::get<TinData>(data).view; !takeFacets(tin, cellSize, probe, radius)) {
+        sample({rules.columns, rules.rows, cellSize, kMostHeights}, probe, radius, [&](int column, int row) {
+            return surface.height((column + 0.5) * kProbePerCell, (row + 0.5) * kProbePerCell);
         });
-        cutBeyond_ = halfCut(tin, cell);
+        cutBeyond_ = halfCut(tin, cellSize);
     }
 }
 

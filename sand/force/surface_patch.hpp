@@ -7,8 +7,9 @@
 #include "sand/force/dual.hpp"
 #include "sand/force/facets.hpp"
 #include "sand/model/height_field.hpp"
-#include "sand/model/step.hpp"
-#include "sand/replica.hpp"
+#include "sand/model/probe_point.hpp"
+#include "sand/model/rules.hpp"
+#include "sand/model/surface.hpp"
 
 namespace sand::force {
 
@@ -32,10 +33,9 @@ public:
     SurfacePatch(const HeightField& field, ProbePoint probe, double toolRadius /* [scene unit] */);
     /// Takes the triangles of a TIN with nominal cells of `cellSize`. The patch is empty if there are too many.
     SurfacePatch(const tin::SurfaceView& tin, double cellSize, ProbePoint probe, double toolRadius);
-    /// Takes the sand around the replica's tool.
-    explicit SurfacePatch(const Replica& replica) { take(replica, replica.probe()); }
-    /// Takes the sand around `probe` that the replica's tool can reach. Reuses the memory of the patch.
-    void take(const Replica& replica, const ProbePoint& probe);
+    /// Takes the sand around `probe` that the tool of `rules` can reach. The field has nominal cells of `cellSize`.
+    /// Reuses the memory of the patch.
+    void take(const Surface& surface, const Rules& rules, double cellSize /* [scene unit] */, const ProbePoint& probe);
 
     /// Returns whether (x, y) lies over the field.
     [[nodiscard]] bool overField(double x, double y) const {

@@ -12,8 +12,8 @@ inline constexpr std::int32_t kLargestThreshold =
     1 << 30;                                       // [unit]; no sand slides then, because differences never exceed 2^29
 inline constexpr std::int32_t kMostSweeps = 4096;  // most sweeps per step
 
-/// Rules that an operator may change during a session. scene/material.hpp computes them once; then they are sent as
-/// whole numbers.
+/// Rules that an operator may change during a session. scene/model/material.hpp computes them once; then they are sent
+/// as whole numbers.
 struct Tuning {
     /// Largest stable height difference over one cell from west to east: tan(talus) · cell size [unit].
     std::int32_t threshold = 0;

@@ -5,7 +5,7 @@
 
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/mesh_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 

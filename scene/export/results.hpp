@@ -5,7 +5,7 @@
 
 #include "sand/replica.hpp"
 #include "scene/import/mesh_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sand/model/cell_array.hpp"
-#include "scene/georeference.hpp"
+#include "scene/model/georeference.hpp"
 
 namespace scene {
 

@@ -5,7 +5,7 @@
 
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/points_file.hpp"
-#include "scene/raster_statement.hpp"
+#include "scene/model/raster_statement.hpp"
 
 namespace scene {
 

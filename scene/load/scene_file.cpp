@@ -14,7 +14,7 @@
 #include "scene/load/terrain.hpp"
 #include "scene/load/tin_settings.hpp"
 #include "scene/load/tin_table.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 namespace scene {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "host/toml_table.hpp"
-#include "scene/georeference.hpp"
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/points_file.hpp"
 #include "scene/load/scene_file.hpp"
-#include "scene/raster_statement.hpp"
+#include "scene/model/georeference.hpp"
+#include "scene/model/raster_statement.hpp"
 
 namespace scene {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "host/toml_table.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 

@@ -4,7 +4,7 @@
 
 #include "host/toml_table.hpp"
 #include "scene/import/points_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene {
 

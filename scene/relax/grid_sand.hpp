@@ -9,8 +9,8 @@
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 #include "scene/import/esri_grid.hpp"
+#include "scene/model/scene.hpp"
 #include "scene/relax/height_scale.hpp"
-#include "scene/scene.hpp"
 
 namespace scene::relax {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "scene/import/esri_grid.hpp"
-#include "scene/raster_statement.hpp"
+#include "scene/model/raster_statement.hpp"
 
 namespace scene::relax {
 

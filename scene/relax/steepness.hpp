@@ -3,7 +3,7 @@
 
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace scene::relax {
 

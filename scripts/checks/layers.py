@@ -4,8 +4,11 @@
 
 A file may include a header of its own folder, or of a library that its own library links in CMake. Other folders include
 a header, so it may only include headers of libraries that its library links PUBLIC. Folders may not include each other in
-a circle. A source is in the folder of the header that it implements. A header with the line `// Private to this folder.`
-is only included from its folder and from its tests. A folder holds at most 25 sources.
+a circle, and a folder's own files are above its subfolders: they may include these, and these never include them, not even
+through other folders. This also holds in bench/ and tests/. A source is in the folder of the header that it implements.
+A header with the line `// Private to this folder.` is only included from its folder and from its tests. A folder holds at
+most 25 sources. A header that declares one type, and no function, is named by it. A namespace is that of the top folder,
+with sand::grid, sand::tin, sand::force and scene::relax.
 
 usage: scripts/checks/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
 """
@@ -23,6 +26,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_SOURCES = 25
 PRIVATE = "// Private to this folder."
 OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
+# Folders of a module alone. It may include what the library that loads it may include.
+LOADED_BY = {"scene/gdal": "scene_import"}
+# Folders with a namespace of their own.
+OWN_NAMESPACE = ("sand/grid", "sand/tin", "sand/force", "scene/relax")
+# Headers in the namespace of the top folder although their folder has its own: values of a scene.
+OF_THE_TOP = ("sand/force/force_constants.hpp",)
 
 
 class Project:
@@ -61,9 +70,9 @@ class Project:
         own = self.owner.get(stem + ".cpp")
         if own and self.targets[own]["type"] != "MODULE_LIBRARY":
             return own
-        while folder and folder not in self.library:
+        while folder and folder not in self.library and folder not in LOADED_BY:
             folder = os.path.dirname(folder)
-        return self.library.get(folder)
+        return self.library.get(folder) or LOADED_BY.get(folder)
 
     def usable(self, target, public_only):
         """Returns the targets whose headers the sources of `target` may include; if `public_only`, its headers."""
@@ -82,9 +91,18 @@ class Project:
         for path, names in self.includes.items():
             for name in names:
                 ends = os.path.dirname(path), os.path.dirname(name)
-                if ends[0] != ends[1] and not path.startswith(OUTER):
+                if ends[0] != ends[1]:
                     edges.setdefault(ends, []).append((path, name))
         return edges
+
+    def drawn_edges(self):
+        """Returns the edges of folder_edges() that are drawn: those of the product."""
+        return {ends: reasons for ends, reasons in self.folder_edges().items() if not f"{ends[0]}/".startswith(OUTER)}
+
+    def steps_down(self):
+        """Returns {(folder, folder somewhere below it)} of all folders with files."""
+        folders = {os.path.dirname(path) for path in self.sources}
+        return {(above, folder) for folder in folders for above in folders if folder.startswith(above + "/")}
 
 
 def wrong_links(project):
@@ -130,18 +148,20 @@ def crowded(project):
 
 
 def circles(project):
-    """Yields a message for every circle of folders, once."""
-    edges = project.folder_edges()
+    """Yields a message for every circle of folders, once. A folder counts as one that includes its subfolders."""
+    edges, steps = project.folder_edges(), project.steps_down()
     below = {}
-    for source, target in edges:
+    for source, target in {*edges, *steps}:
         below.setdefault(source, []).append(target)
     done, way = set(), []
 
     def visit(folder):
         if folder in way:
             circle = way[way.index(folder):] + [folder]
-            reason = edges[circle[-2], circle[-1]][0]
-            yield f"{' -> '.join(circle)}: a circle of folders, closed by {reason[0]} that includes {reason[1]}"
+            arrows = list(zip(circle, circle[1:]))
+            path, name = edges[[arrow for arrow in arrows if arrow in edges][-1]][0]
+            why = "" if all(arrow in edges for arrow in arrows) else "; a folder's own files are above its subfolders"
+            yield f"{' -> '.join(circle)}: a circle of folders, closed by {path} that includes {name}{why}"
         elif folder not in done:
             way.append(folder)
             for target in sorted(below.get(folder, [])):
@@ -153,8 +173,43 @@ def circles(project):
         yield from visit(folder)
 
 
+def snake_case(name):
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
+
+
+TYPE = re.compile(r"^(?:class|struct|enum class) (\w+)(?: final)?\s*(?::[^:;{][^;{]*)?\{", re.MULTILINE)
+FUNCTION = re.compile(r"^(?!class|struct|enum|namespace|using|template|static_assert|extern|[ #/}])[^\n/]*\w\((?!.*valuesOf)[^\n]*", re.MULTILINE)
+
+
+def misnamed(project):
+    """Yields a message for each header of one type that has another name. The folder may be a part of the type's name."""
+    for path, text in project.sources.items():
+        if not path.endswith(".hpp") or path.startswith(OUTER) or FUNCTION.search(text):
+            continue
+        folder, stem = os.path.split(path[:-len(".hpp")])
+        folder = os.path.basename(folder)
+        types = TYPE.findall(text)
+        if len(types) == 1 and snake_case(types[0]) not in {stem, f"{folder}_{stem}", f"{stem}_{folder}", f"{stem}_{folder.rstrip('s')}"}:
+            yield f"{path}: declares {types[0]} alone; name the header by it"
+
+
+def foreign_namespaces(project):
+    """Yields a message for each header that is in the namespace of another folder."""
+    for path, text in project.sources.items():
+        if not path.endswith(".hpp") or path.startswith(OUTER):
+            continue
+        own = next((folder for folder in OWN_NAMESPACE if path.startswith(folder + "/")), path.split("/")[0]).replace("/", "::")
+        if path in OF_THE_TOP:
+            own = path.split("/")[0]
+        if not any(name == own or name.startswith(own + "::") for name in re.findall(r"^(?:inline )?namespace ([\w:]+)", text, re.MULTILINE)):
+            yield f"{path}: is in another namespace than {own}"
+
+
+CHECKS = (wrong_links, misplaced, crowded, circles, misnamed, foreign_namespaces)
+
+
 def faults(project):
-    return [fault for check in (wrong_links, misplaced, crowded, circles) for fault in check(project)]
+    return [fault for check in CHECKS for fault in check(project)]
 
 
 def reduced(edges):
@@ -175,7 +230,7 @@ def reduced(edges):
 
 
 def fingerprint(project):
-    return hashlib.sha256(repr(sorted(project.folder_edges())).encode()).hexdigest()[:16]
+    return hashlib.sha256(repr(sorted(project.drawn_edges())).encode()).hexdigest()[:16]
 
 
 COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#dfe8c6", "haptic_bridge": "#f2cfc4",
@@ -183,7 +238,7 @@ COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#d
 
 
 def draw(project, file):
-    edges = reduced(project.folder_edges())
+    edges = reduced(project.drawn_edges())
     folders = sorted({folder for edge in edges for folder in edge})
     lines = ["digraph layers {", "rankdir=TB; nodesep=0.18; ranksep=0.38; bgcolor=white;",
              'node [shape=box, style="rounded,filled", color="#8a8578", fontname="Helvetica", fontsize=11, height=0.3];',

@@ -11,7 +11,7 @@
 #include "sand/model/rules.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
 namespace described {

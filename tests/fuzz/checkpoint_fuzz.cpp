@@ -3,7 +3,7 @@
 // the state behind it, which a replica would load.
 #include "master/journal/checkpoint.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -4,7 +4,7 @@
 #include "master/journal/saved_sand.hpp"
 #include "master/operator/operator_command.hpp"
 #include "sand/model/step.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "walls/stereo_change.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/sand/tin/packed_tin.hpp"
 

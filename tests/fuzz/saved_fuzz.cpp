@@ -8,13 +8,13 @@
 #include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
-#include "tests/fuzz/tin_scene.hpp"
+#include "tests/support/tin_scene.hpp"
 
 SANDWALL_FUZZER(saved) {
     if (size == 0) {
         return 0;
     }
-    static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), fuzz::tinScene()};
+    static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), samples::tinScene()};
     static const fuzz::ScratchFolder kScratch;
     const scene::Scene& scene = kScenes.at((data[0] >> 1U) & 1U);
     const fuzz::MemoryFile file(fuzz::checksummed({data, size}));

@@ -14,14 +14,14 @@
 #include "master/journal/saved_sand.hpp"
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/described/faults.hpp"
 #include "tests/described/samples.hpp"
 #include "tests/described/types.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/seeds.hpp"
-#include "tests/fuzz/tin_scene.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/tin_scene.hpp"
 #include "tracking/dtrack.hpp"
 #include "tracking/opentrack.hpp"
 #include "walls/wall.hpp"
@@ -150,7 +150,7 @@ void writeCheckpoints(Folder folder) {
 
 /// Writes files of saved sand, whole and without their checksum.
 void writeSaved(Folder folder, const fs::path& scratch) {
-    const std::array<scene::Scene, 2> scenes{samples::flatScene(24, 16), fuzz::tinScene()};
+    const std::array<scene::Scene, 2> scenes{samples::flatScene(24, 16), samples::tinScene()};
     for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
         sand::Replica replica(scenes[kind]);
         replica.apply(step(1));
@@ -210,7 +210,7 @@ void writeState(Folder folder) {
 /// Writes inputs of the fuzzer of steps: a kind of scene, a state, and steps with every edit.
 void writeSteps(Folder folder) {
     std::array<scene::Scene, 5> scenes{samples::flatScene(24, 16), samples::flatScene(24, 16),
-                                       samples::flatScene(24, 16), fuzz::tinScene(), fuzz::tinScene()};
+                                       samples::flatScene(24, 16), samples::tinScene(), samples::tinScene()};
     for (std::size_t kind = 0; kind < scenes.size(); ++kind) {
         sand::Replica replica(scenes[kind]);
         const sand::Replica before = replica;
@@ -234,7 +234,7 @@ void writeSteps(Folder folder) {
 }
 
 void writeTin(Folder folder) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::Tool& tool = scene.rules.tuning.tool;
     const auto add = [&] {

@@ -4,7 +4,7 @@
 // of compressed data would never reach the code behind the decompression.
 #include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
 #include "tests/support/sand_samples.hpp"

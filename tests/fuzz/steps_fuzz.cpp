@@ -8,7 +8,7 @@
 #include "sand/replica.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
-#include "tests/fuzz/tin_scene.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ using sand::Step;
 const scene::Scene& sceneOf(unsigned kind) {
     static const std::array<scene::Scene, 5> kScenes = [] {
         std::array<scene::Scene, 5> scenes{samples::flatScene(24, 16), samples::flatScene(24, 16),
-                                           samples::flatScene(24, 16), fuzz::tinScene(), fuzz::tinScene()};
+                                           samples::flatScene(24, 16), samples::tinScene(), samples::tinScene()};
         scenes[1].rules.rim = scenes[2].rules.rim = scenes[4].rules.rim = sand::Rim::open;
         auto ground = std::make_shared<sand::Ground>(24, 16);
         for (int x = 4; x < 20; ++x) {

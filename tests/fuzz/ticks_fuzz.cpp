@@ -7,7 +7,7 @@
 #include "haptic_bridge/loop/tick_replay.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tests/fuzz/tin_scene.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -54,7 +54,7 @@ SANDWALL_FUZZER(ticks) {
     if (size == 0) {
         return 0;
     }
-    static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), fuzz::tinScene()};
+    static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), samples::tinScene()};
     const fuzz::Input input = fuzz::Input(data, size).subspan(1);
     fuzz::takeOrRefuse([&] {
         if (data[0] % 3 == 0) {

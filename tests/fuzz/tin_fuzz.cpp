@@ -5,10 +5,10 @@
 
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
-#include "tests/fuzz/tin_scene.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -36,7 +36,7 @@ void goOn(TinSurface& surface, const scene::Scene& scene) {
 }
 
 void takeState(fuzz::Input bytes) {
-    static const scene::Scene kScene = fuzz::tinScene();
+    static const scene::Scene kScene = samples::tinScene();
     TinSurface surface(kScene.rules, kScene.tin);
     const auto copy = surface.reader()(bytes);
     fuzz::require(surface.reader()(copy->encode())->encode() == copy->encode(),
@@ -64,7 +64,7 @@ SANDWALL_FUZZER(tin) {
                 takeState(raw);
                 break;
             case 3: {  // a whole state, with the sand that is kept for an undo
-                static const scene::Scene kScene = fuzz::tinScene();
+                static const scene::Scene kScene = samples::tinScene();
                 sand::Replica replica(kScene);
                 replica.decodeState(fuzz::packedState(raw, kScene));
                 sand::Replica again(kScene);

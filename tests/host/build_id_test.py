@@ -68,7 +68,7 @@ class BuildId(unittest.TestCase):
         clone = self.copy("changed")
         before = build_id(clone)
         for path in ("sand/grid/erosion.hpp", "haptic_bridge/client/connection_thread.cpp", "host/worker_pool.cpp", "tracking/dtrack.cpp",
-                     "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "scene/import/gdal/gdal_raster.cpp",
+                     "render_node/gl/osmesa.cpp", "render_node/shaders/sand.frag.glsl", "scene/gdal/gdal_raster.cpp",
                      "haptic_bridge/link/security_openssl.cpp", "render_node/gl/glfw_window.cpp"):
             if of_the_sand_alone() and not (clone / path).exists():
                 continue

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "master/steps/recorded_steps.hpp"
-#include "tests/master/no_steps.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -5,11 +5,11 @@
 
 #include <random>
 
-#include "tests/fuzz/tin_scene.hpp"
-#include "tests/master/no_steps.hpp"
 #include "tests/support/hostile_sand.hpp"
 #include "tests/support/memory_limit.hpp"
+#include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -72,7 +72,7 @@ TEST(MasterSand, InjectsTheFaultsOfTheMasterAlone) {
 
 // A haptic server can send sand of 33 KB that claims 2^30 vertices.
 TEST(MasterSand, GoesOnAfterALoadThatClaimsTooMuch) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     const base::Bytes dead = hostile_sand::ofDeadVertices(*scene.tin, std::uint64_t{1} << 30);
     const std::string said = test::inTwoGiB([&] {
         Notes notes;

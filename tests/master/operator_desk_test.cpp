@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "tests/master/no_steps.hpp"
 #include "tests/support/control_client.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -9,8 +9,8 @@
 
 #include "master/journal/journal.hpp"
 #include "master/recovery.hpp"
-#include "tests/master/no_steps.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/small_disk.hpp"
 

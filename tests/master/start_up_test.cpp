@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/refusal.hpp"
 

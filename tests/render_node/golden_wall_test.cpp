@@ -12,9 +12,9 @@
 
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "tests/render_node/golden.hpp"
-#include "tests/render_node/wall_painter.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/golden_pictures.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace {
 

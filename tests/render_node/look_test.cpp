@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 #include "walls/projection.hpp"
 

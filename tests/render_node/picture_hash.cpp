@@ -3,7 +3,7 @@
 #include <exception>
 
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 
 int main() try {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "render_node/tile_painter.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 
 namespace {

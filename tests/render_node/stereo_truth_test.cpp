@@ -9,8 +9,8 @@
 #include <string>
 
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace {
 

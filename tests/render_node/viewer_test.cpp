@@ -16,7 +16,7 @@
 #include "render_node/gl/window_context.hpp"
 #include "render_node/overlay/help.hpp"
 #include "render_node/tile_painter.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "tests/support/wall_painter.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"

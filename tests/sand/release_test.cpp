@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand that a tool held back flows when the tool turns, moves or leaves.
-#include "tests/sand/release.hpp"
-
 #include <gtest/gtest.h>
 
 #include "sand/replica.hpp"
+#include "tests/support/sand_release.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace release {

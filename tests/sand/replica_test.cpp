@@ -6,7 +6,7 @@
 #include <random>
 
 #include "base/float_environment.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/other_floats.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"

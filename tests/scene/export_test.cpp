@@ -8,7 +8,7 @@
 
 #include "scene/export/raster.hpp"
 #include "scene/export/tin_raster.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_of.hpp"
 
 namespace exported {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/scene/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/scene_fixture.hpp"
 
 namespace {
 

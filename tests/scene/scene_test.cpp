@@ -13,7 +13,7 @@
 #include "base/input_error.hpp"
 #include "scene/import/esri_grid.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/scene/scene_fixture.hpp"
+#include "tests/support/scene_fixture.hpp"
 
 namespace {
 

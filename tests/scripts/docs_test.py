@@ -180,7 +180,7 @@ LISTS = (
     ("scene/load/terrain.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/terrain_source.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/tin_table.cpp", SCENE_KEY, ("docs/scenes.md",)),
-    ("scene/material.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/model/material.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("sand/force/force_constants.cpp", SCENE_KEY, ("docs/scenes.md", "docs/forces.md")),
 )
 

@@ -18,7 +18,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
-FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "sand", "scene", "tracking", "walls")
+FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls")
 
 # The four places that may ask for the kind.
 PLACES = {
@@ -72,12 +72,12 @@ ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\
 OF_DATA = re.compile(r"\b(?:SurfaceData|SurfaceChange|GridData|TinData|CellChange|TinChange)\b|\bsurface(?:\(\)|_)(?:\.|->)data\(\)|\btakeChange\(\)")
 ANY_VARIANT = re.compile(r"\bstd::(?:visit\s*\(|get_if\s*<\s*\d|get\s*<\s*\d)|\bholds_alternative\s*<|\.index\(\)")
 # A class of one kind of sand, or a former function that asked for the kind.
-CLASS = re.compile(r"\b(?:GridSurface|TinSurface|SandMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
+CLASS = re.compile(r"\b(?:GridSurface|TinSurface|GridMesh|TinMesh)\b|\btinView\b|\bis(?:Tin|Grid)\b")
 START = re.compile(r"\btin\s*(?:==|!=)\s*nullptr|\bnullptr\s*(?:==|!=)\s*[\w.>-]*\btin\b|"
                    r"(?:\bif\s*\(|&&|\|\||!|\()\s*!?(?:\w+(?:\.|->))+tin\s*(?:\)|&&|\|\||\?)")
 # Anything of one kind: a header, a namespace, a class, FieldSize::nominal, or the word tin in a name or in a text. The
 # other words that begin with Grid are rasters and walls.
-KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Surface)\b|\bCellChange\b|\bSandMesh\b|"
+KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Mesh|Surface|Vert\w+)\b|\bCellChange\b|"
                   r"\b(?:is|has)Grid\b|(?:\.|->)nominal\b|\b[tT]in(?![a-z])\w*|\b\w*[a-z0-9_]Tin(?![a-z])\w*|\b\w+_tin(?![a-z])\w*")
 
 
@@ -143,9 +143,9 @@ class KindsOfSand(unittest.TestCase):
             "render_node/sand_box.cpp": "const auto& field = std::get<sand::GridData>(terrain.surface().data()).field;",
             "master/session.cpp": "if (std::holds_alternative<sand::GridData>(terrain.surface().data())) {",
             "lockstep/frame_barrier.cpp": "const sand::SurfaceChange change; std::visit(Send{}, change.parts);",
-            "scene/scene.cpp": "const SurfaceData data; return data.index() == 1;",
+            "scene/model/scene.cpp": "const SurfaceData data; return data.index() == 1;",
             "sand/replica.cpp": "const auto* grid = dynamic_cast<const grid::GridSurface*>(surface_.get());",
-            "master/journal/verify.cpp": "if (terrain.tinView() == nullptr) {",
+            "replay/verify.cpp": "if (terrain.tinView() == nullptr) {",
             "render_node/grid/mesh.cpp": "if (std::holds_alternative<sand::GridData>(data)) {",
             "render_node/tin/mesh.cpp": "const auto& field = std::get<sand::GridData>(data).field;",
             "render_node/tool/reach.cpp": "for (const auto& cells : std::get<sand::CellChange>(change.parts).cells) {",

@@ -57,6 +57,54 @@ class Layers(unittest.TestCase):
         self.assertIn("sand/tin/mesh -> sand/tin/refine -> sand/tin/mesh: a circle of folders, closed by "
                       "sand/tin/refine/coarsening.hpp that includes sand/tin/mesh/neighbourhood.hpp", found)
 
+    def test_a_circle_of_benchmarks_is_named(self):
+        found = changed(including("bench/report/csv.cpp", "bench/sand/piles.hpp"))
+        self.assertEqual(found, ["bench/report -> bench/sand -> bench/report: a circle of folders, closed by "
+                                 "bench/sand/certificate.cpp that includes bench/report/curves.hpp"])
+
+    def test_a_circle_of_tests_is_named(self):
+        found = changed(including("tests/support/seed.hpp", "tests/master/journal/keeper_fixture.hpp"))
+        self.assertEqual(len(found), 1)
+        self.assertIn("tests/support -> tests/master/journal -> tests/support: a circle of folders", found[0])
+
+    def test_a_subfolder_that_includes_the_folder_above_is_named(self):
+        for path, name in (("sand/force/surface_patch.cpp", "sand/replica.hpp"), ("bench/sand/parts.cpp", "bench/bench.hpp"),
+                           ("render_node/tool/light.cpp", "render_node/redraw.hpp"),
+                           ("tests/master/steps/live_steps_test.cpp", "tests/master/steps.hpp")):
+            with self.subTest(path):
+                below, above = path.rpartition("/")[0], name.rpartition("/")[0]
+                found = changed({name: PROJECT.sources.get(name, ""), **including(path, name)})
+                self.assertTrue(any(f"{below} -> {above}: a circle of folders, closed by {path} that includes {name}" in fault
+                                    for fault in found), found)
+
+    def test_a_subfolder_that_reaches_the_folder_above_through_another_is_named(self):
+        found = changed({"examples/a/own.hpp": "", "examples/a/below/child.hpp": '#include "examples/other/aside.hpp"',
+                         "examples/other/aside.hpp": '#include "examples/a/own.hpp"'})
+        self.assertEqual(len(found), 1)
+        self.assertIn("examples/a -> examples/a/below -> examples/other -> examples/a: a circle of folders", found[0])
+
+    def test_a_folder_may_include_its_subfolders(self):
+        self.assertEqual(changed(including("sand/replica.cpp", "sand/grid/erosion.hpp")), [])
+        self.assertEqual(changed(including("bench/sandwall_bench.cpp", "bench/report/timing.hpp")), [])
+
+    def test_a_header_with_the_name_of_another_type_is_named(self):
+        text = "namespace master {\n\nclass Sieve final : public Grid {\npublic:\n    void shake();\n};\n\n}\n"
+        self.assertEqual(changed({"master/journal/riddle.hpp": text}),
+                         ["master/journal/riddle.hpp: declares Sieve alone; name the header by it"])
+        for allowed in ("master/journal/sieve.hpp", "master/sieves/sieve.hpp"):
+            self.assertEqual(changed({allowed: text}), [])
+        for own in ("TinMesh", "MeshTin"):
+            self.assertEqual(list(layers.misnamed(layers.Project({"a/tin/mesh.hpp": f"struct {own} {{\n"}, {}))), [])
+        both = text.replace("}\n", "}\n[[nodiscard]] Sieve sieveOf(int width);\n")
+        self.assertEqual(changed({"master/journal/riddle.hpp": both}), [])
+
+    def test_a_header_in_the_namespace_of_another_folder_is_named(self):
+        for path, text, own in (("master/journal/sieve.hpp", "namespace journal {\n}\n", "master"),
+                                ("sand/tin/mesh/sieve.hpp", "namespace sand {\n}\n", "sand::tin"),
+                                ("scene/relax/sieve.hpp", "namespace scene {\n}\n", "scene::relax")):
+            self.assertEqual(changed({path: text}), [f"{path}: is in another namespace than {own}"])
+        self.assertEqual(changed({"sand/model/sieve.hpp": "namespace sand {\n}\n"}), [])
+
     def test_a_source_away_from_its_header_is_named(self):
         self.assertIn("sand/model/erosion.cpp: implements sand/grid/erosion.hpp and is in another folder",
                       changed({"sand/model/erosion.cpp": PROJECT.sources["sand/grid/erosion.cpp"]}))
@@ -81,6 +129,12 @@ class Layers(unittest.TestCase):
             self.assertIn("haptic_hand", linked(name))
             self.assertEqual(linked(name) & network, set(), name)
         self.assertIn("haptic_link", linked("haptic_server"))
+
+    def test_neither_the_journal_nor_the_master_links_the_force_loop(self):
+        self.assertIn("haptic_loop", linked("sandwall-replay"))
+        for name in ("journal", "sandwall-master"):
+            self.assertIn("scene_load", linked(name))
+            self.assertNotIn("haptic_loop", linked(name), name)
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()

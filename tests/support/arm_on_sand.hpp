@@ -9,7 +9,7 @@
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace test {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 #include "tests/support/border_experiments.hpp"
 
 /// O5 at borders: inclined planes of dry, banded, humid and cohesive sand against closed rims, walls and rock faces.

@@ -14,7 +14,7 @@
 
 #include "sand/tin/refine/start_maker.hpp"
 #include "sand/tin/surface.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_of.hpp"
 
 /// Sand at rims, walls, rock faces and holes, as a grid and as a TIN, and what must be true of it. Lengths and heights

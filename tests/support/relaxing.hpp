@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sand/grid/erosion.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 /// Helpers that let fields slide to rest, for tests of the solver.
 namespace samples {

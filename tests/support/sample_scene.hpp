@@ -10,7 +10,7 @@
 #include "render_node/scene_painter.hpp"
 #include "sand/grid/dunes.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 /// Scenes and cameras that tests and benchmarks of drawing share. One scene unit is a metre in the room.
 namespace sample {

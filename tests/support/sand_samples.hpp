@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 /// Small scenes that several tests share.
 namespace samples {

@@ -16,7 +16,7 @@
 #include "host/command_line.hpp"
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 
 namespace {

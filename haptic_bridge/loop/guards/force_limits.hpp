@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "haptic_bridge/hand/arm.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace haptic_bridge {
 

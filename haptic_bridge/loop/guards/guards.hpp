@@ -7,7 +7,7 @@
 #include "haptic_bridge/loop/guards/force_limits.hpp"
 #include "haptic_bridge/loop/guards/frozen_sand.hpp"
 #include "haptic_bridge/loop/guards/late_step.hpp"
-#include "haptic_bridge/loop/guards/passivity.hpp"
+#include "haptic_bridge/loop/guards/passivity_observer.hpp"
 #include "haptic_bridge/loop/guards/slew.hpp"
 #include "sand/force/force_model.hpp"
 

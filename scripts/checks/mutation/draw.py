@@ -16,7 +16,7 @@ import subprocess
 from sites import sites
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-FOLDERS = re.compile(r"(base|haptic_bridge|host|lockstep|master|pictures|render_node|sand|scene|tracking|walls)/")
+FOLDERS = re.compile(r"(base|haptic_bridge|host|lockstep|master|pictures|render_node|replay|sand|scene|tracking|walls)/")
 
 
 def rank(*parts):

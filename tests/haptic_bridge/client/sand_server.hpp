@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/client/fake_server.hpp"
 
 namespace test {

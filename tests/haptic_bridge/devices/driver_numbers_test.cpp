@@ -9,10 +9,10 @@
 #include "haptic_bridge/devices/simulated_arm.hpp"
 #include "haptic_bridge/hand/arm_numbers.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
-#include "haptic_bridge/loop/guards/passivity.hpp"
+#include "haptic_bridge/loop/guards/passivity_observer.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
-#include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/refusal.hpp"
+#include "tests/support/server_process.hpp"
 
 namespace {
 

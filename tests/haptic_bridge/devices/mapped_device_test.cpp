@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "base/input_error.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -9,7 +9,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
-#include "tests/haptic_bridge/server/server_process.hpp"
+#include "tests/support/server_process.hpp"
 
 namespace {
 

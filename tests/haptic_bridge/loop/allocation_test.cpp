@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "haptic_bridge/server/sand_thread.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/arm_on_sand.hpp"
 #include "tests/support/heap_count.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/loop/push_check.hpp"
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
 #include "tests/support/arm_on_sand.hpp"

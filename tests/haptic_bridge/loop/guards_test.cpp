@@ -11,7 +11,7 @@
 #include "haptic_bridge/loop/guards/limited_law.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "haptic_bridge/hand/hand_settings.hpp"
-#include "scene/scene.hpp"
-#include "tests/fuzz/tin_scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/loop/dice.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace test {
 
@@ -29,7 +29,7 @@ inline void randomTool(Dice& dice, sand::Tool& tool) {
 inline scene::Scene randomScene(Dice& dice) {
     scene::Scene scene;
     if (dice.chance(0.07)) {
-        scene = fuzz::tinScene();
+        scene = samples::tinScene();
     } else {
         const int columns = 48 + dice.below(49), rows = 48 + dice.below(49);
         scene.terrain = sand::HeightField(columns, rows, dice.scaled(0.05, 10) / columns);

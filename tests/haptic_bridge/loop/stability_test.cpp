@@ -8,7 +8,7 @@
 #include <random>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/arm_loop.hpp"
 #include "tests/support/arm_on_sand.hpp"
 #include "tests/support/sand_of.hpp"

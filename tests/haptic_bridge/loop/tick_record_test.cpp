@@ -15,11 +15,11 @@
 #include "haptic_bridge/loop/felt_sand.hpp"
 #include "haptic_bridge/loop/tick_recorder.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
-#include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/blocked_child.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/server_process.hpp"
 #include "tests/support/small_disk.hpp"
 
 namespace {

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "scene/load/scene_file.hpp"
-#include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/hostile/attack.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/server_process.hpp"
 
 namespace {
 

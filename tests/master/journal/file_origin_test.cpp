@@ -19,7 +19,7 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "base/input_error.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 

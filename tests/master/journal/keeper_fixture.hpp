@@ -9,7 +9,7 @@
 
 #include "master/journal/journal.hpp"
 #include "master/journal/keeper.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
 

@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "tests/haptic_bridge/client/sand_server.hpp"
-#include "tests/haptic_bridge/server/server_process.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/server_process.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 

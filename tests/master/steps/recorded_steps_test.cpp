@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "tests/master/no_steps.hpp"
+#include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

@@ -10,14 +10,14 @@
 
 namespace {
 
-using render_node::SandSurface;
+using render_node::GridVertices;
 
-constexpr int kBlock = SandSurface::kBlock;
+constexpr int kBlock = GridVertices::kBlock;
 
 /// Returns overwritten cells in `count` blocks of a field of `side` cells. Each rectangle is within its block.
-std::vector<SandSurface::Overwritten> someIn(int side, int count, std::mt19937& random) {
+std::vector<GridVertices::Overwritten> someIn(int side, int count, std::mt19937& random) {
     const auto below = [&random](int end) { return static_cast<int>(random() % static_cast<unsigned>(end)); };
-    std::vector<SandSurface::Overwritten> result;
+    std::vector<GridVertices::Overwritten> result;
     for (int i = 0; i < count; ++i) {
         const int x = below(side / kBlock) * kBlock, y = below(side / kBlock) * kBlock;
         const int left = below(kBlock), low = below(kBlock);
@@ -33,7 +33,7 @@ TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
     std::mt19937 random(seed);
     for (const int side : {32, 256, 2048}) {
         for (const int count : {1, 3, 40, 900}) {
-            const std::vector<SandSurface::Overwritten> overwritten = someIn(side, count, random);
+            const std::vector<GridVertices::Overwritten> overwritten = someIn(side, count, random);
             const std::vector<sand::CellRect> parts = render_node::changedParts(overwritten);
             ASSERT_GE(parts.size(), 1U);
             ASSERT_LE(parts.size(), static_cast<std::size_t>(render_node::kMostChangedParts));
@@ -54,7 +54,7 @@ TEST(ChangedParts, AreFewAndDisjointAndHoldAll) {
 
 // Two distant places must not become one rectangle, at any distance.
 TEST(ChangedParts, KeepPlacesFarApart) {
-    const std::vector<SandSurface::Overwritten> overwritten{{{3, 3, 5, 5}, {}}, {{2040, 2041, 2048, 2048}, {}}};
+    const std::vector<GridVertices::Overwritten> overwritten{{{3, 3, 5, 5}, {}}, {{2040, 2041, 2048, 2048}, {}}};
     const std::vector<sand::CellRect> parts = render_node::changedParts(overwritten);
     ASSERT_EQ(parts.size(), 2U);
     EXPECT_EQ(parts[0], overwritten[0].cells);

@@ -11,15 +11,15 @@
 #include "pictures/compare.hpp"
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
-#include "scene/scene.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace {
 
 using render_node::ChunkLevels;
 using render_node::EyeTarget;
-using render_node::SandSurface;
-using render_node::SandVertex;
+using render_node::GridVertex;
+using render_node::GridVertices;
 using render_node::ScenePainter;
 using VertexBits = std::array<std::uint32_t, 4>;
 
@@ -76,21 +76,21 @@ private:
 
 // For every edge of a triangle there must be an edge in the opposite direction between the same two vertices.
 TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
-    const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
+    const GridVertices surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 1));
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         const Patchwork patchwork(seed);
-        std::map<GridPoint, SandVertex> vertices;
+        std::map<GridPoint, GridVertex> vertices;
         std::map<std::pair<GridPoint, GridPoint>, int> edges;
         for (int chunk = 0; chunk < kChunks * kChunks; ++chunk) {
             const int x = chunk % kChunks, y = chunk / kChunks;
             const ChunkLevels levels = patchwork.at(x, y);
-            const std::vector<SandVertex> own = render_node::verticesOf(surface, chunkAt(x, y), levels.level);
+            const std::vector<GridVertex> own = render_node::verticesOf(surface, chunkAt(x, y), levels.level);
             const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
             for (std::size_t i = 0; i < triangles.size(); ++i) {
-                const SandVertex& from = own.at(triangles[i]);
-                const SandVertex& to = own.at(triangles[i % 3 == 2 ? i - 2 : i + 1]);
+                const GridVertex& from = own.at(triangles[i]);
+                const GridVertex& to = own.at(triangles[i % 3 == 2 ? i - 2 : i + 1]);
                 ++edges[{{from.column, from.row}, {to.column, to.row}}];
-                const SandVertex& known = vertices.try_emplace({from.column, from.row}, from).first->second;
+                const GridVertex& known = vertices.try_emplace({from.column, from.row}, from).first->second;
                 ASSERT_EQ(std::bit_cast<VertexBits>(known), std::bit_cast<VertexBits>(from));
             }
         }
@@ -105,14 +105,14 @@ TEST(Levels, OfAnyPatchworkMeetWithoutCracks) {
 }
 
 /// Returns the largest distance of a chunk's triangles from the vertices below or above them [cell].
-double distanceOf(const SandSurface& surface, const sand::CellRect& chunk, const ChunkLevels& levels) {
-    const std::vector<SandVertex> own = render_node::verticesOf(surface, chunk, levels.level);
+double distanceOf(const GridVertices& surface, const sand::CellRect& chunk, const ChunkLevels& levels) {
+    const std::vector<GridVertex> own = render_node::verticesOf(surface, chunk, levels.level);
     const std::vector<std::uint16_t> triangles = render_node::trianglesOf(kSide, kSide, levels);
     double most = 0;
     for (std::size_t i = 0; i < triangles.size(); i += 3) {
         std::array<glm::dvec3, 3> corner{};
         for (std::size_t j = 0; j < 3; ++j) {
-            const SandVertex& vertex = own.at(triangles[i + j]);
+            const GridVertex& vertex = own.at(triangles[i + j]);
             corner[j] = {surface.east(vertex.column), surface.north(vertex.row), vertex.height};
         }
         const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
@@ -137,7 +137,7 @@ double distanceOf(const SandSurface& surface, const sand::CellRect& chunk, const
 }
 
 TEST(Levels, AreAsFarFromTheSandAsTheySay) {
-    const SandSurface surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 2));
+    const GridVertices surface(hills(kChunks * kSide - 1, kChunks * kSide - 1, 2));
     const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
     for (int chunk = 0; chunk < kChunks * kChunks; chunk += 3) {
         const sand::CellRect vertices = chunkAt(chunk % kChunks, chunk / kChunks);

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "scene/scene.hpp"
-#include "tests/render_node/redraw.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/redraw_fixture.hpp"
 
 namespace {
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sessions that are drawn twice, in parts and whole. Every frame must be equal in every byte.
-#include "tests/render_node/redraw.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -10,7 +8,8 @@
 #include <vector>
 
 #include "render_node/tool/force.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/redraw_fixture.hpp"
 
 namespace {
 

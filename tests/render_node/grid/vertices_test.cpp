@@ -15,17 +15,17 @@
 
 namespace {
 
+using render_node::GridVertex;
+using render_node::GridVertices;
 using render_node::kGrainSide;
-using render_node::SandSurface;
-using render_node::SandVertex;
 using VertexBits = std::array<std::uint32_t, 4>;
 
-std::vector<SandVertex> allVertices(const SandSurface& surface) {
+std::vector<GridVertex> allVertices(const GridVertices& surface) {
     const sand::CellRect whole{0, 0, surface.columns() + 2, surface.rows() + 2};
     return render_node::verticesOf(surface, whole, 0);
 }
 
-TEST(SandSurface, NormalOfAnInclinedPlaneIsThatOfThePlane) {
+TEST(GridVertices, NormalOfAnInclinedPlaneIsThatOfThePlane) {
     sand::HeightField field(9, 7, 0.5);
     for (int row = 0; row < 7; ++row) {
         for (int column = 0; column < 9; ++column) {
@@ -33,23 +33,23 @@ TEST(SandSurface, NormalOfAnInclinedPlaneIsThatOfThePlane) {
         }
     }
     const double length = std::sqrt(1 + 0.5 * 0.5 + 0.25 * 0.25);
-    for (const SandVertex& vertex : allVertices(SandSurface(field))) {
+    for (const GridVertex& vertex : allVertices(GridVertices(field))) {
         EXPECT_NEAR(vertex.normalEast / 32767.0, -0.5 / length, 1e-4);
         EXPECT_NEAR(vertex.normalNorth / 32767.0, 0.25 / length, 1e-4);
     }
 }
 
-TEST(SandSurface, LevelGroundSeesTheWholeSkyAndAPitLess) {
+TEST(GridVertices, LevelGroundSeesTheWholeSkyAndAPitLess) {
     sand::HeightField field(31, 31, 1);
-    const std::vector<SandVertex> level = allVertices(SandSurface(field));
-    EXPECT_TRUE(std::all_of(level.begin(), level.end(), [](const SandVertex& v) { return v.open == 65535; }));
+    const std::vector<GridVertex> level = allVertices(GridVertices(field));
+    EXPECT_TRUE(std::all_of(level.begin(), level.end(), [](const GridVertex& v) { return v.open == 65535; }));
     field.setHeight(15, 15, -4 * sand::kUnitsPerCell);
     // Each of the eight horizons rises by 4 cells at a distance of 2 cells (2·√2 on the diagonals): sin² = 4/5 and 2/3.
-    EXPECT_NEAR(allVertices(SandSurface(field))[16 * 33 + 16].open / 65535.0, 1 - (4 * 0.8 + 4 * 2.0 / 3) / 8, 1e-4);
+    EXPECT_NEAR(allVertices(GridVertices(field))[16 * 33 + 16].open / 65535.0, 1 - (4 * 0.8 + 4 * 2.0 / 3) / 8, 1e-4);
 }
 
-TEST(SandSurface, EdgesOfTheFieldAreCoveredToTheirEnds) {
-    const SandSurface surface{sand::HeightField(3, 1, 2)};
+TEST(GridVertices, EdgesOfTheFieldAreCoveredToTheirEnds) {
+    const GridVertices surface{sand::HeightField(3, 1, 2)};
     EXPECT_FLOAT_EQ(surface.east(0), 0);
     EXPECT_FLOAT_EQ(surface.east(1), 1);
     EXPECT_FLOAT_EQ(surface.east(4), 6);
@@ -57,19 +57,19 @@ TEST(SandSurface, EdgesOfTheFieldAreCoveredToTheirEnds) {
     EXPECT_FLOAT_EQ(surface.north(2), 2);
 }
 
-TEST(SandSurface, ACellChangesNoVertexBeyondItsReach) {
+TEST(GridVertices, ACellChangesNoVertexBeyondItsReach) {
     std::mt19937 random(20240611);
     sand::HeightField field(40, 40, 1);
     for (int round = 0; round < 50; ++round) {
         const int x = static_cast<int>(random() % 40U);
         const int y = static_cast<int>(random() % 40U);
-        const std::vector<SandVertex> before = allVertices(SandSurface(field));
+        const std::vector<GridVertex> before = allVertices(GridVertices(field));
         field.setHeight(x, y, field.height(x, y) + static_cast<int>(random() % 100000U) - 50000);
-        const std::vector<SandVertex> after = allVertices(SandSurface(field));
+        const std::vector<GridVertex> after = allVertices(GridVertices(field));
         for (std::size_t i = 0; i < after.size(); ++i) {
             const int column = static_cast<int>(i % 42) - 1;
             const int row = static_cast<int>(i / 42) - 1;
-            if (std::max(std::abs(column - x), std::abs(row - y)) > SandSurface::kReach + 1) {
+            if (std::max(std::abs(column - x), std::abs(row - y)) > GridVertices::kReach + 1) {
                 ASSERT_EQ(std::bit_cast<VertexBits>(before[i]), std::bit_cast<VertexBits>(after[i]))
                     << "seed 20240611, round " << round << ": cell " << x << "," << y << " changed vertex " << i;
             }
@@ -94,16 +94,16 @@ sand::CellRect spoil(sand::HeightField& field, std::mt19937& random) {
 }
 
 // 8 does not divide the sides, so that the blocks at two edges are cut off.
-TEST(SandSurface, TakesOverHeightsAndSaysExactlyWhatItOverwrote) {
+TEST(GridVertices, TakesOverHeightsAndSaysExactlyWhatItOverwrote) {
     std::mt19937 random(20240612);
     sand::HeightField field(45, 29, 1);
-    SandSurface surface(field);
+    GridVertices surface(field);
     for (int round = 0; round < 200; ++round) {
-        const SandSurface before(surface);
+        const GridVertices before(surface);
         const sand::CellRect cells = spoil(field, random);
-        std::vector<SandSurface::Overwritten> overwritten;
+        std::vector<GridVertices::Overwritten> overwritten;
         surface.takeOver(field, cells, overwritten);
-        std::vector<SandSurface::Overwritten> nothing;
+        std::vector<GridVertices::Overwritten> nothing;
         surface.takeOver(field, field.bounds(), nothing);
         ASSERT_TRUE(nothing.empty()) << "round " << round << ": more has changed than was listed";
         std::vector<int> seen(45 * 29);
@@ -136,12 +136,12 @@ TEST(SandSurface, TakesOverHeightsAndSaysExactlyWhatItOverwrote) {
     }
 }
 
-TEST(SandSurface, HeightsOfAPartAreThoseOfItsCells) {
+TEST(GridVertices, HeightsOfAPartAreThoseOfItsCells) {
     std::mt19937 random(20240613);
     sand::HeightField field(45, 29, 1);
-    SandSurface surface(field);
+    GridVertices surface(field);
     for (int round = 0; round < 300; ++round) {
-        std::vector<SandSurface::Overwritten> overwritten;
+        std::vector<GridVertices::Overwritten> overwritten;
         surface.takeOver(field, spoil(field, random), overwritten);
         sand::HeightField any(45, 29, 1);
         const sand::CellRect cells = spoil(any, random);
@@ -159,11 +159,11 @@ TEST(SandSurface, HeightsOfAPartAreThoseOfItsCells) {
 }
 
 // A row of 32 blocks, and a field of as many rows.
-TEST(SandSurface, ReadsEachListedCellOnceAndLargePartsByTheirBlocks) {
+TEST(GridVertices, ReadsEachListedCellOnceAndLargePartsByTheirBlocks) {
     sand::HeightField field(256, 256, 1);
-    SandSurface surface(field);
+    GridVertices surface(field);
     std::int64_t before = surface.placesRead();
-    std::vector<SandSurface::Overwritten> overwritten;
+    std::vector<GridVertices::Overwritten> overwritten;
     surface.takeOver(field, {40, 80, 104, 88}, overwritten);
     EXPECT_EQ(surface.placesRead() - before, 64 * 8);
     before = surface.placesRead();

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "render_node/tile_painter.hpp"
-#include "scene/scene.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "scene/model/scene.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace {
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures 1 and 3 of Purchart et al. 2012 on a TIN, drawn in one process.
-#include "tests/render_node/golden.hpp"
-
 #include <gtest/gtest.h>
 
 #include <memory>
@@ -10,7 +8,8 @@
 #include "render_node/gl/gl_context.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/render_node/wall_painter.hpp"
+#include "tests/support/golden_pictures.hpp"
+#include "tests/support/wall_painter.hpp"
 
 namespace {
 

@@ -6,17 +6,17 @@
 
 #include <cmath>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_tin.hpp"
 
 namespace {
 
 using render_node::TinChunk;
-using render_node::TinSurface;
+using render_node::TinVertices;
 using sample::Tin;
 
 /// Returns the corners of a chunk's triangles in order, and the ends of its parts.
-std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> orderOf(TinSurface& surface,
+std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> orderOf(TinVertices& surface,
                                                                                      TinChunk& chunk) {
     (void)surface.settle(chunk);
     std::vector<std::array<Tin::Vertex, 3>> corners;
@@ -30,7 +30,7 @@ std::pair<std::vector<std::array<Tin::Vertex, 3>>, std::vector<std::size_t>> ord
     return {corners, ends};
 }
 
-TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
+TEST(TinVertices, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
     const scene::Scene scene = sample::duneScene(32);
     const double cell = scene.terrain.cellSize();
     std::mt19937 random(9);
@@ -41,7 +41,7 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
         within.emplace_back(tin.split(slot, 65536.0 * static_cast<double>(random() % 4)), corners);
     }
     (void)tin.takeParts();
-    TinSurface surface(tin.view(), cell);
+    TinVertices surface(tin.view(), cell);
     for (int round = 0; round < 4; ++round) {
         // Weights of a place that is nearer to one corner than to the others.
         for (const auto& [vertex, corners] : within) {
@@ -55,17 +55,17 @@ TEST(TinSurface, KeepsChunksAndPartsInTheOrderOfTheTinAlone) {
             tin.move(vertex, {sum.x / 10, sum.y / 10});
         }
         (void)surface.update(tin.view(), tin.takeParts());
-        TinSurface fresh(tin.view(), cell);
+        TinVertices fresh(tin.view(), cell);
         for (std::size_t i = 0; i < surface.chunks().size(); ++i) {
             ASSERT_EQ(orderOf(surface, surface.chunks()[i]), orderOf(fresh, fresh.chunks()[i])) << "round " << round;
         }
     }
 }
 
-TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
+TEST(TinVertices, PartsTileAChunkAndHoldTheirTriangles) {
     const scene::Scene scene = sample::duneScene(64);
     const Tin tin(scene.terrain);
-    TinSurface surface(tin.view(), scene.terrain.cellSize());
+    TinVertices surface(tin.view(), scene.terrain.cellSize());
     std::size_t most = 0;
     for (TinChunk& chunk : surface.chunks()) {
         (void)surface.settle(chunk);
@@ -81,18 +81,18 @@ TEST(TinSurface, PartsTileAChunkAndHoldTheirTriangles) {
     EXPECT_GT(most, 1);
 }
 
-TEST(TinSurface, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
+TEST(TinVertices, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
     const scene::Scene scene = sample::duneScene(64);
     const double cell = scene.terrain.cellSize();
     Tin tin(scene.terrain);
     const double middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
     tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
     (void)tin.takeParts();
-    TinSurface surface(tin.view(), cell);
+    TinVertices surface(tin.view(), cell);
     const Tin::Vertex beside = 32 * 66 + 30;  // in rows of 66 vertices
     const auto place = tin.mesh().places[beside];
     tin.setHeight(beside, tin.height(beside) + 1e6);
-    const TinSurface::Change change = surface.update(tin.view(), tin.takeParts());
+    const TinVertices::Change change = surface.update(tin.view(), tin.takeParts());
     const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
     const double reach = 14 * cell;  // reach of light, and a triangle's side
     EXPECT_FALSE(change.boxes.empty());

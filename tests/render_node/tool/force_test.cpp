@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "sand/model/ground.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
 #include "tests/support/sand_of.hpp"
 

@@ -49,7 +49,8 @@ double upward(const std::string& shape, const std::string& tin, sand::ForceLaw l
     sand::ForceConstants constants;
     constants.law = law;
     constants.unitLength = 0.96;
-    const SurfacePatch patch(replica);
+    SurfacePatch patch;
+    patch.take(replica.surface(), replica.rules(), replica.cellSize(), replica.probe());
     EXPECT_EQ(patch.facets().empty(), tin.empty());
     const auto tool = sand::force::contourOf(replica.tool(), replica.cellSize());
     const sand::ProbePoint at = replica.probe();

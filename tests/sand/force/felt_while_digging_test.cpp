@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "sand/force/law.hpp"
+#include "sand/replica.hpp"
 #include "tests/sand/force/force_samples.hpp"
 #include "tests/support/sand_of.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "sand/model/rules.hpp"
-#include "scene/material.hpp"
+#include "scene/model/material.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "sand/force/force_model.hpp"
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 /// Sand and tools for tests of the forces, at the scale of Dorjgotov et al. 2007: a sphere of radius 0.01.
 namespace samples {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sand/force/law.hpp"
+#include "sand/replica.hpp"
 #include "tests/sand/force/force_samples.hpp"
 #include "tests/support/point_mass.hpp"
 #include "tests/support/sand_of.hpp"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sand/force/law.hpp"
+#include "sand/replica.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "tests/sand/force/force_samples.hpp"
 
@@ -158,7 +159,7 @@ double worstOnFineTin(int cells) {
         const sand::Replica replica = finelyMeshed(bowl);
         const sand::ForceConstants constants = constantsOf(sand::ForceLaw::controlPoints);
         SurfacePatch patch;
-        patch.take(replica, probeAt(bowl.place()));
+        patch.take(replica.surface(), replica.rules(), replica.cellSize(), probeAt(bowl.place()));
         EXPECT_TRUE(patch.facets().empty());
         double sum = 0;
         for (int i = 0; i < 32; ++i) {

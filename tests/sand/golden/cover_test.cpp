@@ -8,7 +8,7 @@
 
 #include "host/worker_pool.hpp"
 #include "sand/grid/dunes.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -8,7 +8,7 @@
 
 #include "sand/grid/dunes.hpp"
 #include "sand/grid/settle.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {

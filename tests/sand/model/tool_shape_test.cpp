@@ -12,7 +12,7 @@
 #include "sand/grid/displacement.hpp"
 #include "sand/grid/dunes.hpp"
 #include "sand/model/tuning.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"

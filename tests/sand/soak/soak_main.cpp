@@ -10,7 +10,7 @@
 #include "host/command_line.hpp"
 #include "host/worker_pool.hpp"
 #include "sand/grid/dunes.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 

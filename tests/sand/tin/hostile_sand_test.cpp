@@ -10,9 +10,9 @@
 
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "tests/fuzz/tin_scene.hpp"
 #include "tests/support/memory_limit.hpp"
 #include "tests/support/sand_of.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -53,7 +53,7 @@ base::Bytes plainWith(const sand::tin::TinStart& start, std::size_t dead) {
 // A state may claim 1 GiB of plain bytes, at one byte for a vertex that does not exist. It took 20 bytes per vertex and
 // more to find that out.
 TEST(HostileTin, OfDeadVerticesIsRefusedBeforeTheirMemoryIsAllocated) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     const base::Bytes dead = hostile_sand::ofDeadVertices(*scene.tin, kGiB);
     ASSERT_LT(dead.size(), 64U * 1024) << "so that it is an ordinary message of the link";
     const base::Bytes state = hostile_sand::stateWith(Replica(scene), dead);
@@ -74,7 +74,7 @@ TEST(HostileTin, OfDeadVerticesIsRefusedBeforeTheirMemoryIsAllocated) {
 }
 
 TEST(HostileTin, OfDeadVerticesIsALoadThatIsIgnored) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     const base::Bytes dead = hostile_sand::ofDeadVertices(*scene.tin, kGiB);
     const std::string said = test::inTwoGiB([&] {
         Replica replica(scene), other(scene);
@@ -88,7 +88,7 @@ TEST(HostileTin, OfDeadVerticesIsALoadThatIsIgnored) {
 }
 
 TEST(HostileTin, OfMoreVerticesThanTheSceneAllowsIsRefused) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     const sand::tin::TinStart& start = *scene.tin;
     // The most vertices of a replica: those of the settings, or of the start if it has more, and 4096 for crossings.
     const std::size_t most = std::max<std::size_t>(start.places.size(), 400) + 4096;
@@ -101,7 +101,7 @@ TEST(HostileTin, OfMoreVerticesThanTheSceneAllowsIsRefused) {
 }
 
 TEST(HostileTin, WithMoreOutflowThanSandIsRefused) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     Replica replica(scene);
     const base::Bytes sand = replica.copySand()->encode();
     for (const std::int64_t outflow :
@@ -113,7 +113,7 @@ TEST(HostileTin, WithMoreOutflowThanSandIsRefused) {
 }
 
 TEST(HostileTin, IsDrawnFromTheSandThatReplacedTheOther) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     surface.replace(*surface.copy());
     const sand::SurfaceData data = surface.data();
@@ -122,7 +122,7 @@ TEST(HostileTin, IsDrawnFromTheSandThatReplacedTheOther) {
 }
 
 TEST(HostileTin, ThatIsIgnoredAsALoadIsReported) {
-    const scene::Scene scene = fuzz::tinScene();
+    const scene::Scene scene = samples::tinScene();
     Replica replica(scene);
     replica.apply(stepOf(1, Edit::loaded({1, 2, 3})));
     EXPECT_NE(replica.leftOut(), "");

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/support/tin_piles.hpp"
 
 namespace tin_samples {

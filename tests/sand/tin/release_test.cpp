@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand of a TIN that a tool held back flows when the tool turns, moves or leaves.
-#include "tests/sand/release.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 
 #include "tests/sand/tin/level_scene.hpp"
+#include "tests/support/sand_release.hpp"
 
 namespace release {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sand/replica.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 
 namespace tin_samples {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 #include "tests/support/refusal.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <stdexcept>
 
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "scene/export/raster.hpp"
 #include "scene/import/gsf_file.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
 namespace {

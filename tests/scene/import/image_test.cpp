@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "scene/import/importer.hpp"
-#include "scene/scene.hpp"
+#include "scene/model/scene.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
 namespace {

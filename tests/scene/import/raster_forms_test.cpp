@@ -56,7 +56,7 @@ protected:
 
 /// Returns the names of GDAL's drivers that the program opens a raster with, from its source.
 std::set<std::string> driversOfTheProgram() {
-    std::ifstream stream(SANDWALL_SOURCE_DIR "/scene/import/gdal/gdal_raster.cpp");
+    std::ifstream stream(SANDWALL_SOURCE_DIR "/scene/gdal/gdal_raster.cpp");
     const std::string source{std::istreambuf_iterator<char>(stream), {}};
     const std::size_t begin = source.find("kDrivers[] = {"), end = source.find("nullptr", begin);
     std::set<std::string> names;

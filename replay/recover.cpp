@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "replay/recover.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string>
+#include <system_error>
+#include <variant>
+
+#include "base/input_error.hpp"
+#include "host/regular_file.hpp"
+#include "master/journal/journal.hpp"
+#include "scene/model/scene.hpp"
+
+namespace replay {
+
+void recoverJournal(const std::filesystem::path& journal, const std::filesystem::path& file) {
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) {
+        throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
+    }
+    master::JournalReader reader(journal);
+    scene::Scene scene = master::sceneOf(reader);
+    scene.material = reader.header().material.value_or(scene::Material());
+    if (file.has_parent_path()) {
+        try {
+            host::makeFolders(file.parent_path());
+        } catch (const std::filesystem::filesystem_error&) {
+            error.clear();  // the writer reports it
+        }
+    }
+    master::JournalWriter writer(file, scene, reader.header().buildId);
+    std::uint64_t records = 0, step = 0;
+    std::string damage;
+    try {
+        while (const auto record = reader.next()) {
+            ++records;
+            const auto* frame = std::get_if<master::JournalFrame>(&*record);
+            step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
+            writer.keep(*record);
+        }
+    } catch (const base::InputError& found) {
+        damage = found.what();
+    }
+    writer.sync();
+    const std::int64_t lost = reader.allBytes() - reader.wholeBytes();
+    if (!damage.empty()) {
+        fmt::print("{}\n", damage);
+    }
+    fmt::print("{}: {} records, to step {}; {} of {} bytes are lost\n", file.string(), records, step, lost,
+               reader.allBytes());
+}
+
+}  // namespace replay

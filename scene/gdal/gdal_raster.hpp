@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/gdal/gdal_session.hpp"
+#include "scene/import/esri_grid.hpp"
+
+namespace scene {
+
+/// Local file with one band of numbers. The constructor opens it and checks its size and kind. Every member may throw
+/// base::InputError, whose message begins with the file.
+class GdalRaster {
+public:
+    /// Opens `inMemory` in place of `file`, unless it is empty. Messages name `file`.
+    explicit GdalRaster(const std::filesystem::path& file, const std::filesystem::path& inMemory = {});
+
+    [[nodiscard]] int columns() const { return GDALGetRasterXSize(dataset_.get()); }
+    [[nodiscard]] int rows() const { return GDALGetRasterYSize(dataset_.get()); }
+    [[nodiscard]] GDALDatasetH dataset() const { return dataset_.get(); }
+    [[nodiscard]] GDALRasterBandH band() const { return band_; }
+    [[nodiscard]] const std::string& name() const { return name_; }
+    /// Returns GDAL's short name of the format, such as "GTiff".
+    [[nodiscard]] std::string driver() const { return GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get())); }
+    /// Returns whether 0 would be drawn white. GDAL then adds a table of greys, which is not a palette.
+    [[nodiscard]] bool isWhiteZero() const;
+    /// Returns whether the band has a palette in which every number has its own grey, as each BMP of greys has.
+    [[nodiscard]] bool isGreyPalette() const;
+    /// Returns the number that means no data, as a height: with scale and offset. Returns nullopt if the file declares
+    /// none.
+    [[nodiscard]] std::optional<double> noData() const;
+    /// Returns GDAL's warnings so far, one line each.
+    [[nodiscard]] std::vector<std::string> warnings() const { return session_.warnings(name_); }
+
+    /// Returns whether every pixel has data: the file masks no pixel, and its pixels are whole numbers, which are never
+    /// NaN.
+    [[nodiscard]] bool complete() const;
+    /// Returns the rows in the file's order, with scale and offset applied. A pixel without data is NaN.
+    [[nodiscard]] std::vector<double> pixels() const;
+    [[noreturn]] void fail(const std::string& message) const;
+
+private:
+    /// Chooses the one band that is not a mask of opacity.
+    void chooseBand();
+    [[noreturn]] void failForVariables() const;
+    [[nodiscard]] bool isPng() const { return driver() == "PNG"; }
+    /// Returns whether the numbers are bytes with a sign, which GDAL before 3.7 reads without it.
+    [[nodiscard]] bool isSignedByte() const;
+    [[nodiscard]] double heightOf(double number) const;
+    /// Returns the numbers of the band as the file holds them.
+    [[nodiscard]] std::vector<double> numbers() const;
+    void mask(std::vector<double>& pixels) const;
+    [[noreturn]] void failToRead() const;
+
+    std::string name_;
+    GdalSession session_;
+    Dataset dataset_;
+    GDALRasterBandH band_ = nullptr;
+    double scale_ = 1, offset_ = 0;  // of the band
+};
+
+}  // namespace scene

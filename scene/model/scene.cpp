@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/model/scene.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace scene {
+namespace {
+
+/// Part that may follow a scene, with its length in bytes.
+struct Part {
+    enum class Kind : std::uint8_t { georeference = 1, statements = 2 };
+    friend constexpr auto valuesOf(Kind) {
+        return std::array{base::Named{Kind::georeference, "georeference"}, base::Named{Kind::statements, "statements"}};
+    }
+    Kind kind{};
+    base::Bytes bytes;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("kind", it.kind);
+        visit("bytes", base::block(it.bytes));
+    }
+};
+
+/// Bytes of Part::statements.
+struct Statements {
+    std::vector<RasterStatement> statements;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        constexpr std::size_t kMost = 16;  // a terrain has two files at most
+        visit("statements", base::upTo<std::uint32_t>(it.statements, kMost));
+    }
+};
+
+/// Form of the parts of a scene. Statements are the last part, so that a scene without them has the same first bytes.
+template <class AnyScene>
+struct Parts {
+    AnyScene& scene;
+    bool withStatements;
+    void put(base::ByteWriter& writer) const {
+        if (scene.georeference != Georeference{}) {
+            base::putMember(writer, Part{Part::Kind::georeference, base::encoded(scene.georeference)});
+        }
+        if (scene.statements && withStatements) {
+            base::putMember(writer, Part{Part::Kind::statements, base::encoded(Statements{*scene.statements})});
+        }
+    }
+    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
+        while (!reader.atEnd()) {
+            const Part part = base::read<Part>(reader);
+            if (part.kind == Part::Kind::georeference) {
+                scene.georeference = base::decoded<Georeference>(part.bytes);
+            } else {
+                scene.statements = base::decoded<Statements>(part.bytes).statements;
+            }
+        }
+    }
+};
+
+/// Form of the sand and the ground of a scene, whose size and kind are in the rules.
+template <class AnyScene>
+struct Sand {
+    AnyScene& scene;
+    double cellSize;  // [scene unit]
+    void put(base::ByteWriter& writer) const { scene.encodeSand(writer); }
+    void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {
+        scene.decodeSand(reader, cellSize);
+    }
+};
+
+/// The first fields of a scene. The rules give the size of the rest.
+struct Head {
+    std::string name;
+    sand::Rules rules;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("name", base::text(it.name, kLongestText));
+        visit("rules", it.rules);
+    }
+};
+
+/// All fields of a scene.
+template <class AnyScene>
+struct Whole {
+    AnyScene& scene;
+    bool withStatements = true;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        AnyScene& scene = it.scene;
+        Head::fields(scene, visit);
+        sand::ForceConstants::oldestFields(scene.force, visit);
+        Look::colourFields(scene.look, visit);
+        double cellSize = scene.terrain.cellSize();
+        visit("cell_size",
+              base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
+        visit("sand", Sand<AnyScene>{scene, cellSize});
+        Look::shadingFields(scene.look, visit);
+        sand::ForceConstants::otherFields(scene.force, visit);
+        visit("parts", Parts<AnyScene>{scene, it.withStatements});
+    }
+};
+
+}  // namespace
+
+base::Bytes Scene::encode() const { return base::encoded(Whole<const Scene>{*this}); }
+
+bool Scene::isEncodedAs(std::span<const std::uint8_t> bytes) const {
+    const base::Bytes own = base::encoded(Whole<const Scene>{*this, false});
+    if (bytes.size() < own.size() || !std::equal(own.begin(), own.end(), bytes.begin())) {
+        return false;
+    }
+    const auto rest = bytes.subspan(own.size());
+    return rest.empty() || rest.front() == static_cast<std::uint8_t>(Part::Kind::statements);
+}
+
+sand::Rules Scene::decodeRules(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    return base::read<Head>(reader).rules;
+}
+
+Scene Scene::decode(std::span<const std::uint8_t> bytes) {
+    base::ByteReader reader(bytes);
+    Scene scene;
+    base::getMember(reader, Whole<Scene>{scene});
+    return scene;
+}
+
+}  // namespace scene
