@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "sand/grid/erosion_kernel.hpp"
@@ -46,16 +47,15 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       east_(field.columns(), field.rows()),
       north_(field.columns(), field.rows()),
       marked_(across_, down_),
-      moved_(across_, down_) {
-    const auto blocks = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
-    waiting_.assign(blocks, 0);
-    movedNow_.assign(blocks, 0);
+      moved_(across_, down_),
+      waiting_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_)),
+      flowed_(across_, down_) {
     findSliding();
     wakeAll();
 }
 
 std::size_t Erosion::bytes() const {
-    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + movedNow_.size() +
+    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + flowed_.bytes() +
            active_.capacity() * sizeof active_[0] + (sliding_ ? sliding_->bytes() : 0);
 }
 
@@ -71,10 +71,8 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
             outflows_[patch] = sweepFluxes(field, patches_[patch], momentum, obstacle);
         });
         forEachPatch([&](int i) { balance(field, patches_[static_cast<std::size_t>(i)]); });
-        for (std::size_t i = 0; i < patches_.size(); ++i) {
-            outflow += outflows_[i];
-            markAroundMoved(patches_[i]);
-        }
+        outflow += std::accumulate(outflows_.begin(), outflows_.end(), std::int64_t{0});
+        markAroundMoved();
         ++sweepsDone_;
         const bool still = marked_.empty();
         if (!still) {  // a replica that joins settled sand visits it once, which must not change its age
@@ -142,8 +140,8 @@ void Erosion::balance(HeightField& field, const CellRect& blocks) {
                              .slidingStride = sliding_ ? sliding_->stride() : 0,
                              .cells = cellsOf(blocks),
                              .blockSize = blockSize_,
-                             .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
-                             .blocksAcross = across_};
+                             .moved = flowed_.row(blocks.y0) + blocks.x0,
+                             .movedStride = flowed_.stride()};
     options_.path == base::CodePath::v3 ? v3::balance(patch) : baseline::balance(patch);
 }
 
@@ -236,7 +234,7 @@ void Erosion::findSliding() {
                            .cells = east_.bounds(),
                            .blockSize = blockSize_,
                            .moved = nullptr,
-                           .blocksAcross = across_};
+                           .movedStride = flowed_.stride()};
     options_.path == base::CodePath::v3 ? v3::markSliding(all) : baseline::markSliding(all);
 }
 

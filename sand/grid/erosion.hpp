@@ -128,12 +128,8 @@ private:
     void balance(HeightField& field, const CellRect& blocks);
     /// Calls `task` with the index of each patch, in parallel if there is an executor.
     void forEachPatch(const std::function<void(int)>& task) const;
-    /// Marks the blocks that the next sweep must visit because sand flowed in this patch.
-    void markAroundMoved(const CellRect& blocks);
-    /// Marks the blocks of `row` that are next to flow. `flowed` is a row of blocks with their bits of `flow`. A block
-    /// is marked if the block of `flowed` in the same column has the bit `side`. It is also marked if the next block to
-    /// the west or east has the bit `side` and the bit of the border between these columns.
-    void markBeside(const std::uint8_t* flowed, int side, const CellRect& row);
+    /// Marks the blocks that the next sweep must visit because sand flowed in this sweep.
+    void markAroundMoved();
     /// Makes the marked blocks the active ones.
     void collectMarked();
     /// Adds the marked blocks to the active ones.
@@ -155,8 +151,8 @@ private:
     BlockMarks marked_;                   // blocks for the next active set
     BlockMarks moved_;                    // blocks changed since takeMoved()
     // One number per block:
-    std::vector<std::uint8_t> waiting_;   // 1 if the block is active and not yet in a patch of this sweep
-    std::vector<std::uint8_t> movedNow_;  // bits of `flow`: where sand flowed in the block's last visit
+    std::vector<std::uint8_t> waiting_;  // 1 if the block is active and not yet in a patch of this sweep
+    FlowBits flowed_;                    // where sand flows in this sweep; 0 between sweeps
 };
 
 }  // namespace sand::grid

@@ -98,43 +98,22 @@ CellRect Erosion::takePatch(int block) {
     return blocks;
 }
 
-void Erosion::markAroundMoved(const CellRect& blocks) {
-    const CellRect all{0, 0, across_, down_};
-    for (int y = blocks.y0; y < blocks.y1; ++y) {
-        const std::uint8_t* const flowed = movedNow_.data() + y * across_;
-        for (int x = blocks.x0; x < blocks.x1; ++x) {
-            const int first = x;
-            while (x < blocks.x1 && flowed[x] != 0) {
-                ++x;
-            }
-            if (x > first) {
-                // The fluxes of a block also change the blocks beyond its eastern and northern faces.
-                moved_.add(CellRect{first, y, x + 1, y + 1}.clippedTo(all));
-                moved_.add(CellRect{first, y, x, y + 2}.clippedTo(all));
+void Erosion::markAroundMoved() {
+    const auto forEachRow = [this](const auto& task) {
+        for (const CellRect& blocks : patches_) {
+            for (int y = blocks.y0; y < blocks.y1; ++y) {
+                task(CellRect{blocks.x0, y, blocks.x1, y + 1});
             }
         }
-        markBeside(flowed, flow::kSouth, {blocks.x0, y - 1, blocks.x1, y});
-        markBeside(flowed, flow::kSomewhere, {blocks.x0, y, blocks.x1, y + 1});
-        markBeside(flowed, flow::kNorth, {blocks.x0, y + 1, blocks.x1, y + 2});
-    }
-}
-
-void Erosion::markBeside(const std::uint8_t* flowed, int side, const CellRect& row) {
-    const CellRect all{0, 0, across_, down_};
-    CellRect run;  // neighbouring blocks, as one rectangle
-    for (int x = row.x0; x < row.x1; ++x) {
-        if ((flowed[x] & side) == 0) {
-            continue;
-        }
-        const int first = x - ((flowed[x] & flow::kWest) != 0 ? 1 : 0);
-        const int end = x + 1 + ((flowed[x] & flow::kEast) != 0 ? 1 : 0);
-        if (run.empty() || first > run.x1) {
-            marked_.add(run.clippedTo(all));
-            run = {first, row.y0, end, row.y1};
-        }
-        run.x1 = end;
-    }
-    marked_.add(run.clippedTo(all));
+    };
+    forEachRow([this](const CellRect& run) {
+        moved_.addChanged(run, flowed_);
+        marked_.addBeside(run, flowed_);
+    });
+    // Only now, because a run reads the bits of the runs beside it.
+    forEachRow([this](const CellRect& run) {
+        std::fill(flowed_.row(run.y0) + run.x0, flowed_.row(run.y0) + run.x1, std::uint8_t{0});
+    });
 }
 
 std::vector<CellRect> Erosion::takeMoved() {

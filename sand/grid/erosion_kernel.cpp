@@ -377,7 +377,7 @@ std::int32_t flowIn(int row, int first, int end) {
 /// Writes where sand flows in each block of a row of blocks, and clears `moved` for the next row of blocks.
 void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
     const int width = patch.cells.x1 - patch.cells.x0;
-    std::uint8_t* flags = patch.moved + blockRow * patch.blocksAcross;
+    std::uint8_t* flags = patch.moved + blockRow * patch.movedStride;
     for (int x = 0; x < width; x += patch.blockSize) {
         const std::int32_t* const column = moved.data() + x;
         const int count = std::min(patch.blockSize, width - x);

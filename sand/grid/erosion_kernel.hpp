@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "sand/grid/block_marks.hpp"
 #include "sand/model/cell_array.hpp"
 
 namespace sand::grid {
@@ -48,15 +49,6 @@ struct FluxPatch {
     const std::int32_t* sand;  // thickness of the sand in each cell [unit]; a face gives at most a quarter
 };
 
-/// Bits that record where in a block sand flows. A block owns the eastern and northern faces of its cells. A face
-/// changes two heights. The fluxes of a block depend on its heights and on those one cell around it. If no sand flows
-/// near a side of a block, the block beyond that side therefore does not change.
-namespace flow {
-inline constexpr int kSomewhere = 1;
-inline constexpr int kWest = 2, kSouth = 4;   // in the block's first column or row
-inline constexpr int kEast = 8, kNorth = 16;  // in the block's last two columns or rows
-}  // namespace flow
-
 /// Change of a patch's heights by the fluxes of a sweep.
 struct BalancePatch {
     std::int32_t* heights;  // at cell (0,0) of the field [unit]
@@ -67,9 +59,9 @@ struct BalancePatch {
     Sliding* sliding;  // at cell (0,0) of the field; receives where these fluxes slid; null without a band
     std::ptrdiff_t slidingStride;
     CellRect cells;
-    int blockSize;        // [cell]
-    std::uint8_t* moved;  // receives the bits of `flow`, beginning with the patch's first block
-    int blocksAcross;     // distance from a block's `moved` to that of the block north of it
+    int blockSize;               // [cell]
+    std::uint8_t* moved;         // receives the bits of `flow`, beginning with the patch's first block
+    std::ptrdiff_t movedStride;  // distance from a block's `moved` to that of the block north of it
 };
 
 // These functions are compiled twice from one source (sand/CMakeLists.txt). Both versions return the same heights bit
