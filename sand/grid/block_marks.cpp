@@ -40,6 +40,27 @@ bool markChanged(const std::uint8_t* __restrict flowed, int count, std::uint8_t*
     return all != 0;
 }
 
+/// Returns the first place in [from, end) whose mark is set, or is not set; `end` if there is none. Asks eight marks at
+/// a time, because long runs of blocks are all marked or all unmarked.
+int firstOf(const std::uint8_t* marks, int from, int end, bool isSet) {
+    const auto differs = [&](int x) { return (marks[x] != 0) == isSet; };
+    constexpr int kTogether = 8;
+    while (from + kTogether <= end) {
+        int found = 0;
+        for (int i = 0; i < kTogether; ++i) {
+            found |= differs(from + i) ? 1 : 0;
+        }
+        if (found != 0) {
+            break;
+        }
+        from += kTogether;
+    }
+    while (from < end && !differs(from)) {
+        ++from;
+    }
+    return from;
+}
+
 }  // namespace
 
 BlockMarks::BlockMarks(int across, int down)
@@ -71,15 +92,19 @@ void BlockMarks::addChanged(const CellRect& run, const FlowBits& flowed) {
 
 std::vector<CellRect> BlockMarks::takeRuns() {
     std::vector<CellRect> runs;
-    takeAll([&](int block) {
-        const int x = block % across_;
-        const int y = block / across_;
-        if (!runs.empty() && runs.back().y0 == y && runs.back().x1 == x) {
-            ++runs.back().x1;
-        } else {
-            runs.push_back({x, y, x + 1, y + 1});
+    for (int y = around_.y0; y < around_.y1; ++y) {
+        const std::uint8_t* const marks = row(y);
+        for (int x = around_.x0; x < around_.x1;) {
+            x = firstOf(marks, x, around_.x1, true);
+            const int first = x;
+            x = firstOf(marks, x, around_.x1, false);
+            if (x > first) {
+                runs.push_back({first, y, x, y + 1});
+            }
         }
-    });
+        std::fill(row(y) + around_.x0, row(y) + around_.x1, std::uint8_t{0});
+    }
+    around_ = {};
     return runs;
 }
 

@@ -71,7 +71,7 @@ public:
 
 private:
     /// Returns the marks of a row of blocks. Rows -1 and `down`, columns -1 and `across` lie outside the field. They
-    /// take marks that nobody reads, so that addBeside() need not ask where a run ends.
+    /// take marks that are never read. So addBeside() adds marks beyond the end of a run without a check.
     [[nodiscard]] std::uint8_t* row(int y) {
         return marks_.data() + (y + std::ptrdiff_t{1}) * (across_ + std::ptrdiff_t{2}) + 1;
     }
