@@ -92,6 +92,7 @@ struct BlockRow {
     }
 SANDWALL_DECLARE_KERNEL(baseline)
 SANDWALL_DECLARE_KERNEL(v3)
+SANDWALL_DECLARE_KERNEL(v4)
 #undef SANDWALL_DECLARE_KERNEL
 
 }  // namespace sand::grid

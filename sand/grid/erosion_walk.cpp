@@ -31,8 +31,15 @@ struct Kernel {
 };
 
 Kernel kernelOf(base::CodePath path) {
-    return path == base::CodePath::v3 ? Kernel{v3::walk, v3::balance, v3::markSliding}
-                                      : Kernel{baseline::walk, baseline::balance, baseline::markSliding};
+    switch (path) {
+        case base::CodePath::v4:
+            return {v4::walk, v4::balance, v4::markSliding};
+        case base::CodePath::v3:
+            return {v3::walk, v3::balance, v3::markSliding};
+        case base::CodePath::baseline:
+            break;
+    }
+    return {baseline::walk, baseline::balance, baseline::markSliding};
 }
 
 void forEach(std::size_t count, const base::Executor* executor, const std::function<void(int)>& task) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "base/code_path.hpp"
 #include "sand/grid/dunes.hpp"
@@ -23,7 +24,16 @@ using base::CodePath;
 using sand::grid::Erosion;
 
 inline constexpr std::array kBlocks{2, 8, 13, 32, 128};
-inline const std::array kPaths{base::fastestCodePath(), CodePath::baseline};
+/// Returns the code paths that this CPU can run.
+inline std::vector<CodePath> paths() {
+    std::vector<CodePath> all;
+    for (const auto& known : valuesOf(CodePath{})) {
+        if (base::machineHas(known.value)) {
+            all.push_back(known.value);
+        }
+    }
+    return all;
+}
 
 /// Random case: a field, its laws, its ground and a tool.
 class World {
@@ -120,7 +130,7 @@ public:
     Pair(World world, const base::Executor* executor)
         : world_(std::move(world)),
           options_{.blockSize = kBlocks.at(world_.random() % kBlocks.size()),
-                   .path = kPaths.at(world_.random() % kPaths.size()),
+                   .path = paths().at(world_.random() % paths().size()),
                    .ground = world_.ground.get(),
                    .executor = executor},
           field_(world_.field),
