@@ -19,15 +19,35 @@ inline bool machineHasV3() {
 #endif
 }
 
-/// Instruction set of code that is compiled twice. The results are the same with each. Only a CPU for which
-/// machineHasV3() is true can run `v3`.
-enum class CodePath : std::uint8_t { baseline, v3 };
+/// Returns whether this CPU runs code that is compiled for x86-64-v4, which has vectors of 512 bits. Every such CPU has
+/// x86-64-v3, too.
+inline bool machineHasV4() {
+#if defined(__x86_64__)
+    return machineHasV3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+#else
+    return false;
+#endif
+}
+
+/// Instruction set of code that is compiled several times. The results are the same with each. Code without a version
+/// for v4 takes that for v3 instead.
+enum class CodePath : std::uint8_t { baseline, v3, v4 };
 
 constexpr auto valuesOf(CodePath) {
-    return std::array{Named{CodePath::baseline, "baseline"}, Named{CodePath::v3, "x86-64-v3"}};
+    return std::array{Named{CodePath::baseline, "baseline"}, Named{CodePath::v3, "x86-64-v3"},
+                      Named{CodePath::v4, "x86-64-v4"}};
+}
+
+/// Returns whether this CPU can run a code path.
+inline bool machineHas(CodePath path) {
+    return path == CodePath::baseline || (path == CodePath::v3 ? machineHasV3() : machineHasV4());
 }
 
 /// Returns the code path with which this CPU is fastest.
-inline CodePath fastestCodePath() { return machineHasV3() ? CodePath::v3 : CodePath::baseline; }
+inline CodePath fastestCodePath() {
+    return machineHasV4() ? CodePath::v4 : machineHasV3() ? CodePath::v3 : CodePath::baseline;
+}
 
 }  // namespace base

@@ -26,6 +26,21 @@ sand::HeightField roughField(int side, std::uint32_t seed) {
     return field;
 }
 
+/// Returns level ground with one lump of noise per 128² cells. Each lump is 8 cells wide and at most 64 high. Nearly
+/// all blocks of the field are at rest, and the lumps move for longer than a measurement.
+sand::HeightField lumpyField(int side, std::uint32_t seed) {
+    constexpr int kDistance = 128, kWidth = 8, kFirst = 28;  // [cell]
+    const sand::HeightField rough = roughField(side, seed);
+    sand::HeightField field(side, side, 1.0);
+    for (int y = 0; y < side; ++y) {
+        for (int x = 0; x < side; ++x) {
+            const auto inLump = [](int place) { return (place + kDistance - kFirst) % kDistance < kWidth; };
+            field.setHeight(x, y, inLump(x) && inLump(y) ? rough.height(x, y) : 0);
+        }
+    }
+    return field;
+}
+
 /// Returns a number of sweeps that is large enough for the clock's resolution, and so small that all sand still moves.
 int sweepsFor(int side) { return std::clamp((1 << 24) / (side * side), 2, 64); }
 
@@ -34,12 +49,17 @@ struct Variant {
     sand::Scheme scheme;
     base::CodePath path;
     int threads;
+    double band = 0;     // start threshold above the threshold, as a share of it
+    bool lumpy = false;  // whether the sand is lumpyField() with a talus of 1, instead of roughField()
 };
 
 /// Returns the time per sweep of each run [s]: CPU time of one thread, or wall time of several threads.
 std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
-    sand::Rules rules = rulesFor(start, 64.0 / sand::kUnitsPerCell);
+    sand::Rules rules = rulesFor(start, variant.lumpy ? 1.0 : 64.0 / sand::kUnitsPerCell);
     rules.scheme = variant.scheme;
+    // At least one unit, because the band would otherwise be none with the low threshold of the rough field.
+    rules.tuning.startThreshold +=
+        variant.band > 0 ? std::max(1, static_cast<int>(rules.tuning.threshold * variant.band)) : 0;
     host::WorkerPool pool(variant.threads);
     const base::Executor executor = pool.executor();
     sand::grid::Erosion::Options options;
@@ -109,13 +129,19 @@ std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightFie
 
 void throughput(const Settings& settings, Csv& csv) {
     using sand::Scheme;
+    constexpr double kBand = 1e-3;
     std::vector<Variant> variants{{"G", Scheme::isotropic, base::fastestCodePath(), 1},
                                   {"G plain", Scheme::plainIsotropic, base::fastestCodePath(), 1},
-                                  {"G baseline x86-64", Scheme::isotropic, base::CodePath::baseline, 1}};
+                                  {"G baseline x86-64", Scheme::isotropic, base::CodePath::baseline, 1},
+                                  {"G band", Scheme::isotropic, base::fastestCodePath(), 1, kBand},
+                                  {"G lumps", Scheme::isotropic, base::fastestCodePath(), 1, 0, true},
+                                  {"G lumps band", Scheme::isotropic, base::fastestCodePath(), 1, kBand, true}};
     for (int threads = 2; threads <= static_cast<int>(std::thread::hardware_concurrency()); threads *= 2) {
         variants.push_back({fmt::format("G {} threads", threads), Scheme::isotropic, base::fastestCodePath(), threads});
     }
-    csv.note("a field in which all sand moves; CPU time of one thread, wall time of several threads");
+    csv.note("a field in which all sand moves, or one lump per 128 x 128 cells; time per cell of the field");
+    csv.note("band: sand starts to slide 0.1 % above the threshold at which it stops");
+    csv.note("CPU time of one thread, wall time of several threads");
     csv.note(
         "times_copy: over the median of reading and writing a 32-bit number per cell in the same run: the roofline");
     csv.columns("variant,threads,N,ns_per_cell_median,ns_per_cell_min,ns_per_cell_max,times_copy");
@@ -130,8 +156,9 @@ void throughput(const Settings& settings, Csv& csv) {
         };
         row("copy", 1, measureCopy(side, settings.runs));
         const sand::HeightField start = roughField(side, settings.seed);
+        const sand::HeightField lumps = lumpyField(side, settings.seed);
         for (const Variant& variant : variants) {
-            row(variant.name, variant.threads, measure(variant, start, settings.runs));
+            row(variant.name, variant.threads, measure(variant, variant.lumpy ? lumps : start, settings.runs));
         }
         row("float32 N4 Jacobi", 1, measureBaseline(BaselineScheme::jacobiN4, start, settings.runs));
         row("float32 N4 in place", 1, measureBaseline(BaselineScheme::inPlaceN4, start, settings.runs));
