@@ -112,7 +112,7 @@ std::vector<double> measureBaseline(BaselineScheme scheme, const sand::HeightFie
             field.row(y)[x] = static_cast<float>(start.height(x, y)) / sand::kUnitsPerCell;
         }
     }
-    const bool hasV3 = base::machineHasV3();
+    const bool hasV3 = base::machineHas(base::CodePath::v3);
     const int count = sweepsFor(start.columns());
     std::vector<double> seconds;
     for (int run = 0; run < runs; ++run) {
