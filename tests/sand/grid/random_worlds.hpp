@@ -3,12 +3,13 @@
 #pragma once
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
 #include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -24,16 +25,6 @@ using base::CodePath;
 using sand::grid::Erosion;
 
 inline constexpr std::array kBlocks{2, 8, 13, 32, 128};
-/// Returns the code paths that this CPU can run.
-inline std::vector<CodePath> paths() {
-    std::vector<CodePath> all;
-    for (const auto& known : valuesOf(CodePath{})) {
-        if (base::machineHas(known.value)) {
-            all.push_back(known.value);
-        }
-    }
-    return all;
-}
 
 /// Random case: a field, its laws, its ground and a tool.
 class World {
@@ -122,17 +113,23 @@ private:
     }
 };
 
+/// Ways of sweeping that a comparison prescribes.
+struct Way {
+    const base::Executor* executor = nullptr;     // null: the calling thread does all work
+    std::optional<CodePath> path = std::nullopt;  // nullopt: one that this CPU has, at random in each world
+};
+
 /// The solver and a reference on one case. The field, the tool and the rules change in between. A reference has the
 /// members of reference::Sand.
 template <class Reference>
 class Pair {
 public:
-    Pair(World world, const base::Executor* executor)
+    Pair(World world, const Way& way)
         : world_(std::move(world)),
           options_{.blockSize = kBlocks.at(world_.random() % kBlocks.size()),
-                   .path = paths().at(world_.random() % paths().size()),
+                   .path = pathOf(way, world_.random()),
                    .ground = world_.ground.get(),
-                   .executor = executor},
+                   .executor = way.executor},
           field_(world_.field),
           erosion_(field_, world_.rules, options_),
           expected_(field_, world_.rules, world_.ground.get()) {}
@@ -148,8 +145,27 @@ public:
         const int sweeps = 1 + world_.below(world_.below(8) == 0 ? 400 : 24);
         outflow_ += erosion_.sweep(field_, sweeps, expected_.tool);
         expected_.sweep(sweeps);
-        compare();
         return static_cast<int>(erosion_.sweepsDone() - before);
+    }
+
+    /// Returns how the two sands differ, or an empty text if they are equal.
+    [[nodiscard]] std::string difference() const {
+        for (int y = 0; y < field_.rows(); ++y) {
+            for (int x = 0; x < field_.columns(); ++x) {
+                if (field_.height(x, y) != expected_.field.height(x, y)) {
+                    return fmt::format("the height of cell {}, {} is {} and should be {}", x, y, field_.height(x, y),
+                                       expected_.field.height(x, y));
+                }
+            }
+        }
+        if (outflow_ != expected_.outflow) {
+            return fmt::format("the outflow is {} and should be {}", outflow_, expected_.outflow);
+        }
+        if (erosion_.undisturbed() != expected_.undisturbed) {
+            return fmt::format("the age of the inertia is {} and should be {}", erosion_.undisturbed(),
+                               expected_.undisturbed);
+        }
+        return "";
     }
 
     void change() {
@@ -166,10 +182,9 @@ public:
     }
 
 private:
-    void compare() const {
-        ASSERT_TRUE(sameHeights(field_, expected_.field));
-        ASSERT_EQ(outflow_, expected_.outflow);
-        ASSERT_EQ(erosion_.undisturbed(), expected_.undisturbed);
+    static CodePath pathOf(const Way& way, std::mt19937::result_type random) {
+        const std::vector<CodePath> here = base::codePathsHere();
+        return way.path.value_or(here.at(random % here.size()));
     }
 
     /// Raises or lowers a few cells, but not below their rock.
@@ -225,5 +240,22 @@ private:
     std::optional<sand::grid::Obstacle> tool_;
     std::int64_t outflow_ = 0;
 };
+
+/// Compares at least `sweeps` sweeps in worlds of up to `widest` x `highest` cells, with numbers from `seed` on.
+/// Returns the first difference, with the seed of its world, or an empty text.
+template <class Reference>
+std::string firstDifference(unsigned seed, int sweeps, int widest, int highest, const Way& way = {}) {
+    for (int done = 0; done < sweeps; ++seed) {
+        Pair<Reference> pair(World(seed, widest, highest), way);
+        for (int part = 0; part < 6; ++part) {
+            done += pair.sweep();
+            if (const std::string difference = pair.difference(); !difference.empty()) {
+                return fmt::format("seed {}: {}, part {}: {}", seed, pair.text(), part, difference);
+            }
+            pair.change();
+        }
+    }
+    return "";
+}
 
 }  // namespace worlds

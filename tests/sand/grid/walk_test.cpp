@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the walk over the rows bit for bit with sweeps in two passes over all blocks.
+// Compares the walk over the rows bit for bit with sweeps in two passes over all blocks. scripts/walk.sh compares more
+// sweeps.
 #include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <string>
 
 #include "host/worker_pool.hpp"
 #include "tests/sand/grid/random_worlds.hpp"
@@ -11,6 +9,9 @@
 #include "tests/support/seed.hpp"
 
 namespace {
+
+constexpr int kSweeps = samples::kSlowBuild ? 500 : 10000;
+constexpr int kFew = kSweeps / 10;  // in large worlds
 
 /// Executor that calls the tasks one after the other, and the last one first. It shows a strip that depends on another
 /// strip, in every run.
@@ -20,39 +21,36 @@ const base::Executor kBackwards = [](int count, const std::function<void(int)>& 
     }
 };
 
-/// Returns the number of sweeps to compare. scripts/walk.sh asks for more.
-int wantedSweeps() {
-    const char* const wanted = std::getenv("SANDWALL_SWEEPS");
-    return wanted != nullptr ? std::stoi(wanted) : samples::kSlowBuild ? 500 : 10000;
+void compare(int sweeps, int widest, int highest /* [cell] */, const worlds::Way& way) {
+    EXPECT_EQ(worlds::firstDifference<two_pass::Solver>(test::randomSeed(), sweeps, widest, highest, way), "")
+        << "run again with this seed in SANDWALL_SEED";
 }
 
-/// Compares `sweeps` sweeps in random worlds of the given size.
-void compare(int sweeps, int widest, int highest /* [cell] */, const base::Executor* executor) {
-    unsigned seed = test::randomSeed();
-    for (int done = 0; done < sweeps && !testing::Test::HasFatalFailure(); ++seed) {
-        SCOPED_TRACE(test::again(seed));
-        worlds::Pair<two_pass::Solver> pair(worlds::World(seed, widest, highest), executor);
-        for (int part = 0; part < 6 && !testing::Test::HasFatalFailure(); ++part) {
-            SCOPED_TRACE(fmt::format("{}, part {}", pair.text(), part));
-            done += pair.sweep();
-            pair.change();
-        }
+TEST(Walk, EqualsTwoPassesInSmallWorldsOnEveryPath) {
+    for (const base::CodePath path : base::codePathsHere()) {
+        compare(kSweeps, 45, 45, {.path = path});
     }
 }
 
-TEST(Walk, EqualsTwoPassesInSmallWorlds) { compare(wantedSweeps(), 45, 45, nullptr); }
-
 // Rows are swept in pieces of 256 cells.
-TEST(Walk, EqualsTwoPassesInWideWorlds) { compare(wantedSweeps() / 10, 1000, 40, nullptr); }
+TEST(Walk, EqualsTwoPassesInWideWorlds) {
+    for (const base::CodePath path : base::codePathsHere()) {
+        compare(kFew, 1000, 40, {.path = path});
+    }
+}
 
 TEST(Walk, EqualsTwoPassesWithStripsInAnyOrder) {
-    compare(wantedSweeps() / 10, 200, 200, &kBackwards);
-    compare(wantedSweeps() / 10, 500, 30, &kBackwards);
+    compare(kFew, 200, 200, {.executor = &kBackwards});
+    compare(kFew, 500, 30, {.executor = &kBackwards});
 }
 
 TEST(Walk, EqualsTwoPassesOnThreads) {
-    host::WorkerPool team(3);
-    compare(wantedSweeps() / 10, 200, 200, team.lend());
+    for (const int threads : {2, 3, 7}) {
+        host::WorkerPool team(threads);
+        for (const base::CodePath path : base::codePathsHere()) {
+            compare(kFew, 200, 200, {.executor = team.lend(), .path = path});
+        }
+    }
 }
 
 }  // namespace
