@@ -98,9 +98,9 @@ template <class Number>
 }
 
 /// Bools in one integer, the first in its lowest bit. The other bits are 0.
-template <class Number, class Bool, std::size_t kCount>
+template <class Number, class Truth, std::size_t kCount>
 struct Flags {
-    std::array<Bool*, kCount> values;
+    std::array<Truth*, kCount> values;
     void put(ByteWriter& writer) const {
         unsigned bits = 0;
         for (std::size_t i = 0; i < kCount; ++i) {
@@ -108,7 +108,7 @@ struct Flags {
         }
         writer.put(static_cast<Number>(bits));
     }
-    void get(ByteReader& reader) const requires(!std::is_const_v<Bool>) {
+    void get(ByteReader& reader) const requires(!std::is_const_v<Truth>) {
         const auto bits = static_cast<std::make_unsigned_t<Number>>(reader.get<Number>());
         if (bits >> kCount != 0) {
             throw FormatError("is " + std::to_string(bits) + ", with unknown bits");
@@ -118,8 +118,8 @@ struct Flags {
         }
     }
 };
-template <class Number = std::uint8_t, class Bool, class... More>
-[[nodiscard]] Flags<Number, Bool, 1 + sizeof...(More)> flags(Bool& first, More&... more) {
+template <class Number = std::uint8_t, class Truth, class... More>
+[[nodiscard]] Flags<Number, Truth, 1 + sizeof...(More)> flags(Truth& first, More&... more) {
     static_assert(sizeof...(more) < 8);
     return {{&first, &more...}};
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Writes layers.json for scripts/layers.py: each target of the project with its sources and the libraries that it links.
+# Writes layers.json for scripts/checks/layers.py: each target of the project with its sources and the libraries that it links.
 # Call it after all targets.
 function(sandwall_add_targets list folder)
     set(found ${${list}})

@@ -35,7 +35,7 @@ std::string whyUnsafeEntry(const std::filesystem::path& entry) {
     if (lstat(entry.c_str(), &about) != 0) {
         return "";
     }
-    // scripts/session_folder.py has the same messages.
+    // scripts/launcher/session_folder.py has the same messages.
     if (S_ISLNK(about.st_mode)) {
         return entry.string() +
                ": is a link, and a session follows none in its folder; remove it, or choose another --out";
@@ -114,6 +114,17 @@ int makeFile(const std::filesystem::path& path, mode_t mode) {
     return open(path.c_str(), kFlags, mode & ~kOthersMayWrite);
 }
 
+bool writeAll(int descriptor, std::span<const std::uint8_t> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t count = write(descriptor, bytes.data(), bytes.size());
+        if (count < 0 && errno != EINTR) {
+            return false;
+        }
+        bytes = bytes.subspan(count > 0 ? static_cast<std::size_t>(count) : 0);
+    }
+    return true;
+}
+
 void forgetFile(const std::filesystem::path& path) {
     if (isFileOrLink(path)) {
         unlink(path.c_str());
@@ -139,9 +150,8 @@ bool appendLines(const std::filesystem::path& path, std::string_view lines) {
         return refused(descriptor, errno);
     }
     const std::string text = (last == '\n' ? "" : "\n") + std::string(lines);
-    const ssize_t count = write(descriptor, text.data(), text.size());
-    if (count != static_cast<ssize_t>(text.size())) {
-        return refused(descriptor, count < 0 ? errno : ENOSPC);
+    if (!writeAll(descriptor, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
+        return refused(descriptor, errno);
     }
     if (fdatasync(descriptor) != 0 || (made && !syncFolderOf(path))) {
         return refused(descriptor, errno);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,9 @@ void keepOthersFromWriting();
 /// may have used, call whyNotReplaceable() before. Never follows a symbolic link and never waits. Returns the
 /// descriptor, or -1 with errno.
 [[nodiscard]] int makeFile(const std::filesystem::path& path, mode_t mode = 0644);
+/// Writes all bytes to an open file, pipe or device, however few of them one system call takes. Returns false with
+/// errno if the system refuses; part of the bytes is written then.
+[[nodiscard]] bool writeAll(int descriptor, std::span<const std::uint8_t> bytes);
 /// Removes a regular file or a symbolic link. Leaves everything else, such as a pipe, and reports no error.
 void forgetFile(const std::filesystem::path& path);
 /// Appends whole lines to a file, which it makes if it does not exist. If a crash has cut off the file's last line,

@@ -80,9 +80,14 @@ Image packStereo(walls::Stereo stereo, const Image& left, const Image& right) {
         case walls::Stereo::anaglyphHalf:
         case walls::Stereo::anaglyphDubois:
             return mixed(anaglyphWeights(stereo), left, right);
-        default:
-            throw std::invalid_argument(fmt::format("{} shows no two eyes in one picture", walls::stereoName(stereo)));
+        case walls::Stereo::mono:
+        case walls::Stereo::left:
+        case walls::Stereo::right:
+        case walls::Stereo::passive:
+        case walls::Stereo::active:
+            break;
     }
+    throw std::invalid_argument(fmt::format("{} shows no two eyes in one picture", walls::stereoName(stereo)));
 }
 
 }  // namespace pictures

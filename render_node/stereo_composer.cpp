@@ -10,7 +10,6 @@ namespace {
 
 using walls::Stereo;
 
-bool isPacked(Stereo stereo) { return stereo >= Stereo::sideBySide; }
 bool isBeside(Stereo stereo) { return stereo == Stereo::sideBySide || stereo == Stereo::topBottom; }
 bool mixesLight(Stereo stereo) { return stereo == Stereo::anaglyphHalf || stereo == Stereo::anaglyphDubois; }
 
@@ -54,7 +53,7 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
     for (const walls::Output& output : tile.outputs) {
         eyeOfOutput_.push_back(eyeIndex(stereo, output));
     }
-    if (!isPacked(stereo)) {
+    if (!walls::packsEyes(stereo)) {
         return;
     }
     const glm::ivec2 size = walls::outputPixels(stereo, tile.pixels);

@@ -17,7 +17,7 @@ namespace sand {
 /// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
 inline constexpr std::uint32_t kStateVersion = 8;
 
-/// Part of a replica's state besides the sand.
+/// All state of a replica except its sand.
 struct StateHead {
     std::uint64_t number = 0;  // of the last step
     ProbePoint probe;
@@ -69,31 +69,35 @@ public:
     Replica& operator=(Replica&&) noexcept = default;
     ~Replica() = default;
 
-    /// Applies the next step. The tool displaces sand along the step's path, then the step's edit is done, then the
-    /// sand slides for Rules::sweepsPerStep sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
+    /// Applies the next step. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
-    /// A reset, a load, and an undo while canUndo() restore the sand with its outflow and inertia. On a TIN, only an
-    /// undo restores which sand moves. Such a step runs no sweeps, so that it ends with exactly the restored sand. If
-    /// the tool is in the sand, it then presses once. The step does not restore step number, probe, tool or material.
+    /// 1. An engaged tool displaces sand along step.path.
+    /// 2. step.edit is done.
+    /// 3. The sand slides for Tuning::sweepsPerStep sweeps.
     ///
-    /// A settle brings all sand to rest in its step. If a tool is engaged, or if there is rock or a wall, it is sweeps
-    /// instead, with the tool as an obstacle. It then continues in the steps after, until the sand is at rest, each
-    /// with at most settlingSweeps() sweeps. A reset, a load, an undo, or another settle ends it.
+    /// Edits with a rule of their own:
+    /// - A reset, a load or an undo restores sand, outflow and inertia. On a TIN, only an undo also restores which sand
+    ///   moves. Step number, probe, tool and material are not restored. Such a step runs no sweeps, so that it ends
+    ///   with exactly the restored sand. An engaged tool then presses once.
+    /// - A settle brings all sand to rest within its step. With an engaged tool, and on a height field with rock or
+    ///   walls, the sand settles by sweeps instead. An engaged tool is then an obstacle. These sweeps continue in the
+    ///   next steps, at most settlingSweeps() in each, until all sand is at rest. A reset, a load or an undo ends them,
+    ///   and another settle takes their place.
     ///
-    /// A load is ignored if its bytes are not sand for this field. An undo is ignored if canUndo() is false. The step
-    /// then runs its sweeps.
+    /// A step may leave out a part of itself. Every replica does so alike, because state and step alone decide:
+    /// - A load whose bytes are not sand for this field is ignored. The step then runs its sweeps.
+    /// - An undo is ignored if canUndo() is false. The step then runs its sweeps.
+    /// - A path is ignored, except for its end, if it is so long and the tool so large that the step would take
+    ///   minutes. No hand makes such a step.
+    /// - The whole step is skipped if the sand throws an exception. It still counts as applied. The sand becomes that
+    ///   from before the last stroke, or that of the scene if no such sand is kept. Probe, tool and material become
+    ///   those from before the step, and the tool is lifted. It does not matter how far the step had come.
     ///
-    /// The tool passes through the sand without moving it if the path is so long, and the tool so large, that the step
-    /// would take minutes. No hand makes such a step.
-    ///
-    /// If the sand throws an exception, the step is skipped: it counts as applied, and the sand is that from before the
-    /// last stroke, or that of the scene if no such sand is kept. Probe, tool and material are those from before the
-    /// step, and the tool is lifted. Every replica skips it alike, because state and step alone decide. The result does
-    /// not depend on how far the step came. std::bad_alloc is the exception to this, because it depends on the host. It
-    /// leaves the replica unusable, so that its process must end.
+    /// std::bad_alloc is passed on instead, because it depends on the host. The replica is then unusable, and its
+    /// process must end.
     void apply(const Step& step);
-    /// Returns what the last apply() has left out, as one line: the load that it has ignored, the path that was too
-    /// long, or the whole step that it has skipped. Returns an empty text if it has left out nothing.
+    /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
+    /// Returns an empty text if there was none of these. An ignored undo does not count.
     [[nodiscard]] const std::string& leftOut() const { return leftOut_; }
 
     [[nodiscard]] const Rules& rules() const { return rules_; }  // the scene's, with the operator's tuning
@@ -157,7 +161,7 @@ public:
     void corrupt(int column, int row, int bit = 0) { surface_->corrupt(column, row, bit); }
 
 private:
-    /// What a step changes besides the sand.
+    /// Values that a step changes along with the sand.
     struct Hand {
         Tuning tuning;
         ProbePoint probe;

@@ -16,14 +16,14 @@ namespace {
 
 constexpr double kLargestTool = double{sand::kLargestToolRadius} / sand::kProbePerCell;  // [cell]
 
-constexpr std::array<MaterialKey, 6> kMaterialKeys{{
+constexpr auto kMaterialKeys = std::to_array<MaterialKey>({
     {"talus_deg", "talus", 0, 90, true, [](Material& m, double value) { m.dryTalus = value; }},
     {"wet_talus_deg", "wet-talus", 0, 90, true, [](Material& m, double value) { m.wetTalus = value; }},
     {"humidity", "humidity", 0, 1, false, [](Material& m, double value) { m.humidity = value; }},
     {"cohesion_length", "cohesion", 0, 1e9, false, [](Material& m, double value) { m.cohesionLength = value; }},
     {"band", "band", 0, 1, false, [](Material& m, double value) { m.band = value; }},
     {"settling_time", "settling-time", 0.001, 1e6, false, [](Material& m, double value) { m.settlingSeconds = value; }},
-}};
+});
 
 double thresholdOf(const Material& material) {
     return std::min(std::floor(std::tan(material.talus() * std::numbers::pi / 180) * sand::kUnitsPerCell + 0.5),

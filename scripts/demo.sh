@@ -27,7 +27,7 @@ gl=osmesa
 [[ -f build/release/bin/sandwall-gl-osmesa.so ]] || gl=egl # Mesa has no OSMesa any more
 
 mkdir -p "$out"
-scripts/make_hand_trace.py "$out/hand.csv"
+scripts/figures/make_hand_trace.py "$out/hand.csv"
 # The hand writes for 12 s at 60 steps per second. With --pace fast it waits for the wall: on a slow or busy machine a hand in
 # real time would be gone before the wall has shown its strokes.
 status=0

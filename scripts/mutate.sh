@@ -5,4 +5,4 @@
 # Takes too long for scripts/test.sh, which does not run it. docs/testing.md
 #
 # usage: scripts/mutate.sh [FOLDER…|PATCH…]      (default: all bugs; --help lists the options)
-cd "$(dirname "$0")/.." && exec python3 scripts/mutation/run.py "$@"
+cd "$(dirname "$0")/.." && exec python3 scripts/checks/mutation/run.py "$@"

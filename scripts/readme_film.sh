@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Makes the film in README.md, docs/images/dig.gif: a hand writes "sand" on a wall of 3x4 tiles. Takes a few minutes.
-# Needs ffmpeg. Wall, scene and hand are the three files in scripts/readme_film.
+# Needs ffmpeg. Wall, scene and hand are the three files in scripts/figures/readme_film.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 
@@ -20,7 +20,7 @@ scripts/install_dependencies.sh
 cmake --build build/release --target sandwall
 
 # One rank records the hand; twelve ranks show the recording again. A fast session keeps every step on a busy machine.
-parts=scripts/readme_film
+parts=scripts/figures/readme_film
 scripts/sandwall run --wall walls/configs/desktop.toml --scene $parts/scene.toml --device script:$parts/hand.strokes \
     --gl osmesa --pace fast --steps 350 --no-pictures --out "$out/session"
 scripts/sandwall film "$out/session/session.journal" --wall $parts/wall.toml --fps 25 --out "$out/film"

@@ -68,7 +68,7 @@ rank_table() {
         /usr/bin/python3 - "$folder/out/summary.json" "$((${wall%x*} * ${wall#*x}))" "$replay" >>"$data/ranks.csv" <<'PYTHON'
 import sys
 sys.dont_write_bytecode = True
-sys.path.insert(0, "scripts")
+sys.path.insert(0, "scripts/launcher")
 import session_results
 summary = session_results.read_summary(sys.argv[1])
 print(sys.argv[2], summary["state_hash"], sys.argv[3], summary["divergences"], sep=",")
@@ -134,5 +134,5 @@ measure() {
 }
 
 [[ $draw == yes ]] || measure
-/usr/bin/python3 scripts/report_plots.py "$data" "$out"
+/usr/bin/python3 scripts/figures/report_plots.py "$data" "$out"
 echo "the report: $out/README.md"

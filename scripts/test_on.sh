@@ -147,7 +147,7 @@ echo "== all tests"
 inside "$work" scripts/test.sh
 
 echo "== sessions in which systems differ"
-inside "$work" scripts/system_sessions.py
+inside "$work" scripts/checks/system_sessions.py
 
 echo "== the package, in another fresh root"
 package=$(inside "$work" scripts/package.sh)

@@ -6,8 +6,8 @@
 
 namespace bench {
 
-/// Replaces this process by scripts/latency.py, which starts whole sessions with the programs beside this one. Throws
-/// base::InputError if the script or Python cannot be found. Does not return.
+/// Replaces this process by scripts/figures/latency.py, which starts whole sessions with the programs beside this one.
+/// Throws base::InputError if the script or Python cannot be found. Does not return.
 [[noreturn]] void becomeLatency(const std::vector<std::string>& arguments);
 
 }  // namespace bench

@@ -36,14 +36,9 @@ TickFile::~TickFile() {
 void TickFile::add(const Tick& tick) { appendRow(tick, rows_); }
 
 void TickFile::write() {
-    std::size_t done = 0;
-    while (descriptor_ >= 0 && done < rows_.size()) {
-        const ssize_t count = ::write(descriptor_, rows_.data() + done, rows_.size() - done);
-        if (count < 0 && errno != EINTR) {
-            giveUp(errno);
-            break;
-        }
-        done += count > 0 ? static_cast<std::size_t>(count) : 0;
+    if (descriptor_ >= 0 &&
+        !host::writeAll(descriptor_, {reinterpret_cast<const std::uint8_t*>(rows_.data()), rows_.size()})) {
+        giveUp(errno);
     }
     size_ += static_cast<std::int64_t>(rows_.size());
     rows_.clear();

@@ -147,14 +147,8 @@ void PartFile::write(std::span<const std::uint8_t> bytes) {
         errno = why;
         fail("the journal cannot be written");
     };
-    for (std::size_t done = 0; done < bytes.size();) {
-        const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-        if (count < 0 && errno != EINTR) {
-            failWhole();
-        }
-        done += count > 0 ? static_cast<std::size_t>(count) : 0;
-    }
-    if (fdatasync(descriptor_) != 0 && errno != EINVAL) {  // pipes and the like cannot sync
+    const bool whole = host::writeAll(descriptor_, bytes);
+    if (!whole || (fdatasync(descriptor_) != 0 && errno != EINVAL)) {  // pipes and the like cannot sync
         failWhole();
     }
     size_ += static_cast<std::int64_t>(bytes.size());

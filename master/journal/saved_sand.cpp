@@ -61,11 +61,7 @@ public:
     Unnamed& operator=(const Unnamed&) = delete;
 
     void write(const base::Bytes& bytes) {
-        for (std::size_t done = 0; done < bytes.size();) {
-            const ssize_t count = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
-            require(count >= 0 || errno == EINTR);
-            done += count > 0 ? static_cast<std::size_t>(count) : 0;
-        }
+        require(host::writeAll(descriptor_, bytes));
         require(fsync(descriptor_) == 0);
     }
     /// Gives the file its name. The name survives a loss of power when the function returns.

@@ -19,7 +19,7 @@ class EyeTarget;
 /// Source of a process's OpenGL context. Each backend is one loadable module; all other code is the same for every
 /// backend.
 enum class Backend : std::uint8_t {
-    automatic,  // glfw if the wall file gives the tile a display, a monitor or a window's place; otherwise kInMemory
+    automatic,  // glfw if the wall file names a display, a monitor or a window's place for the tile; else kInMemory
     osmesa,     // draws into memory, without a display or a graphics card
     egl,        // draws off screen on a graphics card or in Mesa's software renderer
     glfw        // windows on an X display
@@ -34,7 +34,7 @@ extern const Backend kInMemory;
 /// Returns the backend that `automatic` chooses for `tile`. Returns every other backend unchanged.
 [[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
 
-/// Pictures that one output shows in a frame: one picture, or both eyes' pictures if one window shows the eyes in turn.
+/// Pictures that one output shows in a frame. There are two if one window shows the eyes in turn, and otherwise one.
 struct OutputPicture {
     const EyeTarget* picture = nullptr;  // the only picture, or the left eye's
     const EyeTarget* right = nullptr;    // the right eye's picture; null unless the stereo mode is active
@@ -42,8 +42,10 @@ struct OutputPicture {
 
 /// OpenGL 3.3 core context and, if the backend has windows, the windows of the tile.
 ///
-/// The context is current on the thread that made it, and only that thread uses it. Objects that own GL objects
-/// (EyeTarget, ScenePainter) must be destroyed before the context.
+/// The context is current on the thread that made it, and only that thread uses it. Destroy objects that own GL
+/// objects, such as EyeTarget and ScenePainter, before the context.
+///
+/// A backend without windows draws off screen: each function that has a body here then does what this body does.
 class GlContext {
 public:
     GlContext() = default;
@@ -56,39 +58,42 @@ public:
     /// Returns the renderer, from GL_RENDERER and GL_VERSION. The context must be current.
     [[nodiscard]] std::string renderer() const;
 
-    /// Copies the pictures of the outputs, in the order of tile.outputs, to the windows' back buffers, and waits until
-    /// GL has copied them. Off screen it only waits. Throws std::runtime_error, which names the output, if a window is
+    /// Copies the pictures of the outputs to the back buffers of the windows, and waits until GL has copied them. Off
+    /// screen, only waits until GL has drawn them. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     ///
+    /// @param outputs  Pictures in the order of tile.outputs.
     /// @param changed  Pixels that differ from the last call's pictures, in any output. A software renderer copies only
     ///                 these. The first call copies everything.
     /// @param frame    Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
     virtual void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame) = 0;
-    /// Returns whether each frame shows only one eye. This is so for active stereo in windows without quad buffers.
+    /// Returns true for active stereo in windows without quad buffers: each frame then shows one eye.
     [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
-    /// Shows the presented pictures. The caller swaps only after all ranks have agreed. Off screen it does nothing.
+    /// Shows the presented pictures. Call it after all ranks have agreed.
     virtual void swap() {}
-    /// Returns the keys that were pressed in the windows since the last call, one character each. Off screen it returns
-    /// "".
+    /// Returns the keys that were pressed in the windows since the last call, one character each.
     [[nodiscard]] virtual std::string takeKeys() { return {}; }
-    /// Returns the events of the pointer in the windows since the last call, in the order of time. Off screen, and for
-    /// a context without the pointer, it returns none.
+    /// Returns the events of the pointer in the windows since the last call, in the order of time. Returns an empty
+    /// list if the context was made without the pointer.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
-    /// Waits for an event of the window system, at most `seconds` [s]. Off screen it returns at once.
+    /// Waits for an event of the window system, at most `seconds` [s].
     virtual void awaitEvents(double /* seconds */) {}
     /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
-    /// Returns whether hardware locks the swaps of several graphics cards. Off screen it returns "none". If only the
-    /// windows of one card are locked, it returns "joined, no barrier". If all cards with a sync signal are locked, it
-    /// returns "joined". Otherwise it returns "no extension" or "refused".
+    /// Returns how hardware locks the swaps of the windows:
+    /// - "joined": all cards with a sync signal swap together.
+    /// - "joined, no barrier": the windows of one card swap together.
+    /// - "refused" or "no extension": nothing is locked, because the driver refuses it or cannot do it.
+    /// - "none": the context has no windows.
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
-    /// Returns the number of first frames in which a hardware barrier settles. These frames do not count in the skew.
+    /// Returns the number of frames after the start in which a hardware barrier settles. The skew leaves them out.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
     /// Returns a lower bound of the memory of the windows' back buffers [byte].
     [[nodiscard]] virtual std::int64_t frameBufferBytes() const { return 0; }
 
 protected:
-    /// Waits for GL. After frames 1, 2, 4, 8 and so on, also returns the memory that compiling shaders has left.
+    /// Waits until GL has drawn everything. After frames 1, 2, 4, 8 and so on, also gives the memory that the compiler
+    /// of shaders has left back to the system.
     void finishFrame();
     [[nodiscard]] std::uint64_t framesFinished() const { return frames_; }
 
@@ -97,8 +102,10 @@ private:
 };
 
 /// Makes a context for the outputs of `tile`, current on this thread, and loads the GL functions. Throws
-/// base::InputError, with one line that gives the package to install or the backend to choose. With `pointer`, the
-/// windows show the pointer and report its events; throws base::InputError if the backend has no windows.
+/// base::InputError, whose line names the package to install or the backend to choose.
+///
+/// @param pointer  Whether the windows show the pointer and report its events. Throws base::InputError if it is true
+///                 and the backend has no windows.
 [[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
                                                      bool pointer = false);
 

@@ -7,18 +7,30 @@
 
 namespace sand::force {
 
-/// Equation 9 of Purchart et al. 2012, reconstructed from its prose: F_out = F_old + (F − F_old) min(it/itp, 1).
+/// Equation 9 of Purchart et al. 2012, reconstructed from its prose. It spreads each change of the force over the ticks
+/// until the next surface:
 ///
-/// F is the law's response when the last surface arrived, and F_old its response when the surface before arrived. `it`
-/// is the number of haptic frames since then, including this one. `itp` is the number of haptic frames between the
-/// arrivals of the last two surfaces. At 60 and 1000 per second, the rates of both papers, it is 16 or 17. The
-/// interpolation is a delay of a whole frame of the sand.
+///     F_out = F_old + (F − F_old) min(it/itp, 1)
 ///
-/// As printed, F_old is F before the update. After a short frame, the output has not yet reached this F, and jumps to
-/// it. Only `literal` does that. Otherwise F_old is the response that was sent last.
+/// - F: the law's response to the surface that arrived last.
+/// - F_old: the response from which the change begins.
+/// - it: number of ticks since that surface arrived, including this one.
+/// - itp: number of ticks between the arrivals of the last two surfaces. It is 16 or 17 at 60 surfaces and 1000 ticks
+///   per second, the rates of both papers.
+///
+/// The interpolation delays the force by a whole step of the sand.
+///
+/// The paper's F_old is the response to the surface before. If a surface arrives early, the output has not yet reached
+/// that response, and jumps to it. With `literal`, F_old is the paper's, jump included. Without, F_old is the last
+/// output, and the output never jumps.
 class Interpolation {
 public:
-    /// Returns the response of this tick. Call it once per tick. `next` is read only if `replaced` or `forget` is true.
+    /// Returns the response of this tick. Call it once per tick.
+    ///
+    /// @param replaced  Whether another surface has arrived. `next` is then the law's response to it.
+    /// @param forget    Whether to begin at `next`, without a change.
+    /// @param literal   ForceConstants::literal.
+    /// @param next      Read only if `replaced` or `forget` is true.
     [[nodiscard]] const Response& at(bool replaced, bool forget, bool literal, const Response& next) {
         if (forget) {
             from_ = to_ = out_ = next;

@@ -104,7 +104,7 @@ Contour contourOf(const Tool& tool, double cellSize) {
     }
     const double cosine = static_cast<double>(tool.heading.x) / Heading::kLength;
     const double sine = static_cast<double>(tool.heading.y) / Heading::kLength;
-    const Places even = evenly(solePieces(tool.kind).empty() ? outline : bridged(outline));
+    const Places even = evenly(tool.kind == ToolKind::footprint ? bridged(outline) : outline);
     Contour contour{{}, 0, -radius};
     for (std::size_t i = 0; i < even.size(); ++i) {
         // The points of a mirrored tool run clockwise, so that they are taken from the last to the first.

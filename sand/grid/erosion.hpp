@@ -20,29 +20,40 @@ namespace sand::grid {
 
 /// Thermal erosion: sand slides wherever it is steeper than the talus, until all sand is at rest.
 ///
-/// A sweep is a Jacobi iteration over the faces between cells. It computes all fluxes from the heights before the sweep
-/// and rounds each flux once. It subtracts a flux from one cell and adds it to the other, so that volume is exact. A
-/// flux is at most the share k of the height difference across its face. The shares of a cell's four faces add up to
-/// less than 1. Two properties follow from this:
+/// A sweep is a Jacobi iteration over the faces between cells. It computes all fluxes from the heights before the
+/// sweep. Each flux is rounded once, subtracted from one cell and added to the other. Volume is therefore exact.
+///
+/// A flux is at most the share k of the height difference across its face. The shares of a cell's four faces add up to
+/// less than 1. Two properties follow from these bounds:
 /// - The next height of a cell lies between the lowest and the highest of the cell and its neighbours.
 /// - The sum of all squared heights falls by at least 1 in every sweep that moves sand, so that sliding ends.
 ///
-/// The default law has inertia: q = M q_last + p (1 - t²/m²) a, cut to [0, k a]. Here a is the difference across the
-/// face, m the slope, t the threshold, and q_last the face's flux in the last sweep. The two properties need only the
-/// cut. Sand at rest starts to slide where plain G lets it slide. The resulting pile equals that of plain G to three
-/// digits, after a tenth of the sweeps. docs/sand.md has the constants p and k, and the measurements.
+/// **Inertia.** The default law is
 ///
-/// M = n / (n + 25), at most 0.9, where n counts the sweeps that moved sand since touch(). A small pile rests after few
-/// sweeps. It therefore has little inertia and does not overshoot. M may grow faster within one call of sweep(),
-/// because a call of few sweeps ends before anything overshoots. In sweep i (from 0) of the call, M is at least i / (i
-/// + d), at most 0.9. Here d is a third of the sweeps that the caller allows, clamped to [3, 25].
+///     q = M q_last + p (1 - t²/m²) a, cut to [0, k a]
 ///
-/// With a band (start threshold above t), sand slides in a cell if some flowed through a face of the cell in the last
-/// sweep. A face no steeper than the start threshold carries a flux only if sand slides in one of its two cells. Moving
-/// sand therefore stops at t, and sand at rest starts to slide only beyond the start threshold.
+/// - a: height difference across the face
+/// - m: slope
+/// - t: threshold
+/// - q_last: flux of the face in the last sweep
+/// - M = n / (n + 25), at most 0.9: inertia, where n counts the sweeps that moved sand since touch(). A small pile
+/// rests
+///   after few sweeps, so that it has little inertia and does not overshoot.
 ///
-/// A sweep visits only blocks in which sand flows, and those neighbours next to whose border it flows. Settled sand
-/// costs nothing, and the result equals that of full sweeps bit for bit.
+/// The two properties need only the cut. Plain G is the law without inertia. Sand at rest starts to slide at the same
+/// slope under both laws. The piles of both are equal to three digits, but the default law needs a tenth of the sweeps.
+/// docs/sand.md has the constants p and k, and the measurements.
+///
+/// Within one call of sweep(), M may grow faster, because a call of few sweeps ends before sand overshoots. In sweep i
+/// (from 0) of the call, M is at least i / (i + d), at most 0.9. Here d is a third of the sweeps that the caller
+/// allows, clamped to [3, 25].
+///
+/// **Band.** The start threshold may be above t. The sand of a cell slides if sand flowed through a face of the cell in
+/// the last sweep. A face no steeper than the start threshold carries a flux only if the sand of one of its two cells
+/// slides. Sliding sand therefore stops at t, and sand at rest starts to slide only beyond the start threshold.
+///
+/// **Blocks.** A sweep visits the blocks in which sand flows, and each neighbour next to a border where sand flows.
+/// Sand at rest costs no time. The result equals that of full sweeps bit for bit.
 ///
 /// Threads: not thread-safe. An executor may share out the work of a sweep; it never changes a result.
 class Erosion {

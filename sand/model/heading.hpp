@@ -30,22 +30,6 @@ struct Heading {
         visit("mirrored", it.mirrored);
     }
     [[nodiscard]] std::string refusal() const { return valid() ? "" : "has the wrong length"; }
-    void encode(base::ByteWriter& writer) const {
-        writer.put(x);
-        writer.put(y);
-    }
-    /// Reads x and y. The caller stores `mirrored` in a spare bit of its own data. Throws base::FormatError if the
-    /// vector is not valid().
-    static Heading decode(base::ByteReader& reader, bool mirrored) {
-        Heading heading;
-        heading.x = reader.get<std::int16_t>();
-        heading.y = reader.get<std::int16_t>();
-        heading.mirrored = mirrored;
-        if (!heading.valid()) {
-            throw base::FormatError("a tool's heading of the wrong length");
-        }
-        return heading;
-    }
     friend bool operator==(const Heading&, const Heading&) = default;
 };
 

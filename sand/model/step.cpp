@@ -9,12 +9,11 @@ namespace sand {
 namespace {
 
 // Flags of a step. The bits between them hold the kind of the edit.
-constexpr int kEngaged = 0x01, kTurned = 0x40, kMirrored = 0x80;
+constexpr int kEngaged = 0x01, kTurned = 0x80;
 
 int flagsOf(const Step& step) {
     const int edit = 2 * static_cast<int>(step.edit.kind);
-    const int turned = step.heading ? kTurned + (step.heading->mirrored ? kMirrored : 0) : 0;
-    return edit + (step.engaged ? kEngaged : 0) + turned;
+    return edit + (step.engaged ? kEngaged : 0) + (step.heading ? kTurned : 0);
 }
 
 }  // namespace
@@ -76,7 +75,7 @@ void Step::put(base::ByteWriter& writer) const {
         last = point;
     }
     if (heading) {
-        heading->encode(writer);
+        base::putMember(writer, *heading);
     }
     encodeDetails(edit, writer);
 }
@@ -102,8 +101,7 @@ void Step::get(base::ByteReader& reader) {
     const auto flags = reader.get<std::uint8_t>();
     const auto count = reader.get<std::uint8_t>();
     const int kind = flags % kTurned / 2;
-    const bool turned = (flags & kTurned) != 0, mirrored = (flags & kMirrored) != 0;
-    if (kind >= kEdits || (mirrored && !turned) || count > kMaxPathPoints) {
+    if (kind >= kEdits || count > kMaxPathPoints) {
         throw base::FormatError("a step with " + std::to_string(count) + " points, flags " + std::to_string(flags));
     }
     engaged = (flags & kEngaged) != 0;
@@ -117,8 +115,8 @@ void Step::get(base::ByteReader& reader) {
         path.push_back(last);
     }
     heading.reset();
-    if (turned) {
-        heading = Heading::decode(reader, mirrored);
+    if ((flags & kTurned) != 0) {
+        heading = base::read<Heading>(reader);
     }
     edit = decodeDetails(static_cast<Edit::Kind>(kind), reader);
 }

@@ -13,9 +13,10 @@ namespace {
 /// A process is killed and started again. The sand must stay the same.
 class Recovery : public SessionTest {
 protected:
-    /// Runs one of the project's scripts to its end, as runToEnd() runs a session.
+    /// Runs a script of scripts/checks to its end, as runToEnd() runs a session.
     Ended script(const std::string& name, std::vector<std::string> arguments) {
-        arguments.insert(arguments.begin(), {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/" + name});
+        arguments.insert(arguments.begin(),
+                         {"/usr/bin/env", "-u", "DISPLAY", SANDWALL_SOURCE_DIR "/scripts/checks/" + name});
         support::ChildProcess process(arguments, folder_ / "output.txt");
         const std::optional<int> status = process.wait(kLongScript);
         EXPECT_TRUE(status.has_value()) << "still running after " << kLongScript << " s:\n" << process.output();
@@ -184,7 +185,7 @@ TEST_F(Recovery, ARankThatDiesTooOftenIsNamedInTheReport) {
 }
 
 TEST_F(Recovery, ASpareTakesThePlaceOfAHostThatIsCutOff) {
-    if (support::runCommand(SANDWALL_SOURCE_DIR "/scripts/emulate_cluster.sh --check").status != 0) {
+    if (support::runCommand(SANDWALL_SOURCE_DIR "/scripts/checks/emulate_cluster.sh --check").status != 0) {
         GTEST_SKIP() << "this machine does not allow network namespaces, neither for root nor in a user namespace";
     }
     const Ended ended = script("emulate_cluster.sh",

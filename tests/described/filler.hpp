@@ -64,6 +64,11 @@ private:
             fill(member.second);
         } else if constexpr (base::detail::kIsOptional<T>) {
             fillOptional(member);
+        } else if constexpr (std::same_as<T, sand::Heading>) {
+            member = *sand::headingOf(numberBetween(-180.0, 180.0), below(2) == 1);
+        } else if constexpr (std::same_as<T, sand::Tool>) {
+            T::fields(member, *this);
+            member.halfWidth = sand::isRound(member.kind) ? 0 : member.halfWidth;
         } else if constexpr (base::Described<T>) {
             T::fields(member, *this);
         }
@@ -180,6 +185,7 @@ private:
     template <class Edit>
     void form(haptic_bridge::WholeEdit<Edit> it) {
         it.value = below(2) == 1 ? Edit(Edit::Kind::settle) : Edit::loaded({1, 2, 3});
+        it.value.number = 1 + below(1000);
     }
     void form(sand::Step& step) {
         step = {

@@ -9,6 +9,7 @@
 #include "master/journal/format.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "sand/model/rules.hpp"
+#include "sand/replica.hpp"
 #include "sand/tin/geometry/tin_start.hpp"
 #include "scene/scene.hpp"
 #include "walls/wall.hpp"
@@ -30,8 +31,8 @@ using Types = std::tuple<
     master::JournalFrame, master::JournalEnd, master::JournalResumed, master::JournalTicks, master::JournalDoubt,
     master::JournalChecked, master::JournalContinued, master::JournalForce,
     // scenes
-    sand::Rules, sand::Tuning, scene::Material, scene::Georeference, scene::RasterStatement, sand::tin::Holes::Run,
-    sand::tin::TinStart,
+    sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::StateHead, scene::Material, scene::Georeference,
+    scene::RasterStatement, sand::tin::Holes::Run, sand::tin::TinStart,
     // walls
     walls::Screen, walls::Output, walls::Place, walls::Tile, walls::Viewer, walls::Clip, walls::Stage, walls::Grid,
     walls::Wall>;

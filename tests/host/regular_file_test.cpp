@@ -3,12 +3,16 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <vector>
 
@@ -74,6 +78,37 @@ TEST_F(Files, LinesAreAppendedToAnOldOrNewFile) {
     std::filesystem::create_symlink(folder_ / "log", folder_ / "link");
     EXPECT_FALSE(host::appendLines(folder_ / "link", "x")) << "a link of another program";
     EXPECT_EQ(textOf(folder_ / "log"), "one\ntwo\n");
+}
+
+TEST(WriteAll, WritesTheRestAfterASignalHasCutAWriteShort) {
+    std::array<int, 2> ends{};
+    ASSERT_EQ(pipe(ends.data()), 0);
+    struct sigaction nothing {};
+    struct sigaction before {};
+    nothing.sa_handler = [](int) {};  // without SA_RESTART, so that a signal ends the system call
+    ASSERT_EQ(sigaction(SIGUSR1, &nothing, &before), 0);
+    std::vector<std::uint8_t> sent(std::size_t{1} << 20);  // 16 times what a pipe holds, so that the writer waits
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+        sent[i] = static_cast<std::uint8_t>(i % 251);
+    }
+    bool whole = false;
+    std::thread writer([&] {
+        whole = host::writeAll(ends[1], sent);
+        close(ends[1]);
+    });
+    std::vector<std::uint8_t> got, piece(10000);
+    for (ssize_t count = 1; count > 0;) {
+        pthread_kill(writer.native_handle(), SIGUSR1);
+        count = read(ends[0], piece.data(), piece.size());
+        got.insert(got.end(), piece.begin(), piece.begin() + std::max(count, ssize_t{0}));
+    }
+    writer.join();
+    close(ends[0]);
+    sigaction(SIGUSR1, &before, nullptr);
+    EXPECT_TRUE(whole);
+    EXPECT_TRUE(got == sent) << got.size() << " bytes of " << sent.size();
+    EXPECT_FALSE(host::writeAll(-1, sent));
+    EXPECT_EQ(errno, EBADF);
 }
 
 TEST_F(Files, AWholeFileThatCannotBeKeptLeavesNoPart) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hostile end of the haptic link, as a program (scripts/hostile.sh).
+// A hostile end of the haptic link, as a program (scripts/checks/hostile.sh).
 #include <fmt/format.h>
 #include <sys/prctl.h>
 

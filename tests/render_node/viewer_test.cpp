@@ -251,7 +251,7 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
             expectEachEyeItsPicture(stereo, tile, painter.outputs());
         }
     }
-    EXPECT_EQ(seen_, 12 * 3 * 2);
+    EXPECT_EQ(seen_, static_cast<int>(valuesOf(Stereo{}).size()) * 3 * 2) << "modes, tiles and eyes";
 }
 
 // One session changes through all modes, as an operator does. Open outputs stay open.

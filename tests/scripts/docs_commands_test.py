@@ -15,7 +15,7 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 import docs_blocks  # noqa: E402
 import docs_commands  # noqa: E402
 
@@ -91,7 +91,7 @@ class Blocks(unittest.TestCase):
         for wrong, block in {"FILE is not filled": "    sandwall-replay FILE --hash",
                              "unknown-program: no program": "    ls a\n    unknown-program b",
                              "scripts/unknown.py: no program": "    scripts/unknown.py",
-                             "scripts/samples/hosts: no program": "    scripts/samples/hosts",
+                             "scripts/launcher/samples/hosts: no program": "    scripts/launcher/samples/hosts",
                              "build/release/bin/sandwall-unknown: no program": "    build/release/bin/sandwall-unknown",
                              "scripts/unknown.sh: no program": "<!-- not run: takes an hour -->\n    scripts/unknown.sh",
                              "no commands for bash": "    sandwall: rank 3 (host a",

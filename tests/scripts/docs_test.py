@@ -14,13 +14,17 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAPERS = "docs/papers.md"
+RECIPES = "CONTRIBUTING.md"
 NOT_HERE = re.compile(r"(https?|mailto):")
 CODE = re.compile(r"`([^`\n]+)`")
 FENCE = re.compile(r"^ *(```|~~~).*?^ *\1[^\n]*$", re.MULTILINE | re.DOTALL)
 GTEST = re.compile(r"^(?:TEST|TEST_F|TEST_P)\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.MULTILINE)
 TEST_NAME = re.compile(r"^[A-Z]\w+\.[A-Z]\w+$")
-# A path of the repository: it begins with a top folder and has the suffix of a source, a document or a setting.
-SOURCE = re.compile(r"^(?:{folders})/[\w./-]+\.(?:cpp|hpp|glsl|py|sh|toml|md|strokes)$")
+# A path of the repository: it begins with a top folder. <name>, or NAME as a part of it, is the reader's own name.
+SOURCE = re.compile(r"^(?:{folders})/[\w./<>-]*$")
+OWN_NAME = re.compile(r"<name>|\bNAME\b")
+# A name of C++ code that is more than a word: a function, a member, a constant.
+CPP_NAME = re.compile(r"^(?:\w+::)*\w+\(\)$|^\w+(?:::\w+)+$|^k[A-Z]\w*$")
 
 
 def tracked(*patterns):
@@ -127,11 +131,76 @@ def missing_functions(repository, name):
             yield f"{name}: links {function} to {file}, which does not define it"
 
 
+def has_path(repository, path):
+    """Returns whether the project has this file or folder, or one of this form if the path has the reader's own name in it."""
+    form = OWN_NAME.sub("*", path.rstrip("/"))
+    return form in repository.files or form in repository.folders or (
+        "*" in form and any(fnmatch.fnmatchcase(known, form) for known in repository.files | repository.folders))
+
+
 def missing_sources(repository, name):
-    """Yields a line for each source, script or setting that a document names and the project does not have."""
+    """Yields a line for each file or folder that a document names and the project does not have."""
     for span in CODE.findall(repository.documents[name]):
-        if repository.source.match(span) and span not in repository.files:
+        if repository.source.match(span) and not has_path(repository, span):
             yield f"{name}: names {span}, which is not in the project"
+
+
+def recipes(repository):
+    """Yields (heading, text) of each recipe. A recipe is a section under "How to add"."""
+    _, _, page = repository.documents.get(RECIPES, "").partition("\n## How to add\n")
+    for section in page.split("\n## ")[0].split("\n### ")[1:]:
+        heading, _, text = section.partition("\n")
+        yield heading, text
+
+
+def stale_recipes(repository):
+    """Yields a line for each name of code in a recipe that no file of the recipe has, and for each recipe without a test."""
+    for heading, text in recipes(repository):
+        spans = CODE.findall(text)
+        files = [span for span in spans if span in repository.files]
+        code = "\n".join(repository.read(file) for file in files)
+        for span in spans:
+            if CPP_NAME.match(span) and any(not re.search(rf"\b{word}\b", code) for word in re.findall(r"\w+", span)):
+                yield f"{RECIPES}: {heading}: no file of this recipe has {span}"
+        if not any(span.startswith("tests/") for span in spans):
+            yield f"{RECIPES}: {heading}: names no test"
+
+
+# Keys that code reads from a scene file, with the call that reads them or the list that declares them.
+SCENE_KEY = (r'(?:\.|->)(?:number|numbers|text|texts|integer|flag|value|choice|table)(?:Or)?\(\s*"(\w+)"|\w+Or\(\*?\w+, "(\w+)"'
+             r'|^    (?:ForceKey)?\{"(\w+)", ["&]')
+NAMED_VALUE = r'base::Named\{\w+, "([\w-]+)"\}'
+# Names that a user may write, by what declares them, and the pages that must list all of them.
+LISTS = (
+    ("sand/model/tool.hpp", NAMED_VALUE, ("docs/scenes.md", "docs/operator.md", "docs/pointer.md", "docs/protocol.md", "docs/glossary.md",
+                                            "docs/schemas/status.schema.json")),
+    ("walls/wall.hpp", r'base::Named\{(?!Eye)\w+, "([\w-]+)"\}', ("docs/stereo.md", "docs/wall_files.md")),
+    ("lockstep/overlays.hpp", r'[{\s]"([\w-]+)"[,}]', ("docs/look.md", "docs/operator.md")),
+    ("scene/load/scene_file.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/load/terrain.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/load/terrain_source.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/load/tin_table.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/material.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("sand/force/force_constants.cpp", SCENE_KEY, ("docs/scenes.md", "docs/forces.md")),
+)
+
+
+def declared(text, pattern):
+    """Returns the names that the pattern finds in a source."""
+    return sorted({name for found in re.finditer(pattern, text, re.MULTILINE) for name in found.groups() if name})
+
+
+def unlisted_names(repository, lists=LISTS):
+    """Yields a line for each name that a source declares and a page leaves out, and for each source that declares none."""
+    for file, pattern, pages in lists:
+        names = declared(repository.read(file), pattern)
+        if not names:
+            yield f"{file}: declares no name that docs_test finds"
+        for page in pages:
+            text = repository.documents.get(page) or repository.read(page)
+            for name in names:
+                if not re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", text):
+                    yield f"{page}: leaves out {name}, which {file} declares"
 
 
 def missing_filters(repository, name):
@@ -170,7 +239,7 @@ def faults(repository):
     for name in repository.documents:
         for look in (broken_links, missing_functions, missing_sources, missing_filters, unknown_tests):
             found += look(repository, name)
-    return found + list(missing_tests(repository, PAPERS))
+    return found + list(missing_tests(repository, PAPERS)) + list(stale_recipes(repository)) + list(unlisted_names(repository))
 
 
 LAW = """// named() is only named here
@@ -233,8 +302,34 @@ class Documents(unittest.TestCase):
 
     def test_a_source_that_is_gone_is_named(self):
         self.assertEqual(list(missing_sources(self.made_up("`sand/law.cpp` `out/demo/a.toml` `law.cpp`"), "docs/page.md")), [])
-        self.assertEqual(list(missing_sources(self.made_up("`sand/rule.cpp`"), "docs/page.md")),
-                         ["docs/page.md: names sand/rule.cpp, which is not in the project"])
+        good = "`sand` `sand/` `docs/images/a.png` `sand/<name>.cpp` `tests/NAME/law_test.cpp`"
+        self.assertEqual(list(missing_sources(self.made_up(good), "docs/page.md")), [])
+        for bad in ("sand/rule.cpp", "sand/CMakeLists.txt", "sand/law", "docs/images/b.png", "sand/<name>.hpp", "tests/force/"):
+            self.assertEqual(list(missing_sources(self.made_up(f"`{bad}`"), "docs/page.md")),
+                             [f"docs/page.md: names {bad}, which is not in the project"])
+
+    def test_a_recipe_that_names_old_code_or_no_test_is_named(self):
+        page = "# How to\n## How to add\nExamples.\n### A law\n1. `sand/law.cpp`: {}\n2. {}\n## End\n`kGone`\n"
+        def project(code, test):
+            return Repository(["sand/law.cpp", "tests/sand/law_test.cpp"], {}, {RECIPES: page.format(code, test)},
+                                                {"sand/law.cpp": LAW, "tests/sand/law_test.cpp": ""}.get)
+        test = "`tests/sand/law_test.cpp`"
+        self.assertEqual(list(stale_recipes(project("`Law::holds`, `odd()`, `law`, `Law::holds()`", test))), [])
+        for bad in ("Law::isOdd", "even()", "kOdd"):
+            self.assertEqual(list(stale_recipes(project(f"`{bad}`", test))),
+                             [f"{RECIPES}: A law: no file of this recipe has {bad}"])
+        self.assertEqual(list(stale_recipes(project("`odd()`", "a test"))), [f"{RECIPES}: A law: names no test"])
+
+    def test_a_name_that_a_page_leaves_out_is_named(self):
+        lists = (("sand/law.cpp", r"^bool (\w+)|(\w+)\(of\)", ("docs/page.md",)),)
+        self.assertEqual(list(unlisted_names(self.made_up("`odd`, the `Law`, `called`"), lists)), [])
+        self.assertEqual(list(unlisted_names(self.made_up("the `Law`, `odd-ness` and `called`"), lists)),
+                         ["docs/page.md: leaves out odd, which sand/law.cpp declares"])
+        self.assertEqual(list(unlisted_names(self.made_up("-"), (("sand/law.cpp", r"^float (\w+)", ("docs/page.md",)),))),
+                         ["sand/law.cpp: declares no name that docs_test finds"])
+
+    def test_the_page_has_recipes(self):
+        self.assertGreaterEqual(len(list(recipes(PROJECT))), 8)
 
     def test_the_tour_follows_a_touch_through_twelve_files(self):
         files = [file for _, file in linked_functions(PROJECT, "docs/tour.md")]

@@ -24,7 +24,7 @@ import zlib
 from unittest import mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 sys.dont_write_bytecode = True
 
 import console  # noqa: E402

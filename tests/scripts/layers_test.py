@@ -12,7 +12,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT / "build" / "release"
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 import layers  # noqa: E402
 
 PROJECT = layers.Project.of(ROOT, BUILD)
@@ -84,7 +84,7 @@ class Layers(unittest.TestCase):
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()
-        self.assertTrue(drawn, "run scripts/layers.py build/release --svg docs/layers.svg")
+        self.assertTrue(drawn, "run scripts/checks/layers.py build/release --svg docs/layers.svg")
 
 
 if __name__ == "__main__":

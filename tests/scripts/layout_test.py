@@ -61,7 +61,7 @@ class InstalledTree(LauncherTest):
         self.prefix = self.folder / "prefix"
         self.private = self.prefix / "lib" / "sandwall"
         (self.private / "python").mkdir(parents=True)
-        for file in [ROOT / "scripts" / "sandwall", *(ROOT / "scripts").glob("*.py")]:
+        for file in [ROOT / "scripts" / "launcher" / "sandwall", *(ROOT / "scripts" / "launcher").glob("*.py")]:
             shutil.copy(file, self.private / "python")
         for file in (self.folder / "bin").iterdir():
             shutil.copy(file, self.private)
@@ -144,7 +144,7 @@ class InstalledTree(LauncherTest):
 class Completion(LauncherTest):
     def completed(self, *words):
         """Returns what bash offers for the last of the words that follow `sandwall`."""
-        script = (f"sandwall() {{ '{ROOT}/scripts/sandwall' \"$@\"; }}; source '{ROOT}/scripts/completion.bash'; "
+        script = (f"sandwall() {{ '{ROOT}/scripts/sandwall' \"$@\"; }}; source '{ROOT}/scripts/launcher/completion.bash'; "
                   'COMP_WORDS=(sandwall "$@"); COMP_CWORD=$#; _sandwall; printf "%s\\n" "${COMPREPLY[@]}"')
         return subprocess.run(["bash", "-c", script, "bash", *words], text=True, capture_output=True, timeout=60,
                               cwd=self.folder, check=True).stdout.split()

@@ -20,7 +20,7 @@ import unittest
 
 from docs_test import PROJECT, ROOT, tracked
 
-sys.path.insert(0, str(ROOT / "scripts" / "mutation"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks" / "mutation"))
 import draw  # noqa: E402
 import run  # noqa: E402
 import sites  # noqa: E402
@@ -89,6 +89,66 @@ class Mutations(unittest.TestCase):
         python = good.replace("# tests: sand_tests Law.*:x/Law.Holds/*", "# script tests: mutations_test.py Mutations.test_that_do_not_are_named")
         self.assertEqual(list(faults("a", python, set(), lambda _: True)), [])
         self.assertEqual(len(list(faults("a", python.replace("do_not", "do"), set(), lambda _: True))), 1)
+
+
+class Copy(unittest.TestCase):
+    """The copy of the sources in which bugs are planted."""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-mutations-")))
+        self.sources, self.space = self.folder / "sources", workspace.Workspace(self.folder / "copy", 1)
+        self.sources.mkdir()
+        self.git("init", "--quiet")
+        self.write("docs/old.md", "the same page")
+        self.write("main.cpp", "int main() {}")
+        self.space.copy_sources(self.sources)
+
+    def git(self, *words):
+        subprocess.run(["git", *words], cwd=self.sources, check=True)
+
+    def write(self, name, text):
+        (self.sources / name).parent.mkdir(exist_ok=True)
+        (self.sources / name).write_text(text)
+        self.git("add", name)
+
+    def copied(self):
+        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in self.space.folder.rglob("*") if path.is_file()}
+
+    def test_a_kept_copy_holds_the_tracked_files_and_its_build_alone(self):
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}"})
+        self.space.bin.mkdir(parents=True)
+        self.space.write("build/release/bin/tests", "built")
+        self.space.write("main.cpp", "int main() { return 1; }  // a bug that an interrupted run has left")
+        self.space.write("main.cpp.rej", "left by a patch")
+        (self.sources / "pages").mkdir()
+        self.git("mv", "docs/old.md", "pages/new.md")
+        self.space.copy_sources(self.sources)
+        self.assertEqual(self.copied(), {"pages/new.md": "the same page", "main.cpp": "int main() {}", "build/release/bin/tests": "built"})
+        self.assertFalse((self.space.folder / "docs").exists())
+
+    def test_a_folder_may_replace_a_file_of_a_kept_copy(self):
+        self.git("mv", "main.cpp", "main")
+        self.space.copy_sources(self.sources)
+        self.git("mv", "main", "main.cpp")
+        self.write("main/new.cpp", "int f();")
+        self.space.copy_sources(self.sources)
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}", "main/new.cpp": "int f();"})
+
+    def test_a_link_is_copied_as_a_link_in_both_directions(self):
+        (self.sources / "link").symlink_to("main.cpp")
+        self.git("add", "link")
+        for _ in range(2):
+            self.space.copy_sources(self.sources)
+            self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("main.cpp"))
+        self.git("rm", "--quiet", "--force", "link")
+        self.write("link", "a file now")
+        self.space.copy_sources(self.sources)
+        self.assertFalse((self.space.folder / "link").is_symlink())
+        self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}", "link": "a file now"})
+        (self.sources / "link").unlink()
+        (self.sources / "link").symlink_to("docs/old.md")
+        self.space.copy_sources(self.sources)
+        self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("docs/old.md"))
 
 
 class Drawn(unittest.TestCase):
@@ -204,7 +264,7 @@ class Report(unittest.TestCase):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
         self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests"])
         self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
-        self.assertEqual(run.tests_for("scripts/programs.py", programs)[0], "programs_test.py")
+        self.assertEqual(run.tests_for("scripts/launcher/programs.py", programs)[0], "programs_test.py")
         self.assertLessEqual(run.SLOW, set(PROGRAMS))
         for pattern in run.SESSIONS.split()[1].split(":"):
             self.assertTrue(fnmatch.filter(PROJECT.all_tests(), pattern), pattern)

@@ -18,7 +18,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 
 from command_line import Parser, above, at_least, within
 
@@ -58,7 +58,7 @@ def refusal(parser, words):
 def scripts_with_numbers():
     """Returns (script, option) for each option of a script with a type that is neither a path nor a text."""
     listed = subprocess.run(["git", "ls-files", "*.py"], cwd=ROOT, text=True, capture_output=True).stdout.split()
-    files = listed or [str(path.relative_to(ROOT)) for path in ROOT.glob("scripts/*.py")]
+    files = listed or [str(path.relative_to(ROOT)) for path in ROOT.glob("scripts/**/*.py")]
     return [(file, option) for file in files for option, kind in OPTION.findall((ROOT / file).read_text(encoding="utf-8"))
             if not kind.startswith(("pathlib.", "str"))]
 
@@ -96,7 +96,7 @@ class Launcher(unittest.TestCase):
 class Scripts(unittest.TestCase):
     def test_every_option_that_takes_a_number_refuses_what_is_not_finite(self):
         found = scripts_with_numbers()
-        self.assertIn(("scripts/latency.py", "--warm-up"), found)
+        self.assertIn(("scripts/figures/latency.py", "--warm-up"), found)
         for file, option in found:
             for text in ("nan", "-inf"):
                 ended = subprocess.run([sys.executable, str(ROOT / file), f"{option}={text}"], text=True, capture_output=True,

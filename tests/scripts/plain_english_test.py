@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 import plain_english  # noqa: E402
 import prose_reader  # noqa: E402
 
@@ -172,6 +172,14 @@ class Command(unittest.TestCase):
         for command in (["init", "-q"], ["add", "a.md"]):
             subprocess.run(["git", *command], cwd=self.folder, check=True)
         self.assertEqual(self.run_check(".")[:2], (0, "documents: 0 of 1 sentences flagged, 0.0 %\n"))
+
+    def test_a_link_in_a_folder_is_not_read_again(self):
+        self.write("a.md", "The master paces the frames.\n")
+        (self.folder / "b.md").symlink_to("a.md")
+        for command in (["init", "-q"], ["add", "a.md", "b.md"]):
+            subprocess.run(["git", *command], cwd=self.folder, check=True)
+        self.assertEqual(self.run_check(".")[:2], (0, "documents: 0 of 1 sentences flagged, 0.0 %\n"))
+        self.assertEqual(self.run_check("b.md")[:2], (0, "documents: 0 of 1 sentences flagged, 0.0 %\n"))
 
     def test_a_path_that_cannot_be_checked_is_one_line(self):
         for path, reason in ((str(self.folder / "nowhere.md"), "does not exist; check the path"),

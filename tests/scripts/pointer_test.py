@@ -17,7 +17,7 @@ import time
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path[:0] = [str(ROOT / "scripts" / room) for room in ("figures", "launcher")]
 import events  # noqa: E402
 import session_control  # noqa: E402
 import x_server  # noqa: E402

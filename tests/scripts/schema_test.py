@@ -128,7 +128,7 @@ class Schemas(SchemaTest):
         self.assertEqual(sorted(listed), sorted(load("event")["properties"]["event"]["enum"]))
 
     def test_programs_emit_the_events_of_the_schema(self):
-        files = [*ROOT.glob("[a-z]*/**/*.cpp"), *(ROOT / "scripts").glob("*.py")]
+        files = [*ROOT.glob("[a-z]*/**/*.cpp"), *(ROOT / "scripts").rglob("*.py")]
         text = "".join(file.read_text() for file in files if file.relative_to(ROOT).parts[0] not in ("build", "out", "tests"))
         emitted = set(re.findall(r"""\b(?:emitEvent|events\.emit)\(\s*"(\w+)""", text))
         self.assertEqual(sorted(emitted), sorted(load("event")["properties"]["event"]["enum"]))
@@ -169,7 +169,7 @@ class AnotherVersion(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="sandwall-schema-") as folder:
             file = pathlib.Path(folder) / "summary.json"
             file.write_text(text)
-            ended = subprocess.run([sys.executable, ROOT / "scripts" / "figures.py", file], capture_output=True, text=True, timeout=60)
+            ended = subprocess.run([sys.executable, ROOT / "scripts" / "figures" / "figures.py", file], capture_output=True, text=True, timeout=60)
         self.assertEqual((ended.returncode, ended.stdout, ended.stderr.count("\n")), (2, "", 1), ended.stderr)
         return ended.stderr.replace(folder + "/", "")
 

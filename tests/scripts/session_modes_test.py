@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the list of all files that a session writes (scripts/session_files.py), with the programs of this build."""
+"""Tests the list of all files that a session writes (scripts/checks/session_files.py), with the programs of this build."""
 
 import pathlib
 import re
@@ -17,7 +17,7 @@ EXPECTED = ("./", "capture_001/", "capture_001/wall_left.png", "checkpoints/", "
 
 class Files(unittest.TestCase):
     def test_no_file_of_a_session_is_writable_for_others_under_a_umask_of_0(self):
-        listed = subprocess.run([sys.executable, ROOT / "scripts" / "session_files.py", "000"], capture_output=True, text=True, timeout=300)
+        listed = subprocess.run([sys.executable, ROOT / "scripts" / "checks" / "session_files.py", "000"], capture_output=True, text=True, timeout=300)
         self.assertEqual((listed.returncode, listed.stderr), (0, ""))
         modes = dict(re.findall(r"^\| `(.*)` \| \S+ (\d+) \|$", listed.stdout, flags=re.MULTILINE))
         self.assertEqual(set(EXPECTED) - set(modes), set())

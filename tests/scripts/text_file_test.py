@@ -9,7 +9,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 import text_file  # noqa: E402
 
 CASES = json.loads((ROOT / "tests/base/text_cases.json").read_text())

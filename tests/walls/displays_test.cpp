@@ -2,6 +2,7 @@
 // Properties of every display of the project, derived from the places of its viewer and screens.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -20,10 +21,13 @@ TEST(Displays, PartTheEyesByTheFormula) {
     // and positive behind it.
     for (const std::string& name : configNames()) {
         const Wall wall = config(name);
-        // The CAVE's first screen is at the side of the eyes. The front screen is not.
-        const Tile& tile = name == "flex_cave.toml" ? wall.tiles[1] : wall.tiles[0];
+        // In a CAVE some screens are at the side of the eyes. The first screen in front of them is compared.
+        const auto front = std::ranges::find_if(wall.tiles, [&](const Tile& tile) {
+            return glm::distance(wall.viewer.right, tile.screen.right()) < 1e-12;
+        });
+        ASSERT_NE(front, wall.tiles.end()) << name << ": no screen is parallel to the eyes";
+        const Tile& tile = *front;
         const Screen& screen = tile.screen;
-        ASSERT_LT(glm::distance(wall.viewer.right, screen.right()), 1e-12) << name;
         const double distance = screen.distanceTo(wall.viewer.eye);
         const glm::dvec3 middle = (screen.lowerLeft + screen.upperRight()) / 2.0;
         for (const double share : {-0.5, -0.1, 0.0, 0.1, 3.0}) {
@@ -46,8 +50,8 @@ TEST(Displays, PartTheEyesByTheFormula) {
 }
 
 TEST(Displays, ShowInMonoTheMiddleBetweenTheEyes) {
-    int compared = 0;
     for (const std::string& name : configNames()) {
+        int compared = 0;
         const Wall wall = config(name);
         const Wall mono = shownIn(wall, Stereo::mono);
         ASSERT_EQ(eyesOf(mono.stereo).size(), 1U);
@@ -64,8 +68,8 @@ TEST(Displays, ShowInMonoTheMiddleBetweenTheEyes) {
                 EXPECT_NEAR(middle.top, left.top, 1e-12) << name << " " << tile.name;
             }
         }
+        EXPECT_GT(compared, 0) << name << ": no screen is parallel to the eyes";
     }
-    EXPECT_EQ(compared, 12 + 2 + 12) << "the tiled wall, the CAVE's front and floor, and twelve walls of one screen";
 }
 
 TEST(Displays, LeadAStraightLineStraightAcrossABezel) {

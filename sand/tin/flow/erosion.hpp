@@ -19,40 +19,49 @@ using Underside = ActiveEdges::Underside;
 
 /// Sand on a TIN that slides where it is steeper than its talus.
 ///
-/// One sweep moves Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) volume units over every edge, over all edges at once.
-/// Here u_i and u_j are the heights of the edge's ends, and l and r are its two triangles. Let m be a triangle's slope
-/// and g that of the talus. Then c = .8 (m² − g²)/(m² + g²) if m > g, else c = 0. w is half the cotangent of the angle
-/// opposite the edge, times a step of the edge. The step is so small that at most k_e flows per height. At both ends,
-/// the sum of k_e over the vertex's edges is at most .9996 of its star (weights.hpp).
+/// **Law.** One sweep moves a volume over every edge, over all edges at once:
 ///
-/// Without momentum, sweeps descend a convex energy, and sand rests where no triangle is steeper than g. A law with
-/// one slope per edge, the mean of its triangles', let sand creep along kinks for a million sweeps.
+///     Q = trunc((w_l c_l + w_r c_r)₊ (u_i − u_j)) [volume unit]
 ///
+/// - u_i, u_j: heights of the edge's ends i and j.
+/// - l, r: the two triangles of the edge.
+/// - c = .8 (m² − g²)/(m² + g²) of a triangle if m > g, else 0. Here m is the slope of the triangle, and g that of the
+///   talus.
+/// - w: half the cotangent of the angle opposite the edge, times a step of the edge.
+/// - k_e: upper bound of the flow per height over the edge. The step of the edge is so small that the sum of k_e over
+///   all edges of a vertex is at most .9996 of its star (weights.hpp).
+///
+/// Without momentum, sweeps descend a convex energy, and sand rests where no triangle is steeper than g. Each
+/// triangle has its own c, because with one slope per edge, the mean of its triangles', sand crept along kinks for a
+/// million sweeps.
+///
+/// **Proofs.**
 /// - Volume is exact: Q is subtracted at one end and added at the other.
 /// - No new extremes: star_i u_i' = star_i u_i − Σ Q with |Q| ≤ k_e |u_i − u_j| and Σ k_e < star_i. Therefore u_i'
-///   lies between the heights of i and its neighbours. An obstacle only makes Q smaller, to at most k_e (underside −
-///   u). For the same reason, no vertex rises above the underside.
+///   lies between the heights of i and its neighbours.
+/// - No sand in an obstacle: an obstacle only makes Q smaller, to at most k_e (underside − u). So no vertex rises above
+///   the underside.
 /// - It ends: Σ V²/star falls in every sweep that moves sand. It changes by −2 Σ_e Q (u_i − u_j) + Σ_i (Σ Q)²/star_i.
 ///   Here (Σ Q)² ≤ Σ k_e Σ Q²/k_e ≤ .9996 star_i Σ Q²/k_e. Over both ends of an edge, that is less than 2 Q (u_i −
-///   u_j). With a bound on Σ c k_e instead of Σ k_e, or with one step for all edges, two vertices can swap, or
-///   wait, without end.
+///   u_j). Weaker bounds do not suffice. With a bound on Σ c k_e instead of Σ k_e, two vertices can swap, or wait,
+///   without end. They can do so with one step for all edges, too.
 ///
-/// sweep() has momentum: a part of the last sweep's flux continues, and triangles flatter than g brake it. Each call
-/// begins without momentum. The flux is cut to less than k_e (u_i − u_j) and never flows uphill. The proofs require
-/// only these two properties of Q.
+/// **Momentum.** In sweep(), a part of the last sweep's flux continues, and triangles flatter than g brake it. Each
+/// call begins without momentum. The flux is cut to less than k_e (u_i − u_j) and never flows uphill. The proofs
+/// require only these two properties of Q.
 ///
-/// Beyond an open rim the ground is at height 0, and the step down to it has no talus. At the end of a sweep, all sand
-/// above 0 on a vertex of the rim falls over the rim. It never comes back. Sand at rest is then at most 0 high on the
-/// rim, and nowhere higher than g times the distance to the rim.
-///
+/// **Open rim.** Beyond an open rim the ground is at height 0, and the step down to it has no talus. At the end of a
+/// sweep, all sand above 0 on a vertex of the rim falls over the rim. It never comes back. Sand at rest is then at most
+/// 0 high on the rim, and nowhere higher than g times the distance to the rim. The proofs still hold:
 /// - Volume is exact: the volume that falls is counted to the unit.
 /// - No new extremes: the new height 0 lies between u and the ground beyond the rim.
 /// - It ends: V²/star of such a vertex falls to 0, and no other sand moves.
 ///
-/// Sand at rest starts to slide beyond the start threshold. This sand and all sand that it touches then slide down to
-/// the threshold. That may take many calls of sweep(), because the layer records which sand moves. The result of
-/// sweep() depends only on the layer, the rules, the obstacle and the number of sweeps. It does not depend on slots,
-/// active sets, threads or earlier calls. Not thread-safe.
+/// **Start threshold.** Sand at rest starts to slide beyond the start threshold. This sand and all sand that it touches
+/// then slide down to the threshold. That may take many calls of sweep(), because the layer records which sand moves.
+///
+/// The result of sweep() depends only on the layer, the rules, the obstacle and the number of sweeps. It does not
+/// depend on slots, active sets, threads or earlier calls. Not thread-safe.
 class Erosion {
 public:
     /// `threshold` and `startThreshold` are those of Rules: the slopes at which sliding sand stops and sand at rest

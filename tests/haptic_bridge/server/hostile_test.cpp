@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An attacker at either end of the link. scripts/hostile.sh runs the same test a million times.
+// An attacker at either end of the link. scripts/checks/hostile.sh runs the same test a million times.
 #include <cstdio>
 #include <thread>
 

@@ -53,7 +53,7 @@ TEST_F(HapticServer, WritesTheSameSandTwice) {
 
 TEST_F(HapticServer, WritesWithARecordedHand) {
     const std::string command = std::string("python3 ") + SANDWALL_SOURCE_DIR +
-                                "/scripts/make_hand_trace.py --seconds 6 " + folder_.file("hand.csv");
+                                "/scripts/figures/make_hand_trace.py --seconds 6 " + folder_.file("hand.csv");
     ASSERT_EQ(std::system(command.c_str()), 0);
     std::vector<std::string> arguments = ServerProcess::usual(sceneFile_, folder_);
     arguments[3] = "trace:" + folder_.file("hand.csv");

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand at rims, walls, rock faces and holes, and under tools that are held there. Each result is compared with a closed
-// form or with the mirrored experiment. scripts/borders.sh measures the same on larger fields.
+// form or with the mirrored experiment. scripts/checks/borders.sh measures the same on larger fields.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "sand/tin/flow/settle.hpp"
 #include "tests/support/border_experiments.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace {
 
@@ -18,7 +19,7 @@ using borders::kSide;
 using borders::kTin;
 using enum sand::ToolKind;
 
-constexpr std::array kTools{sphere, circle, rectangle, ellipse, ellipsoid, footprint};
+constexpr auto kTools = support::everyTool();
 
 std::string nameOf(const borders::Ground& ground) { return ground.tin ? "TIN" : "grid"; }
 
@@ -165,9 +166,13 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_EQ(other.stateHash(), sand.stateHash()) << "a replica that loads the state must continue alike";
     sand::Replica plain = sand;
     plain.decodeState([&] {  // the same state, but without the settle
-        base::Bytes state = sand.encodeState();
-        state[4 + 8 + 12] = static_cast<std::uint8_t>(state[4 + 8 + 12] & ~4U);
-        return state;
+        const base::Bytes state = sand.encodeState();
+        base::ByteReader reader(state);
+        auto head = base::read<sand::StateHead>(reader);
+        head.settling = false;
+        base::Bytes changed = base::encoded(head);
+        changed.insert(changed.end(), reader.rest().begin(), reader.rest().end());
+        return changed;
     }());
     EXPECT_FALSE(plain.settling());
     EXPECT_NE(plain.stateHash(), sand.stateHash()) << "the hash must show that a settle continues";

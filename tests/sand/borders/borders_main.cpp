@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the sand at borders, and searches for sand that passes a wall. scripts/borders.sh builds and runs it.
+// Measures the sand at borders, and searches for sand that passes a wall. scripts/checks/borders.sh builds and runs it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include "host/command_line.hpp"
 #include "tests/support/border_planes.hpp"
 #include "tests/support/held_tools.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace {
 
@@ -68,7 +69,7 @@ void measureHeldTools(Table& table, int n) {
                 continue;
             }
             double flat = 0, bowl = 0, wrong = 0;
-            for (const sand::ToolKind kind : {sphere, circle, rectangle, ellipse, ellipsoid, footprint}) {
+            for (const sand::ToolKind kind : support::everyTool()) {
                 const borders::HeldSettle held = borders::settleAround(ground, n, kind, place);
                 double& worst = kind == circle || kind == rectangle || kind == ellipse ? flat : bowl;
                 worst = std::max(worst, held.largest);
@@ -112,7 +113,7 @@ bool measure(int n) {
                   bank.largest, 1.05, "");
         table.row("the same, share more than 2 % too steep", bank.tooSteep, 0.01, "");
     }
-    for (const sand::ToolKind kind : {sphere, circle, rectangle, ellipse, ellipsoid, footprint}) {
+    for (const sand::ToolKind kind : support::everyTool()) {
         const auto name = [&](const char* what) { return fmt::format("{}, {}", what, base::nameOf(kind)); };
         table.row(name("through walls, grid").c_str(), borders::throughWalls(kGrid, n, kind), 0, "cell3");
         table.row(name("through walls, TIN").c_str(), borders::throughWalls(kTin, n, kind), 0, "cell3");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/held_tools.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace {
 
@@ -22,7 +23,7 @@ void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt p
 }
 
 TEST(HeldTool, OfAGridKeepsAllSandOutWhileItSettles) {
-    for (const sand::ToolKind kind : {sphere, circle, rectangle, ellipse, ellipsoid, footprint}) {
+    for (const sand::ToolKind kind : support::everyTool()) {
         for (const HeldAt place : borders::kHeldAt) {
             expectNoSandIn(kGrid, kind, place, 0);
         }

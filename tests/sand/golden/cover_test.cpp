@@ -76,11 +76,11 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
         terrain.apply(samples::randomStep(edit, scene.rules, random));
         all = all * 31 + terrain.stateHash();
         if (edit == kFew) {
-            EXPECT_EQ(fmt::format("{:016x}", all), "55e737c51a36a5ea");
+            EXPECT_EQ(fmt::format("{:016x}", all), "a5ffb9d113edf67c");
         }
     }
     if (!samples::kSlowBuild) {
-        EXPECT_EQ(fmt::format("{:016x}", all), "72749cc55003504b");
+        EXPECT_EQ(fmt::format("{:016x}", all), "14c50ebd8a710020");
     }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sand/grid/displacement.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace receivers {
 namespace {
@@ -126,7 +127,7 @@ std::int64_t takenFrom(const HeightField& field) {
     return taken;
 }
 
-std::vector<PlacedTool> tools(std::initializer_list<ToolKind> kinds) {
+std::vector<PlacedTool> tools(const std::vector<ToolKind>& kinds) {
     std::vector<PlacedTool> all;
     for (const ToolKind kind : kinds) {
         for (const Heading& heading :
@@ -161,7 +162,7 @@ TEST(Receivers, OfARoundToolAreTheCellsOfItsRing) {
 }
 
 TEST(Receivers, OfALongToolAreTheCellsAroundItsOutline) {
-    for (const PlacedTool& placed : tools({rectangle, ellipse, ellipsoid, footprint})) {
+    for (const PlacedTool& placed : tools(support::longTools())) {
         expectTakers(placed);
     }
 }
@@ -206,7 +207,7 @@ TEST(Receivers, TheRemainderOfARoundToolsSandGoesToTheFirstByRows) {
 
 // The order turns and is mirrored with the tool: from back to front, and from right to left.
 TEST(Receivers, TheRemainderOfALongToolsSandGoesToTheHindmost) {
-    for (const PlacedTool& placed : tools({rectangle, ellipse, ellipsoid, footprint})) {
+    for (const PlacedTool& placed : tools(support::longTools())) {
         std::vector<Cell> order = cellsWhere([&](int column, int row) { return placed.takes(column, row); });
         std::sort(order.begin(), order.end(), [&](const Cell& a, const Cell& b) {
             return placed.placeOf(a.column, a.row) < placed.placeOf(b.column, b.row);

@@ -39,7 +39,8 @@ Rules someRules() {
             .stepsPerSecond = 60,
             .scheme = sand::Scheme::plainIsotropic,
             .rim = sand::Rim::open,
-            .ground = 9};
+            .ground = 9,
+            .tin = 0x1234};
 }
 
 constexpr std::size_t kSchemeAt = 7 * 4 + 14;  // behind seven numbers and the tool

@@ -50,17 +50,17 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
 }
 
-// Journals and messages have exactly these bytes. A sphere is encoded as its radius alone.
-TEST(Step, OfASphereTakesTheseBytes) {
+// Journals and messages have exactly these bytes.
+TEST(Step, TakesTheseBytes) {
     sand::Step step{
         3, 300, true, {{5, -6, 70}}, samples::withNumber(200, sand::Edit::tuned({7, 11, 13, {.radius = 17}}))};
-    const base::Bytes expected{3, 0xac, 2, 9, 1, 10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0,
-                               0, 11,   0, 0, 0, 13, 0,  0,    0, 17,   0, 0, 0};
+    const base::Bytes expected{3,  0xac, 2, 9, 1, 10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0, 0,    11, 0, 0, 0,
+                               13, 0,    0, 0, 0, 17, 0,  0,    0, 0,    0, 0, 0, 0, 0x40, 0,  0, 0};
     EXPECT_EQ(bytesOf(step), expected);
     base::ByteReader reader(expected);
     EXPECT_EQ(base::read<sand::Step>(reader), step);
     step.heading = *sand::headingOf(30, true);
-    EXPECT_EQ(bytesOf(step).size(), expected.size() + 4) << "only a step that turns the tool says how";
+    EXPECT_EQ(bytesOf(step).size(), expected.size() + 5) << "only a step that turns the tool says how";
 }
 
 TEST(Step, AHeadingAndEveryToolSurviveAndWhatIsNoneIsRefused) {

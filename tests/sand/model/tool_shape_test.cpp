@@ -16,6 +16,7 @@
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/tool_kinds.hpp"
 
 namespace {
 
@@ -29,8 +30,7 @@ using sand::ToolKind;
 using sand::grid::Displacement;
 using enum sand::ToolKind;
 
-constexpr std::array kEvery{sphere, circle, rectangle, ellipse, ellipsoid, footprint};
-constexpr std::array kTurned{rectangle, ellipse, ellipsoid, footprint};
+constexpr auto kEvery = support::everyTool();
 
 std::int32_t probes(double cells) { return static_cast<std::int32_t>(std::floor(cells * kProbePerCell + 0.5)); }
 
@@ -50,7 +50,7 @@ std::optional<long double> depthBelow(ToolKind kind, long double along, long dou
     if (kind == rectangle) {
         return std::abs(along) < 1 && std::abs(across) < 1 ? std::optional(1.0L) : std::nullopt;
     }
-    if (kind != footprint) {
+    if (sand::solePieces(kind).empty()) {
         return square < 1 ? std::optional(1.0L) : std::nullopt;
     }
     std::optional<long double> deepest;
@@ -162,7 +162,7 @@ TEST(ToolShape, TurnedOrMirroredItDoesTheSameTurnedOrMirrored) {
     // The release build compares the values. With sanitizers, two ways are enough to run all of the code.
     const std::vector<unsigned> ways =
         samples::kSanitized ? std::vector{3U, 6U} : std::vector{1U, 2U, 3U, 4U, 5U, 6U, 7U};
-    for (const ToolKind kind : kTurned) {
+    for (const ToolKind kind : support::longTools()) {
         for (const double degrees : {0.0, 33.0, 90.0, -140.0}) {
             scene::Scene scene = samples::flatScene(75, 52, 0);
             scene.terrain = samples::randomField(75, 52, 1 << 18, random);
@@ -300,7 +300,7 @@ TEST(ToolShape, SwitchedTurnedAndDraggedAtRandomItKeepsTheVolumeAndTheStatesOfCo
 }
 
 TEST(ToolShape, TurnedOnTheSpotItMakesRoomAndHeldStillItComesToRest) {
-    for (const ToolKind kind : kTurned) {
+    for (const ToolKind kind : support::longTools()) {
         scene::Scene scene = samples::flatScene(60, 60, 12);
         scene.rules.tuning.tool = toolOf(kind, 12);
         sand::Replica terrain(scene);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Session that takes too long or too much memory for a test. scripts/soak.sh runs it and compares the results.
+// Session that takes too long or too much memory for a test. scripts/checks/soak.sh runs it and compares the results.
 #include <fmt/format.h>
 #include <sys/resource.h>
 

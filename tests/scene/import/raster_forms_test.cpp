@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rasters in every form that GDAL can write. With SANDWALL_PRINT_FORMS=1 the test prints each of them, as
-// scripts/raster_forms.sh does.
+// scripts/checks/raster_forms.sh does.
 #include "tests/scene/import/raster_forms.hpp"
 
 #include <fmt/format.h>

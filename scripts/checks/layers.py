@@ -1,0 +1,215 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks which folders of the project include which, and draws docs/layers.svg.
+
+A file may include a header of its own folder, or of a library that its own library links in CMake. Other folders include
+a header, so it may only include headers of libraries that its library links PUBLIC. Folders may not include each other in
+a circle. A source is in the folder of the header that it implements. A header with the line `// Private to this folder.`
+is only included from its folder and from its tests. A folder holds at most 25 sources.
+
+usage: scripts/checks/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MOST_SOURCES = 25
+PRIVATE = "// Private to this folder."
+OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
+
+
+class Project:
+    """The sources by path, and the targets that cmake/Layers.cmake has written."""
+
+    def __init__(self, sources, targets):
+        self.sources = sources  # {path: text}
+        self.includes = {path: [name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if name in sources]
+                         for path, text in sources.items()}
+        objects = {name: target for name, target in targets.items() if target["type"] == "OBJECT_LIBRARY"}
+        self.targets = {name: target for name, target in targets.items() if name not in objects}
+        self.owner = {}
+        for name, target in self.targets.items():
+            compiled = list(target["sources"])
+            for source in target["sources"]:
+                compiled += objects.get(source, {"sources": []})["sources"]
+            for source in compiled:
+                if source in sources and not (source in self.owner and target["type"] != "STATIC_LIBRARY"):
+                    self.owner[source] = name
+        self.library = {}  # {folder: its library}: the library with the folder's name, or else the first
+        for source, name in sorted(self.owner.items()):
+            folder = os.path.dirname(source)
+            if self.targets[name]["type"] == "STATIC_LIBRARY":
+                if folder not in self.library or name == os.path.basename(folder):
+                    self.library[folder] = name
+
+    @classmethod
+    def of(cls, root, build):
+        listed = subprocess.run(["git", "ls-files", "*.cpp", "*.hpp"], cwd=root, capture_output=True, check=True, text=True)
+        sources = {path: (root / path).read_text() for path in listed.stdout.split()}
+        return cls(sources, json.loads((build / "layers.json").read_text()))
+
+    def target_of(self, path):
+        """Returns the library that a file is part of, or None if no folder above it has a library."""
+        folder, stem = os.path.dirname(path), os.path.splitext(path)[0]
+        own = self.owner.get(stem + ".cpp")
+        if own and self.targets[own]["type"] != "MODULE_LIBRARY":
+            return own
+        while folder and folder not in self.library:
+            folder = os.path.dirname(folder)
+        return self.library.get(folder)
+
+    def usable(self, target, public_only):
+        """Returns the targets whose headers the sources of `target` may include; if `public_only`, its headers."""
+        links = self.targets[target]["interface_link_libraries" if public_only else "link_libraries"]
+        found, waiting = {target}, list(links)
+        while waiting:
+            name = waiting.pop()
+            if name in self.targets and name not in found:
+                found.add(name)
+                waiting += self.targets[name]["interface_link_libraries"]
+        return found
+
+    def folder_edges(self):
+        """Returns {(including folder, included folder): [(file, included header)]}."""
+        edges = {}
+        for path, names in self.includes.items():
+            for name in names:
+                ends = os.path.dirname(path), os.path.dirname(name)
+                if ends[0] != ends[1] and not path.startswith(OUTER):
+                    edges.setdefault(ends, []).append((path, name))
+        return edges
+
+
+def wrong_links(project):
+    for path, names in project.includes.items():
+        if path.startswith(OUTER) and path.endswith(".hpp"):
+            continue  # it belongs to the programs that include it
+        target = project.target_of(path)
+        if target is None:
+            if not path.startswith(OUTER):
+                yield f"{path}: no library of the project holds it; add it to a CMakeLists.txt"
+            continue  # a test's own module
+        usable = project.usable(target, public_only=path.endswith(".hpp"))
+        for name in names:
+            other = project.target_of(name)
+            if os.path.dirname(name) == os.path.dirname(path) or name.startswith(OUTER) or other in usable:
+                continue
+            how = "PUBLIC, as a header needs" if path.endswith(".hpp") else "at all"
+            yield f"{path}: includes {name} of {other}, which {target} does not link {how}"
+
+
+def misplaced(project):
+    for path, names in project.includes.items():
+        stem = os.path.splitext(os.path.basename(path))[0]
+        if path.endswith(".cpp") and not path.startswith(OUTER):
+            for name in names[:1]:
+                if os.path.basename(name) == stem + ".hpp" and os.path.dirname(name) != os.path.dirname(path):
+                    yield f"{path}: implements {name} and is in another folder"
+        for name in names:
+            inside = os.path.dirname(name)
+            if PRIVATE in project.sources[name] and os.path.dirname(path) != inside \
+                    and not path.startswith(f"tests/{inside}/"):
+                yield f"{path}: includes {name}, which is private to its folder"
+
+
+def crowded(project):
+    count = {}
+    for path in project.sources:
+        if path.endswith(".cpp"):
+            count[os.path.dirname(path)] = count.get(os.path.dirname(path), 0) + 1
+    for folder, sources in sorted(count.items()):
+        if sources > MOST_SOURCES:
+            yield f"{folder}: holds {sources} sources, more than {MOST_SOURCES}; divide it"
+
+
+def circles(project):
+    """Yields a message for every circle of folders, once."""
+    edges = project.folder_edges()
+    below = {}
+    for source, target in edges:
+        below.setdefault(source, []).append(target)
+    done, way = set(), []
+
+    def visit(folder):
+        if folder in way:
+            circle = way[way.index(folder):] + [folder]
+            reason = edges[circle[-2], circle[-1]][0]
+            yield f"{' -> '.join(circle)}: a circle of folders, closed by {reason[0]} that includes {reason[1]}"
+        elif folder not in done:
+            way.append(folder)
+            for target in sorted(below.get(folder, [])):
+                yield from visit(target)
+            way.pop()
+            done.add(folder)
+
+    for folder in sorted(below):
+        yield from visit(folder)
+
+
+def faults(project):
+    return [fault for check in (wrong_links, misplaced, crowded, circles) for fault in check(project)]
+
+
+def reduced(edges):
+    """Returns the edges between folders, except edges that a longer way replaces."""
+    below = {}
+    for source, target in edges:
+        below.setdefault(source, set()).add(target)
+
+    def reachable(folder, seen):
+        for target in below.get(folder, ()):
+            if target not in seen:
+                seen.add(target)
+                reachable(target, seen)
+        return seen
+
+    return sorted((source, target) for source, target in edges
+                  if not any(target in reachable(other, set()) for other in below[source] - {target}))
+
+
+def fingerprint(project):
+    return hashlib.sha256(repr(sorted(project.folder_edges())).encode()).hexdigest()[:16]
+
+
+COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#dfe8c6", "haptic_bridge": "#f2cfc4",
+           "lockstep": "#cfdcef", "master": "#d9d0ea", "render_node": "#c9e4e4"}
+
+
+def draw(project, file):
+    edges = reduced(project.folder_edges())
+    folders = sorted({folder for edge in edges for folder in edge})
+    lines = ["digraph layers {", "rankdir=TB; nodesep=0.18; ranksep=0.38; bgcolor=white;",
+             'node [shape=box, style="rounded,filled", color="#8a8578", fontname="Helvetica", fontsize=11, height=0.3];',
+             'edge [color="#6b675d", arrowsize=0.6];']
+    for folder in folders:
+        colour = COLOURS.get(folder.split("/")[0], "#eeeeee")
+        lines.append(f'"{folder}" [fillcolor="{colour}"];')
+    lines += [f'"{source}" -> "{target}";' for source, target in edges] + ["}"]
+    svg = subprocess.run(["dot", "-Tsvg"], input="\n".join(lines), capture_output=True, check=True, text=True).stdout
+    svg = re.sub(r"<!--.*?-->\n?", "", svg, flags=re.DOTALL)
+    note = f"<!-- scripts/checks/layers.py {fingerprint(project)}: an arrow points to an included folder; arrows that follow from others are left out -->\n"
+    file.write_text(re.sub(r"(<svg)", note + r"\1", svg, count=1))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--svg", type=pathlib.Path)
+    options = parser.parse_args()
+    project = Project.of(ROOT, options.build)
+    found = faults(project)
+    print("\n".join(found) or f"{len(project.folder_edges())} arrows between folders, all correct")
+    if options.svg:
+        draw(project, options.svg)
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

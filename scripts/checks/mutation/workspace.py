@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A copy of the sources with a build of its own, in which one bug at a time is planted."""
+
+import contextlib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+LONGEST = 300  # [s], limit of a test program
+SKIPPED = 77   # status of a test program that passes, but has skipped a test that needs rights
+FAILED = re.compile(r"^\[  FAILED  \] ([^ ,\n]+)", re.MULTILINE)
+NO_TEST = re.compile(r"^\[  PASSED  \] 0 tests", re.MULTILINE)
+PYTHON_FAILED = re.compile(r"^(?:FAIL|ERROR): (\w+) ", re.MULTILINE)
+
+
+class DoesNotCompile(Exception):
+    pass
+
+
+def copy_of(source, copy):
+    """Copies a file, or a link as a link, if the copy differs. A copied source is newer than its object file, which is
+    therefore built again."""
+    if source.is_symlink() or copy.is_symlink():
+        if source.is_symlink() and copy.is_symlink() and source.readlink() == copy.readlink():
+            return
+        copy.unlink(missing_ok=True)
+    elif copy.is_file() and copy.read_bytes() == source.read_bytes():
+        return
+    copy.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copy(source, copy, follow_symlinks=False)
+
+
+class Workspace:
+    """Not for several threads at once: each thread has a workspace of its own."""
+
+    def __init__(self, folder, jobs):
+        self.folder = folder
+        self.jobs = jobs
+        self.build_folder = folder / "build" / "release"
+        self.bin = self.build_folder / "bin"
+        self.seconds = {}  # of each test without a bug
+
+    def prepare(self):
+        """Copies the sources and configures the build."""
+        self.copy_sources()
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"] if shutil.which("ccache") else []
+        subprocess.run(["cmake", "--preset", "release", "-S", self.folder, "-B", self.build_folder, "-DSANDWALL_MUTANTS=ON",
+                        *launcher],
+                       cwd=self.folder, check=True, stdout=subprocess.DEVNULL, env=self.environment())
+
+    def copy_sources(self, root=ROOT):
+        """Copies the tracked files of `root`. Restores a file that a run before has left changed. Deletes every file outside the
+        build that is not tracked any more, such as a renamed document, because tests read all files of a folder."""
+        listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True).stdout.split("\0")
+        names = set(filter(None, listed))
+        for path in self.files_outside_the_build():
+            if path.relative_to(self.folder).as_posix() not in names:
+                path.unlink()
+                with contextlib.suppress(OSError):  # of a folder that still holds files
+                    os.removedirs(path.parent)
+        for name in names:
+            copy_of(root / name, self.folder / name)
+
+    def files_outside_the_build(self):
+        build = str(self.folder / "build")
+        for folder, folders, files in os.walk(self.folder):
+            folders[:] = [name for name in folders if os.path.join(folder, name) != build]
+            yield from (pathlib.Path(folder, name) for name in files)
+
+    def environment(self):
+        """Returns the environment of builds and tests. With it, one workspace uses what another one has compiled."""
+        return dict(os.environ, SANDWALL_MAY_SKIP="1", CCACHE_BASEDIR=str(self.folder), CCACHE_NOHASHDIR="1",
+                    CCACHE_SLOPPINESS="pch_defines,time_macros,include_file_mtime,include_file_ctime", PYTHONDONTWRITEBYTECODE="1",
+                    SANDWALL_BIN=str(self.bin))
+
+    def build(self, targets):
+        """Throws DoesNotCompile."""
+        command = ["cmake", "--build", str(self.build_folder), "--parallel", str(self.jobs), "--target", *targets]
+        built = subprocess.run(command, env=self.environment(), capture_output=True, text=True)
+        if built.returncode != 0:
+            raise DoesNotCompile(built.stdout[-4000:] + built.stderr[-1000:])
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text)
+
+    def read(self, name):
+        return (self.folder / name).read_text()
+
+    def patch(self, text, *options):
+        subprocess.run(["patch", "--strip", "1", "--fuzz", "0", "--silent", "--no-backup-if-mismatch", *options],
+                       cwd=self.folder, input=text, text=True, check=True)
+
+    def run(self, test, limit=LONGEST):
+        """Runs a test and returns the name of its first failure, or None if it passes.
+
+        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of tests/scripts.
+        """
+        program, _, which = test.partition(" ")
+        if program.endswith(".py"):
+            command = ["python3", str(self.folder / "tests" / "scripts" / program), *which.split(), "--failfast"]
+        else:
+            command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]
+        start = time.monotonic()
+        process = subprocess.Popen(command, cwd=self.folder, env=self.environment(), text=True, errors="replace",
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            output, _ = process.communicate(timeout=limit)
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, 9)
+            process.communicate()
+            return "the time limit"
+        self.seconds.setdefault(test, time.monotonic() - start)
+        if process.returncode in (0, SKIPPED):
+            return "no test" if NO_TEST.search(output) else None
+        named = (PYTHON_FAILED if program.endswith(".py") else FAILED).search(output)
+        return named[1] if named else f"status {process.returncode}"
+
+    def limit(self, test):
+        """Returns the time limit of a test that may hang with a bug [s]."""
+        return min(LONGEST, 20 + 5 * self.seconds.get(test, LONGEST))

@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures the time from the pointer to the picture on one screen, while the pointer digs (docs/pointer.md).
+
+Starts a desktop wall in a window of an X server in memory, and moves the pressed pointer in circles with xdotool.
+"""
+
+import json
+import math
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+import events
+import session_results
+from command_line import above, at_least
+from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, pm, processor
+from x_server import XServer
+
+SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml
+MOTIONS = 125  # a second, as a usual mouse sends them
+REFRESH = 60  # Hz
+
+
+def circles(display, seconds):
+    """Starts a process that presses the left button and moves the pointer in circles for so long."""
+    words = ["mousemove 640 330", "mousedown 1"]
+    for i in range(round(seconds * MOTIONS)):
+        angle = 2 * math.pi * i / MOTIONS  # one circle a second
+        radius = 150 + 60 * math.sin(angle / 7)
+        words += [f"mousemove {640 + radius * math.cos(angle):.0f} {330 + 0.6 * radius * math.sin(angle):.0f}", f"sleep {1 / MOTIONS}"]
+    words.append("mouseup 1")
+    mover = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, env=display.environment, text=True, preexec_fn=die_with_parent)
+    mover.stdin.write("\n".join(words) + "\n")
+    mover.stdin.close()
+    return mover
+
+
+def measure(args):
+    """Returns the summary of a session in which the pointer digs all the time."""
+    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer(f"{SIZE[0]}x{SIZE[1]}") as display:
+        folder = pathlib.Path(name)
+        log, out = folder / "log.txt", folder / "out"
+        command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", ROOT / "walls" / "configs" / "desktop.toml",
+                   "--scene", args.scene, "--device", "pointer", "--no-pictures", "--out", out, "--refresh", REFRESH,
+                   "--warm-up", round(args.warm_up * REFRESH)]
+        with log.open("w") as said:
+            run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
+                                   env={**display.environment, "SANDWALL_BIN": str(BIN), events.VARIABLE: "1"}, preexec_fn=die_with_parent)
+        try:
+            if events.wait_for(log, "progress", START_SECONDS, lambda: run.poll() is None) is None:
+                raise Failed(f"no frame was shown: {log.read_text(errors='replace').strip()[-300:]}")
+            mover = circles(display, args.warm_up + args.seconds)
+            time.sleep(args.warm_up + args.seconds)
+            run.stdin.write("stop\n")
+            run.stdin.flush()
+            if run.wait(timeout=START_SECONDS) != 0:
+                raise Failed(f"the session failed: {log.read_text(errors='replace').strip()[-300:]}")
+            mover.terminate()
+            mover.wait()
+        finally:
+            if run.poll() is None:
+                run.terminate()
+                run.wait(timeout=START_SECONDS)
+        return session_results.read_summary(out)
+
+
+def row(name, figures):
+    return f"| {name} | {pm(figures['mean'], figures['stddev'])} | {figures['p50']:.1f} | {figures['p99']:.1f} |"
+
+
+def report(summary, before):
+    """Returns the table in Markdown, and notes."""
+    legs = summary["latency_legs_ms"]
+    lines = ["| leg | mean ± standard deviation [ms] | p50 | p99 |", "|---|---|---|---|",
+             row("event to master", legs["to_master"]), row("waits for the next frame", legs["queued"]), row("drawn", legs["drawn"]),
+             row("swapped", legs["swapped"]), row("**event to picture**", summary["latency_ms"])]
+    frames = summary["frame_ms"]
+    lines += ["", f"- {1000 / frames['mean']:.1f} frames a second while digging at {SIZE[0]} × {SIZE[1]}: frame p50 {frames['p50']:.1f} ms, p99 "
+              f"{frames['p99']:.1f} ms; two frames at {REFRESH} Hz are {2000 / REFRESH:.1f} ms",
+              f"- machine: {processor()}, {len(os.sched_getaffinity(0))} cores for X server, master, rank and llvmpipe; load average "
+              f"{before:.1f} before and {os.getloadavg()[0]:.1f} after"]
+    return "\n".join(lines)
+
+
+def main():
+    parser = Parser(prog="pointer_latency.py", description=__doc__)
+    parser.add_argument("--seconds", type=above(float, 0), default=20, help="seconds of the session after its warm-up (default: 20)")
+    parser.add_argument("--warm-up", type=at_least(float, 0), default=5, help="seconds at the start that do not count as frames (default: 5)")
+    parser.add_argument("--scene", default=ROOT / "scenes" / "writing.toml", help="scene file (default: scenes/writing.toml)")
+    parser.add_argument("--json", action="store_true", help="print the session's summary as JSON")
+    args = parser.parse_args()
+    for program in ("Xvfb", "xdotool"):
+        if shutil.which(program) is None:
+            parser.error(f"{program} is missing; run scripts/install_dependencies.sh --with-tests")
+    before = os.getloadavg()[0]
+    try:
+        summary = measure(args)
+    except Failed as complaint:
+        print(f"pointer_latency.py: {complaint}", file=sys.stderr)
+        return 1
+    print(json.dumps(summary) if args.json else report(summary, before))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
