@@ -114,6 +114,10 @@ void addOptions(host::CommandLine& command, const Curve& curve, bench::Settings&
     if (curve.measure == bench::simplify) {
         command.option("--raster", settings.raster, "ESRI ASCII grid, in place of dunes");
     }
+    if (curve.measure == bench::throughput) {
+        command.choice("--path", settings.path, "code path of the sweeps (default: the fastest of this processor)");
+        command.option("--rows", settings.rows, "only these rows, separated by commas").commaSeparated();
+    }
     command.option("--sizes", settings.sizes, "sides of the square fields [cell], separated by commas")
         .commaSeparated()
         .range(8, kLargestSide)

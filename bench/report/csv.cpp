@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "base/code_path.hpp"
 #include "base/input_error.hpp"
 
 namespace bench {
@@ -65,7 +64,7 @@ void Csv::open() {
     note("machine: " + machine());
     note("compiler: " SANDWALL_COMPILER);
     note("flags: " SANDWALL_FLAGS);
-    note(fmt::format("code path: {}", base::nameOf(base::fastestCodePath())));
+    note(fmt::format("code path: {}", base::nameOf(settings_.path.value_or(base::fastestCodePath()))));
     note(fmt::format("seed: {}", settings_.seed));
     note("command: " + settings_.commandLine);
     note("date: " + date());

@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "base/code_path.hpp"
 
 namespace bench {
 
@@ -19,9 +22,11 @@ struct Settings {
     std::vector<int> sizes;     // [cell], sides of the square fields
     int runs = 10;              // number of runs of each timed measurement
     std::uint32_t seed = 1;
-    std::string scene;        // scene file of `explain`
-    std::string raster;       // raster file of `tin-simplify`, in place of dunes
-    std::string commandLine;  // the typed command, for the file's head
+    std::string scene;                   // scene file of `explain`
+    std::string raster;                  // raster file of `tin-simplify`, in place of dunes
+    std::optional<base::CodePath> path;  // of `throughput`; nullopt: the fastest one
+    std::vector<std::string> rows;       // of `throughput`; empty: all
+    std::string commandLine;             // the typed command, for the file's head
 };
 
 /// A table of measurements: comment lines with their origin, a line of column names, and rows of numbers.

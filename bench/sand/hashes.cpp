@@ -45,7 +45,7 @@ void hashes(const Settings& settings, Csv& csv) {
     for (const int side : settings.sizes) {
         for (const auto& [scheme, name] :
              {std::pair{sand::Scheme::isotropic, "G"}, {sand::Scheme::plainIsotropic, "G plain"}}) {
-            for (const auto path : {base::fastestCodePath(), base::CodePath::baseline}) {
+            for (const base::CodePath path : base::codePathsHere()) {
                 for (const int threads : {1, 2, 3, 7}) {
                     host::WorkerPool pool(threads);
                     const base::Executor executor = pool.executor();

@@ -57,7 +57,7 @@ public:
     /// Runs at most `count` sweeps. Stops after the first sweep in which no sand moves, which counts too.
     void sweep(int count) {
         for (int i = 0; i < count && !atRest_; ++i) {
-            atRest_ = !(path_ == base::CodePath::v3 ? v3::sweep(patch_) : baseline::sweep(patch_));
+            atRest_ = !(path_ != base::CodePath::baseline ? v3::sweep(patch_) : baseline::sweep(patch_));
             ++sweepsDone_;
         }
     }

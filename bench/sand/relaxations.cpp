@@ -57,8 +57,8 @@ public:
     }
     void sweep(int count) override {
         for (int i = 0; i < count && !atRest(); ++i) {
-            largest_ = path_ == base::CodePath::v3 ? v3::sweep(scheme_, talus_, field_, scratch_)
-                                                   : baseline::sweep(scheme_, talus_, field_, scratch_);
+            largest_ = path_ != base::CodePath::baseline ? v3::sweep(scheme_, talus_, field_, scratch_)
+                                                         : baseline::sweep(scheme_, talus_, field_, scratch_);
             ++sweepsDone_;
         }
     }

@@ -143,7 +143,7 @@ Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbeP
     Cut cut;
     cut.cells = cells(field, probe);
     const auto across = static_cast<std::size_t>(std::max(cut.cells.x1 - cut.cells.x0, 0));
-    const auto above = path_ == base::CodePath::v3 ? v3::sandAbove : baseline::sandAbove;
+    const auto above = path_ != base::CodePath::baseline ? v3::sandAbove : baseline::sandAbove;
     std::vector<std::int32_t>& lowest = cut.lowest;
     lowest.resize(across);  // room for one row more than the tool cuts
     for (int y = cut.cells.y0; y < cut.cells.y1; ++y) {

@@ -124,7 +124,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
                                   .gap = sums_[1].data(),
                                   .moved = sums_[2].data(),
                                   .excess = sums_[3].data()};
-    path_ == base::CodePath::v3 ? v3::iterateDual(iteration) : baseline::iterateDual(iteration);
+    path_ != base::CodePath::baseline ? v3::iterateDual(iteration) : baseline::iterateDual(iteration);
     std::swap(now_, before_);
     const auto sum = [&](const std::vector<double>& sums, int count) {
         return std::accumulate(sums.begin(), sums.begin() + count, 0.0);

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <iterator>
+#include <utility>
 
-#include "sand/grid/erosion_kernel.hpp"
-#include "sand/grid/flux_limits.hpp"
 #include "sand/model/momentum.hpp"
 
 namespace sand::grid {
@@ -18,6 +17,33 @@ void extrapolate(const std::int32_t* edge, const std::int32_t* inner, std::ptrdi
                  std::int32_t* ghost) {
     for (int i = 0; i < count; ++i, edge += stride, inner += stride, ghost += stride) {
         *ghost = 2 * *edge - *inner;
+    }
+}
+
+/// Writes the ghost cells next to `cells` so that the field's slope continues across the rim.
+void refreshGhosts(HeightField& field, const CellRect& cells) {
+    const int columns = field.columns();
+    const int rows = field.rows();
+    const CellRect reach = cells.grownBy(1).clippedTo(field.bounds());
+    const auto ghostRow = [&](int ghost, int edge, int inner) {
+        extrapolate(field.row(edge) + reach.x0, field.row(inner) + reach.x0, 1, reach.x1 - reach.x0,
+                    field.row(ghost) + reach.x0);
+    };
+    const auto ghostColumn = [&](int ghost, int edge, int inner) {
+        std::int32_t* const first = field.row(reach.y0);
+        extrapolate(first + edge, first + inner, field.stride(), reach.y1 - reach.y0, first + ghost);
+    };
+    if (cells.y0 == 0) {
+        ghostRow(-1, 0, std::min(1, rows - 1));
+    }
+    if (cells.y1 == rows) {
+        ghostRow(rows, rows - 1, std::max(rows - 2, 0));
+    }
+    if (cells.x0 == 0) {
+        ghostColumn(-1, 0, std::min(1, columns - 1));
+    }
+    if (cells.x1 == columns) {
+        ghostColumn(columns, columns - 1, std::max(columns - 2, 0));
     }
 }
 
@@ -46,41 +72,30 @@ Erosion::Erosion(const HeightField& field, const Rules& rules, const Options& op
       east_(field.columns(), field.rows()),
       north_(field.columns(), field.rows()),
       marked_(across_, down_),
-      moved_(across_, down_) {
-    const auto blocks = static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_);
-    waiting_.assign(blocks, 0);
-    movedNow_.assign(blocks, 0);
-    findSliding();
+      moved_(across_, down_),
+      flowed_(across_, down_) {
     wakeAll();
 }
 
 std::size_t Erosion::bytes() const {
-    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + waiting_.size() + movedNow_.size() +
-           active_.capacity() * sizeof active_[0] + (sliding_ ? sliding_->bytes() : 0);
+    return east_.bytes() + north_.bytes() + marked_.bytes() + moved_.bytes() + flowed_.bytes() + walk_.bytes() +
+           (active_.capacity() + swept_.capacity()) * sizeof active_[0];
 }
 
 std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obstacle) {
     wakeTouched();
     std::int64_t outflow = 0;
     for (int n = 0; n < sweeps && !settled(); ++n) {
-        collectPatches(field);
         const float momentum =
             std::max(momentumAfter<float>(n, dampingOf(sweeps)), momentumAfter<float>(undisturbed_, kMostDamping));
-        forEachPatch([&](int i) {
-            const auto patch = static_cast<std::size_t>(i);
-            outflows_[patch] = sweepFluxes(field, patches_[patch], momentum, obstacle);
-        });
-        forEachPatch([&](int i) { balance(field, patches_[static_cast<std::size_t>(i)]); });
-        for (std::size_t i = 0; i < patches_.size(); ++i) {
-            outflow += outflows_[i];
-            markAroundMoved(patches_[i]);
-        }
+        outflow += sweepOnce(field, momentum, obstacle);
+        markAroundMoved();
         ++sweepsDone_;
         const bool still = marked_.empty();
         if (!still) {  // a replica that joins settled sand visits it once, which must not change its age
             undisturbed_ = std::min(undisturbed_ + 1, Inertia::kMostCounted);
         }
-        collectMarked();
+        active_ = marked_.takeRuns();
         if (!options_.skipSettled && !still) {
             wakeAll();
         }
@@ -88,63 +103,37 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
     return outflow;
 }
 
-void Erosion::forEachPatch(const std::function<void(int)>& task) const {
-    const int count = static_cast<int>(patches_.size());
-    if (options_.executor != nullptr && count > 1) {
-        (*options_.executor)(count, task);
-        return;
+std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle) {
+    swept_.clear();
+    for (const CellRect& blocks : active_) {
+        swept_.push_back(cellsOf(blocks));
+        refreshGhosts(field, swept_.back());
     }
-    for (int i = 0; i < count; ++i) {
-        task(i);
-    }
-}
-
-std::int64_t Erosion::sweepFluxes(const HeightField& field, const CellRect& blocks, float momentum,
-                                  const Obstacle* obstacle) {
-    const CellRect cells = cellsOf(blocks);
-    const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(cells.grownBy(1)).empty();
-    std::optional<FluxLimits> limits;
-    if (toolNear || options_.ground != nullptr) {
-        limits.emplace(field, cells, options_.ground, toolNear ? obstacle : nullptr);
-    }
-    const bool grounded = options_.ground != nullptr;
-    const int limitsWidth = cells.x1 - cells.x0 + 2;
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
-    const FluxPatch patch{
-        .heights = grounded ? limits->heights.data() + limitsWidth + 1 : field.row(cells.y0) + cells.x0,
-        .heightStride = grounded ? limitsWidth : field.stride(),
+    const Sweep sweep{
+        .heights = field.row(0),
+        .heightStride = field.stride(),
         .east = east_.row(0),
         .north = north_.row(0),
         .fluxStride = east_.stride(),
-        .cells = cells,
         .columns = field.columns(),
         .rows = field.rows(),
+        .blockSize = blockSize_,
         .eastLaw = axisLaw(rules_.scheme, rules_.tuning.threshold, rules_.tuning.startThreshold, 1 / ratio),
         .northLaw =
             axisLaw(rules_.scheme, rules_.tuning.threshold * ratio, rules_.tuning.startThreshold * ratio, ratio),
         .momentum = momentum,
         .inertial = rules_.scheme == Scheme::isotropic,
+        .band = rules_.tuning.startThreshold > rules_.tuning.threshold,
         .openRim = rules_.rim == Rim::open,
-        .sliding = sliding_ ? sliding_->row(0) : nullptr,
-        .slidingStride = sliding_ ? sliding_->stride() : 0,
-        .room = limits ? limits->room.data() : nullptr,
-        .sand = grounded ? limits->sand.data() : nullptr};
-    return options_.path == base::CodePath::v3 ? v3::sweepFluxes(patch) : baseline::sweepFluxes(patch);
-}
-
-void Erosion::balance(HeightField& field, const CellRect& blocks) {
-    const BalancePatch patch{.heights = field.row(0),
-                             .heightStride = field.stride(),
-                             .east = east_.row(0),
-                             .north = north_.row(0),
-                             .fluxStride = east_.stride(),
-                             .sliding = sliding_ ? sliding_->row(0) : nullptr,
-                             .slidingStride = sliding_ ? sliding_->stride() : 0,
-                             .cells = cellsOf(blocks),
-                             .blockSize = blockSize_,
-                             .moved = movedNow_.data() + blocks.y0 * across_ + blocks.x0,
-                             .blocksAcross = across_};
-    options_.path == base::CodePath::v3 ? v3::balance(patch) : baseline::balance(patch);
+        .flowed = flowed_.row(0),
+        .flowedStride = flowed_.stride()};
+    return walk_.sweep(sweep, swept_,
+                       {.field = field,
+                        .ground = options_.ground,
+                        .obstacle = obstacle,
+                        .executor = options_.executor,
+                        .path = options_.path});
 }
 
 void Erosion::addFluxes(NetFlux& sum) const {
@@ -153,54 +142,26 @@ void Erosion::addFluxes(NetFlux& sum) const {
             to[i] += flux[i];
         }
     };
-    // Outside the patches of the last sweep, no sand flowed.
-    forEachPatch([&](int i) {
-        const CellRect cells = cellsOf(patches_[static_cast<std::size_t>(i)]);
+    for (const CellRect& cells : swept_) {  // no sand flowed anywhere else
         for (int y = cells.y0; y < cells.y1; ++y) {
             add(east_.row(y), sum.east(y), cells.x0 == 0 ? -1 : cells.x0, cells.x1);
         }
         for (int y = cells.y0 == 0 ? -1 : cells.y0; y < cells.y1; ++y) {
             add(north_.row(y), sum.north(y), cells.x0, cells.x1);
         }
-    });
-}
-
-void Erosion::refreshGhosts(HeightField& field, const CellRect& cells) const {
-    const int columns = field.columns();
-    const int rows = field.rows();
-    const CellRect reach = cells.grownBy(1).clippedTo(field.bounds());
-    const auto ghostRow = [&](int ghost, int edge, int inner) {
-        extrapolate(field.row(edge) + reach.x0, field.row(inner) + reach.x0, 1, reach.x1 - reach.x0,
-                    field.row(ghost) + reach.x0);
-    };
-    const auto ghostColumn = [&](int ghost, int edge, int inner) {
-        std::int32_t* const first = field.row(reach.y0);
-        extrapolate(first + edge, first + inner, field.stride(), reach.y1 - reach.y0, first + ghost);
-    };
-    if (cells.y0 == 0) {
-        ghostRow(-1, 0, std::min(1, rows - 1));
-    }
-    if (cells.y1 == rows) {
-        ghostRow(rows, rows - 1, std::max(rows - 2, 0));
-    }
-    if (cells.x0 == 0) {
-        ghostColumn(-1, 0, std::min(1, columns - 1));
-    }
-    if (cells.x1 == columns) {
-        ghostColumn(columns, columns - 1, std::max(columns - 2, 0));
     }
 }
 
 Inertia Erosion::inertia() const {
     Inertia inertia(undisturbed_);
     // Keeps the fluxes even at age 0, when they carry no momentum: a band depends on where sand slid.
-    for (const int block : active_) {
-        const int x = block % across_;
-        const int y = block / across_;
-        CellRect cells = cellsOf({x, y, x + 1, y + 1});
-        cells.x0 -= x == 0 ? 1 : 0;  // flux over the western rim
-        cells.y0 -= y == 0 ? 1 : 0;
-        inertia.keep(east_, north_, cells);
+    for (const CellRect& run : active_) {
+        for (int x = run.x0; x < run.x1; ++x) {
+            CellRect cells = cellsOf({x, run.y0, x + 1, run.y1});
+            cells.x0 -= x == 0 ? 1 : 0;  // flux over the western rim
+            cells.y0 -= run.y0 == 0 ? 1 : 0;
+            inertia.keep(east_, north_, cells);
+        }
     }
     return inertia;
 }
@@ -214,41 +175,24 @@ void Erosion::resume(const Inertia& inertia) {
     }
     inertia.putInto(east_, north_);
     undisturbed_ = inertia.undisturbed();
-    findSliding();
+    // A sweep in which an executor threw has left numbers there.
+    flowed_ = FlowBits(across_, down_);
+    walk_ = Walk();
     wakeAll();
-}
-
-void Erosion::findSliding() {
-    if (rules_.tuning.startThreshold <= rules_.tuning.threshold) {
-        sliding_.reset();
-        return;
-    }
-    if (!sliding_) {
-        sliding_.emplace(east_.columns(), east_.rows());
-    }
-    const BalancePatch all{.heights = nullptr,
-                           .heightStride = 0,
-                           .east = east_.row(0),
-                           .north = north_.row(0),
-                           .fluxStride = east_.stride(),
-                           .sliding = sliding_->row(0),
-                           .slidingStride = sliding_->stride(),
-                           .cells = east_.bounds(),
-                           .blockSize = blockSize_,
-                           .moved = nullptr,
-                           .blocksAcross = across_};
-    options_.path == base::CodePath::v3 ? v3::markSliding(all) : baseline::markSliding(all);
 }
 
 void Erosion::changeRules(const Rules& rules) {
     rules_ = rules;
-    findSliding();
     touch(east_.bounds());
 }
 
 bool Erosion::amiss(const CellRect& cells) const {
     const auto rests = [this](int x, int y) {
-        return !std::binary_search(active_.begin(), active_.end(), y / blockSize_ * across_ + x / blockSize_);
+        const int column = x / blockSize_, row = y / blockSize_;
+        // The last run that begins at this block or before it.
+        const auto after = std::ranges::upper_bound(active_, std::pair(row, column), {},
+                                                    [](const CellRect& run) { return std::pair(run.y0, run.x0); });
+        return after == active_.begin() || std::prev(after)->y0 != row || std::prev(after)->x1 <= column;
     };
     for (int x = cells.x0; cells.y0 == 0 && x < cells.x1; ++x) {  // over the southern rim
         if (north_.row(-1)[x] != 0 && rests(x, 0)) {
@@ -261,11 +205,10 @@ bool Erosion::amiss(const CellRect& cells) const {
         }
         std::int32_t flows = 0;  // joins the whole row, because nearly all memory holds 0
         for (int x = cells.x0; x < cells.x1; ++x) {
-            flows |= east_.row(y)[x] | north_.row(y)[x] | (sliding_ ? sliding_->row(y)[x] : 0);
+            flows |= east_.row(y)[x] | north_.row(y)[x];
         }
         for (int x = cells.x0; flows != 0 && x < cells.x1; ++x) {
-            if ((east_.row(y)[x] != 0 || north_.row(y)[x] != 0 || (sliding_ && sliding_->row(y)[x] != 0)) &&
-                rests(x, y)) {
+            if ((east_.row(y)[x] | north_.row(y)[x]) != 0 && rests(x, y)) {
                 return true;
             }
         }

@@ -9,6 +9,7 @@
 #include "base/executor.hpp"
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/displacement.hpp"
+#include "sand/grid/erosion_walk.hpp"
 #include "sand/grid/inertia.hpp"
 #include "sand/grid/net_flux.hpp"
 #include "sand/model/ground.hpp"
@@ -16,8 +17,6 @@
 #include "sand/model/rules.hpp"
 
 namespace sand::grid {
-
-struct FluxPatch;
 
 /// Thermal erosion: sand slides wherever it is steeper than the talus, until all sand is at rest.
 ///
@@ -106,8 +105,7 @@ public:
     /// Returns the number of sweeps since construction.
     [[nodiscard]] std::int64_t sweepsDone() const { return sweepsDone_; }
     /// Returns whether a cell of `cells` has a flux other than 0 although its block is at rest. Only corrupted memory
-    /// can cause that. A cell at the western or southern rim also has the flux over this rim. With a band, also checks
-    /// the marks of sliding cells.
+    /// can cause that. A cell at the western or southern rim also has the flux over this rim.
     [[nodiscard]] bool amiss(const CellRect& cells) const;
     /// Makes the next sweep visit every block. Does not reset the age of the inertia.
     void wakeAll();
@@ -122,31 +120,10 @@ private:
     [[nodiscard]] CellRect cellsOf(const CellRect& blocks) const;
     /// Returns the blocks of `cells` and one more on each side [block].
     [[nodiscard]] CellRect blocksAround(const CellRect& cells) const;
-    /// Writes the ghost cells next to `cells` so that the field's slope continues across the rim.
-    void refreshGhosts(HeightField& field, const CellRect& cells) const;
-    /// Derives `sliding_` from the fluxes. Without a band, removes it.
-    void findSliding();
-    /// Returns a patch: the run of waiting blocks that begins with `block`, and the same run in the rows above while it
-    /// waits there too. These blocks then wait no longer. Stops below a wider run, because splitting it would make
-    /// narrow patches, which cost more per cell.
-    [[nodiscard]] CellRect takePatch(int block);
-    /// Divides the active blocks into patches for this sweep, and writes their ghost cells.
-    void collectPatches(HeightField& field);
-    /// Computes the fluxes of one patch. Returns its outflow [unit · cell].
-    [[nodiscard]] std::int64_t sweepFluxes(const HeightField& field, const CellRect& blocks, float momentum,
-                                           const Obstacle* obstacle);
-    /// Applies the fluxes of one patch to its heights, and records where sand flowed.
-    void balance(HeightField& field, const CellRect& blocks);
-    /// Calls `task` with the index of each patch, in parallel if there is an executor.
-    void forEachPatch(const std::function<void(int)>& task) const;
-    /// Marks the blocks that the next sweep must visit because sand flowed in this patch.
-    void markAroundMoved(const CellRect& blocks);
-    /// Marks the blocks of `row` that are next to flow. `flowed` is a row of blocks with their bits of `flow`. A block
-    /// is marked if the block of `flowed` in the same column has the bit `side`. It is also marked if the next block to
-    /// the west or east has the bit `side` and the bit of the border between these columns.
-    void markBeside(const std::uint8_t* flowed, int side, const CellRect& row);
-    /// Makes the marked blocks the active ones.
-    void collectMarked();
+    /// Makes one sweep over the active blocks. Returns the outflow [unit · cell].
+    std::int64_t sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle);
+    /// Marks the blocks that the next sweep must visit because sand flowed in this sweep.
+    void markAroundMoved();
     /// Adds the marked blocks to the active ones.
     void wakeTouched();
 
@@ -157,17 +134,15 @@ private:
     // Fluxes of the last sweep from each cell to the east and to the north [unit]. Column -1 and row -1 are the fluxes
     // across the western and the southern rim. All fluxes of a block that is not active are 0.
     CellArray east_, north_;
-    std::optional<CellArray> sliding_;  // cells in which sand slid in the last sweep; nullopt without a band
     std::int64_t sweepsDone_ = 0;
-    int undisturbed_ = 0;                 // age of the inertia [sweep]
-    std::vector<int> active_;             // blocks that the next sweep visits, in ascending order
-    std::vector<CellRect> patches_;       // rectangles of active blocks in this sweep [block]
-    std::vector<std::int64_t> outflows_;  // outflow of each patch [unit · cell]
-    BlockMarks marked_;                   // blocks for the next active set
-    BlockMarks moved_;                    // blocks changed since takeMoved()
-    // One number per block:
-    std::vector<std::uint8_t> waiting_;   // 1 if the block is active and not yet in a patch of this sweep
-    std::vector<std::uint8_t> movedNow_;  // bits of `flow`: where sand flowed in the block's last visit
+    int undisturbed_ = 0;  // age of the inertia [sweep]
+    // Runs of blocks within one row of blocks, row by row from the south-west [block]. Runs of a row do not touch.
+    std::vector<CellRect> active_;  // runs for the next sweep
+    std::vector<CellRect> swept_;   // runs of the last sweep
+    BlockMarks marked_;             // blocks for the next active set
+    BlockMarks moved_;              // blocks changed since takeMoved()
+    FlowBits flowed_;               // bits of this sweep; 0 between sweeps
+    Walk walk_;
 };
 
 }  // namespace sand::grid

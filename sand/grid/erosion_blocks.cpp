@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choice of the blocks that are swept, and their division into patches.
+// Choice of the blocks that are swept.
 #include <algorithm>
-#include <numeric>
 
 #include "sand/grid/erosion.hpp"
-#include "sand/grid/erosion_kernel.hpp"
 
 namespace sand::grid {
-namespace {
-
-constexpr int kSharedPatch = 32;  // [cell], height of a patch if several threads share the work
-
-}  // namespace
 
 void Erosion::wakeAll() {
-    active_.resize(waiting_.size());
-    std::iota(active_.begin(), active_.end(), 0);
+    active_.clear();
+    for (int y = 0; y < down_; ++y) {
+        active_.push_back({0, y, across_, y + 1});
+    }
 }
 
 CellRect Erosion::cellsOf(const CellRect& blocks) const {
@@ -29,11 +24,6 @@ CellRect Erosion::blocksAround(const CellRect& cells) const {
         .clippedTo({0, 0, across_, down_});
 }
 
-void Erosion::collectMarked() {
-    active_.clear();
-    marked_.takeAll([this](int block) { active_.push_back(block); });
-}
-
 void Erosion::touch(const CellRect& cells) {
     if (!cells.empty()) {
         marked_.add(blocksAround(cells));
@@ -45,96 +35,18 @@ void Erosion::wakeTouched() {
     if (marked_.empty()) {
         return;
     }
-    for (const int block : active_) {
-        const int x = block % across_;
-        const int y = block / across_;
-        marked_.add({x, y, x + 1, y + 1});
+    for (const CellRect& run : active_) {
+        marked_.add(run);
     }
-    collectMarked();
+    active_ = marked_.takeRuns();
 }
 
-void Erosion::collectPatches(HeightField& field) {
-    for (const int block : active_) {
-        waiting_[static_cast<std::size_t>(block)] = 1;
+void Erosion::markAroundMoved() {
+    for (const CellRect& run : active_) {
+        moved_.addChanged(run, flowed_);
+        marked_.addBeside(run, flowed_);
+        std::fill(flowed_.row(run.y0) + run.x0, flowed_.row(run.y0) + run.x1, std::uint8_t{0});
     }
-    patches_.clear();
-    for (const int block : active_) {
-        if (waiting_[static_cast<std::size_t>(block)] != 0) {
-            patches_.push_back(takePatch(block));
-            refreshGhosts(field, cellsOf(patches_.back()));
-        }
-    }
-    outflows_.assign(patches_.size(), 0);
-}
-
-CellRect Erosion::takePatch(int block) {
-    const int x0 = block % across_;
-    const int y0 = block / across_;
-    const auto waiting = [this](int x, int y) {
-        return x >= 0 && x < across_ && waiting_[static_cast<std::size_t>(y * across_ + x)] != 0;
-    };
-    CellRect blocks{x0, y0, x0 + 1, y0};
-    const int longest = x0 + kMaxPatch / blockSize_;
-    // Higher patches are slower: a column of patches that are 2048 cells high runs through the whole field once per
-    // patch, which takes a third longer.
-    const int high = options_.executor != nullptr ? kSharedPatch : kMaxBlock;
-    const int highest = std::min(y0 + std::max(high / blockSize_, 1), down_);
-    while (blocks.x1 < longest && waiting(blocks.x1, y0)) {
-        ++blocks.x1;
-    }
-    const auto sameRun = [&](int y) {
-        int x = x0;
-        while (x < blocks.x1 && waiting(x, y)) {
-            ++x;
-        }
-        return x == blocks.x1 && !waiting(x0 - 1, y) && (x == longest || !waiting(x, y));
-    };
-    do {
-        for (int x = x0; x < blocks.x1; ++x) {
-            waiting_[static_cast<std::size_t>(blocks.y1 * across_ + x)] = 0;
-        }
-        ++blocks.y1;
-    } while (blocks.y1 < highest && sameRun(blocks.y1));
-    return blocks;
-}
-
-void Erosion::markAroundMoved(const CellRect& blocks) {
-    const CellRect all{0, 0, across_, down_};
-    for (int y = blocks.y0; y < blocks.y1; ++y) {
-        const std::uint8_t* const flowed = movedNow_.data() + y * across_;
-        for (int x = blocks.x0; x < blocks.x1; ++x) {
-            const int first = x;
-            while (x < blocks.x1 && flowed[x] != 0) {
-                ++x;
-            }
-            if (x > first) {
-                // The fluxes of a block also change the blocks beyond its eastern and northern faces.
-                moved_.add(CellRect{first, y, x + 1, y + 1}.clippedTo(all));
-                moved_.add(CellRect{first, y, x, y + 2}.clippedTo(all));
-            }
-        }
-        markBeside(flowed, flow::kSouth, {blocks.x0, y - 1, blocks.x1, y});
-        markBeside(flowed, flow::kSomewhere, {blocks.x0, y, blocks.x1, y + 1});
-        markBeside(flowed, flow::kNorth, {blocks.x0, y + 1, blocks.x1, y + 2});
-    }
-}
-
-void Erosion::markBeside(const std::uint8_t* flowed, int side, const CellRect& row) {
-    const CellRect all{0, 0, across_, down_};
-    CellRect run;  // neighbouring blocks, as one rectangle
-    for (int x = row.x0; x < row.x1; ++x) {
-        if ((flowed[x] & side) == 0) {
-            continue;
-        }
-        const int first = x - ((flowed[x] & flow::kWest) != 0 ? 1 : 0);
-        const int end = x + 1 + ((flowed[x] & flow::kEast) != 0 ? 1 : 0);
-        if (run.empty() || first > run.x1) {
-            marked_.add(run.clippedTo(all));
-            run = {first, row.y0, end, row.y1};
-        }
-        run.x1 = end;
-    }
-    marked_.add(run.clippedTo(all));
 }
 
 std::vector<CellRect> Erosion::takeMoved() {

@@ -1,438 +1,216 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for every x86-64 and once for x86-64-v3, with -O3, because g++ 12 does not vectorise these loops at
-// -O2.
+// Compiled once per code path, with -O3, because g++ 12 does not vectorise these loops at -O2.
 #include "sand/grid/erosion_kernel.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
+
+#include "sand/grid/erosion_fluxes.hpp"
+#include "sand/grid/erosion_report.hpp"
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
 
-/// Buffer of one number per cell of a patch's row, and one more before and behind. It is left uninitialised, because
-/// rows are long.
-template <class Number>
-struct alignas(64) Row {
-    std::array<Number, kMaxPatch + 2 * kKernelMargin> values;
-    Number* data() { return values.data() + kKernelMargin; }
-};
+bool isOdd(int y) { return (y & 1) != 0; }
 
-// The functions are free, take restricted pointers, and get laws as copies. With members in reach, g++ keeps the loops
-// scalar.
-
-/// Scheme G with inertia. The flux of the last sweep continues. A slope above the threshold pushes it; a slope below
-/// the threshold brakes it. A flux never runs uphill, and never exceeds the share that all proofs need. The code
-/// compares squares of slopes, because a root would cost a quarter of the sweep.
-///
-/// With a band, a face whose two cells have no sliding sand carries no flux up to the start threshold. Its flux in the
-/// last sweep was 0, too.
-template <bool kWithBand>
-struct Inertial {
-    static constexpr bool kBand = kWithBand;
-
-    Inertial(const AxisLaw& law, float momentumNow)
-        : threshold(law.threshold * law.threshold),
-          startThreshold(law.startThreshold * law.startThreshold),
-          limit(law.limit),
-          push(law.push),
-          along(law.along),
-          momentum(momentumNow) {}
-
-    float threshold, startThreshold;  // [unit²]
-    float limit, push, along, momentum;
-
-    /// Returns the flux across a face. `sliding` joins the masks of the two cells.
-    std::int32_t operator()(std::int32_t difference, float alongSum, std::int32_t last, std::int32_t sliding) const {
-        const auto across = static_cast<float>(difference);
-        const float mean = along * alongSum;
-        // At least the smallest possible slope, because 0 · (threshold / 0) is not a number.
-        const float slope = std::max(across * across + mean * mean, 0.0625F);
-        const float driven = push * (1.0F - threshold / slope);
-        const float most = limit * across;
-        const float forth = std::max(most, 0.0F);
-        const float back = std::min(most, 0.0F);
-        // The flux that continues is limited first. Otherwise a flux that has just reversed would be 0 for one sweep,
-        // and a sweep could not skip a face without flux.
-        const float kept = std::min(std::max(momentum * static_cast<float>(last), back), forth);
-        const auto flux = static_cast<std::int32_t>(std::min(std::max(kept + driven * across, back), forth));
-        return kBand ? flux & (sliding | -static_cast<std::int32_t>(slope > startThreshold)) : flux;
-    }
-};
-
-/// The law without inertia. The slope across the face comes from its two cells. The slope along it is the mean of four
-/// differences.
-template <bool kWithBand>
-struct Isotropic {
-    static constexpr bool kBand = kWithBand;
-    AxisLaw axis;
-
-    std::int32_t operator()(std::int32_t difference, float along, std::int32_t, std::int32_t sliding) const {
-        const auto across = static_cast<float>(difference);
-        const float mean = axis.along * along;
-        const float slope = std::sqrt(across * across + mean * mean);
-        const float share = slope > axis.threshold ? axis.limit * (1.0F - axis.threshold / slope) : 0.0F;
-        const auto flux = static_cast<std::int32_t>(share * across);
-        return kBand ? flux & (sliding | -static_cast<std::int32_t>(slope > axis.startThreshold)) : flux;
-    }
-};
-
-/// Computes the differences for the slope along a face. A step counts at most the sand of its upper cell. Otherwise a
-/// bare cliff would make stable sand beside it slide.
-void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                     const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
-                     std::int32_t* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = std::max(std::min(a[i] - b[i], sandA[i]), -sandB[i]);
-    }
-}
-
-void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count, float* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = static_cast<float>(a[i] + b[i]);
-    }
-}
-
-/// Masks of sliding cells in two parallel runs of cells; null without a band.
-struct SlidingPair {
-    const Sliding* behind;
-    const Sliding* ahead;
-};
-
-template <class Law>
-std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
-    if constexpr (Law::kBand) {
-        return behind[i] | ahead[i];
-    }
-    return 0;
-}
-
-/// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` hold each cell's sum of two
-/// differences along the faces.
-template <class Law>
-void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                   const float* __restrict alongA, const float* __restrict alongB, const SlidingPair& sliding,
-                   int count, std::int32_t* __restrict flux) {
-    const Sliding* __restrict behind = sliding.behind;
-    const Sliding* __restrict ahead = sliding.ahead;
-    for (int i = 0; i < count; ++i) {
-        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i], eitherOf<Law>(behind, ahead, i));
-    }
-}
-
-/// Computes the fluxes from a row of cells to their eastern neighbours. `south` and `north` are the rows beside it.
-template <class Law>
-void eastwards(const Law law, const std::int32_t* __restrict south, const std::int32_t* __restrict row,
-               const std::int32_t* __restrict north, const SlidingPair& sliding, int count,
-               std::int32_t* __restrict flux) {
-    const Sliding* __restrict behind = sliding.behind;
-    const Sliding* __restrict ahead = sliding.ahead;
-    for (int i = 0; i < count; ++i) {
-        const auto here = static_cast<float>(north[i] - south[i]);
-        const auto there = static_cast<float>(north[i + 1] - south[i + 1]);
-        flux[i] = law(row[i] - row[i + 1], here + there, flux[i], eitherOf<Law>(behind, ahead, i));
-    }
-}
-
-/// Computes the fluxes from a row of cells to the row north of it.
-template <class Law>
-void northwards(const Law law, const std::int32_t* __restrict row, const std::int32_t* __restrict north,
-                const SlidingPair& sliding, int count, std::int32_t* __restrict flux) {
-    const Sliding* __restrict behind = sliding.behind;
-    const Sliding* __restrict ahead = sliding.ahead;
-    for (int i = 0; i < count; ++i) {
-        const auto here = static_cast<float>(row[i + 1] - row[i - 1]);
-        const auto there = static_cast<float>(north[i + 1] - north[i - 1]);
-        flux[i] = law(row[i] - north[i], here + there, flux[i], eitherOf<Law>(behind, ahead, i));
-    }
-}
-
-/// Limits each flux to the room of the cell that receives it.
-void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                 std::int32_t* __restrict flux) {
-    for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], ahead[i]), -behind[i]);
-    }
-}
-
-/// Limits each flux to a quarter of the sand in the cell that gives it. Its four faces then never take more than it
-/// has, so that the thickness never becomes negative.
-void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                 std::int32_t* __restrict flux) {
-    for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], behind[i] / 4), -(ahead[i] / 4));
-    }
-}
-
-/// Fluxes of one patch. With `kSandAlong`, the slope along a face counts only the sand and not the ground below it.
+/// The sweep of one run of blocks.
 template <class Law, bool kSandAlong>
-class Fluxes {
+class RunSweep {
 public:
-    Fluxes(const FluxPatch& patch, const Law& east, const Law& north)
-        : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
+    RunSweep(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& blocks, const Run& run, const Law& east,
+             const Law& north)
+        : sweep_(sweep), buffers_(buffers), blocks_(blocks), run_(run), eastLaw_(east), northLaw_(north) {}
 
-    std::int64_t run() {
-        if constexpr (kSandAlong) {
-            riseEast(patch_.cells.y0);
+    /// Sweeps the first cell row. Returns its outflow [unit · cell].
+    std::int64_t first() const {
+        const int y = blocks_.y0;
+        for (std::int32_t* const flowed : buffers_.flowed) {
+            std::fill(flowed + run_.x0, flowed + run_.x1, 0);
         }
-        if (patch_.cells.y0 == 0) {
-            rimNorth(-1);
+        if (Law::kBand && blocks_.slidingFirst == nullptr) {
+            // The walk has already swept the row below.
+            const std::int32_t* const south = y == 0 ? north(-1) : buffers_.before;
+            Sliding* const sliding = buffers_.sliding[isOdd(y)];
+            markRow(east(y) + run_.x0, south + run_.x0, north(y) + run_.x0, run_.x1 - run_.x0, sliding + run_.x0);
+            sliding[run_.x1] = 0;  // this cell rests
         }
-        for (int y = patch_.cells.y0; y < patch_.cells.y1; ++y) {
-            y == patch_.rows - 1 ? rimNorth(y) : northFluxes(y);
-            eastFluxes(y);
+        return sweepRow(y);
+    }
+
+    /// Sweeps all other cell rows. Returns their outflow [unit · cell].
+    std::int64_t rest() const {
+        std::int64_t outflow = 0;
+        for (int y = blocks_.y0 + 1; y < blocks_.y1; ++y) {
+            outflow += sweepRow(y);
         }
-        return outflow_;
+        return outflow;
     }
 
 private:
-    /// Returns a pointer to the patch's first cell in row y.
-    [[nodiscard]] const std::int32_t* heights(int y) const {
-        return patch_.heights + (y - patch_.cells.y0) * patch_.heightStride;
-    }
-    [[nodiscard]] std::int32_t* east(int y) const { return patch_.east + y * patch_.fluxStride + patch_.cells.x0; }
-    [[nodiscard]] std::int32_t* north(int y) const { return patch_.north + y * patch_.fluxStride + patch_.cells.x0; }
-    /// Returns a pointer to the cell that is `ahead` cells after the patch's first cell in row y; null without a band.
-    [[nodiscard]] const Sliding* sliding(int y, int ahead = 0) const {
-        return Law::kBand ? patch_.sliding + y * patch_.slidingStride + patch_.cells.x0 + ahead : nullptr;
-    }
-    /// Returns a pointer to the patch's first cell in row y of `room` or `sand`.
-    [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
-        return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
+    [[nodiscard]] std::int32_t* field(int y) const { return sweep_.heights + y * sweep_.heightStride; }
+    [[nodiscard]] std::int32_t* east(int y) const { return sweep_.east + y * sweep_.fluxStride; }
+    [[nodiscard]] std::int32_t* north(int y) const { return sweep_.north + y * sweep_.fluxStride; }
+    /// Returns whether row y is balanced as soon as its fluxes are known.
+    [[nodiscard]] bool balances(int y) const { return y + 1 < blocks_.y1 && !(blocks_.keepsFirst && y == blocks_.y0); }
+    /// Returns the heights of row y from before the sweep, which has perhaps balanced this row.
+    [[nodiscard]] const std::int32_t* oldHeights(int y) const {
+        return y >= blocks_.y0 && balances(y) ? buffers_.old[y % 3] : field(y);
     }
 
-    /// Computes for each cell of row y how much higher its eastern neighbour is than its western one, counting only
-    /// sand.
-    void riseEast(int y) {
-        const std::int32_t* sand = held(patch_.sand, y) - 1;
-        sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
-        sums(steps_[0].data(), steps_[0].data() + 1, width_, riseEast_[static_cast<unsigned>(y) % 2].data());
-    }
-    /// Computes for each cell of row y, and for one more, how much higher its northern neighbour is than its southern
-    /// one, counting only sand.
-    void riseNorth(int y) {
-        const int count = width_ + 1;
-        const std::int32_t* sand = held(patch_.sand, y);
-        const int up = width_ + 2;
-        sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
-        sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
-        sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
-    }
-
-    /// Limits the fluxes from the cells of row y to the cells that are `ahead` places further in `room` and `sand`.
-    void hold(int y, int ahead, std::int32_t* flux) const {
-        if (patch_.room != nullptr) {
-            limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, width_, flux);
+    [[nodiscard]] CellRow rowAt(int y) const {
+        CellRow row{.y = y,
+                    .south = oldHeights(y - 1),
+                    .here = oldHeights(y),
+                    .north = field(y + 1),
+                    .sliding = buffers_.sliding[isOdd(y)],
+                    .slidingAbove = buffers_.sliding[isOdd(y + 1)],
+                    .room = nullptr,
+                    .sand = nullptr,
+                    .limitStride = run_.x1 - run_.x0 + 2,
+                    .rise = buffers_.rise[isOdd(y)],
+                    .riseAbove = buffers_.rise[isOdd(y + 1)],
+                    .oldAbove = buffers_.old[(y + 1) % 3]};
+        if (y == blocks_.y0 && blocks_.slidingFirst != nullptr) {
+            row.sliding = blocks_.slidingFirst;
         }
-        if (patch_.sand != nullptr) {
-            limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, width_, flux);
+        if (y + 1 == blocks_.y1 && blocks_.slidingAbove != nullptr) {
+            row.slidingAbove = blocks_.slidingAbove;
         }
-    }
-
-    /// Computes the fluxes from row y to row y + 1.
-    void northFluxes(int y) {
+        const std::ptrdiff_t limits = (y - blocks_.y0 + 1) * row.limitStride + 1 - run_.x0;
+        row.room = run_.room != nullptr ? run_.room + limits : nullptr;
         if constexpr (kSandAlong) {
-            riseEast(y + 1);
-            fluxesBetween(northLaw_, heights(y), heights(y + 1), riseEast_[static_cast<unsigned>(y) % 2].data(),
-                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), {sliding(y), sliding(y + 1)}, width_,
-                          north(y));
-        } else {
-            northwards(northLaw_, heights(y), heights(y + 1), {sliding(y), sliding(y + 1)}, width_, north(y));
+            row.sand = run_.sand + limits;
+            row.here = run_.heights + limits;
+            row.south = row.here - row.limitStride;
+            row.north = row.here + row.limitStride;
         }
-        hold(y, width_ + 2, north(y));
+        return row;
     }
 
-    /// Computes the fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
-    void eastFluxes(int y) {
-        std::int32_t* flux = east(y);
-        // The face at the rim is computed like the others and corrected below. A row whose number of faces is a
-        // multiple of eight then has no remainder, which would take longer than all other faces.
-        const std::int32_t lastAtRim = flux[width_ - 1];
-        if constexpr (kSandAlong) {
-            riseNorth(y);
-            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1,
-                          {sliding(y), sliding(y, 1)}, width_, flux);
-        } else {
-            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), {sliding(y), sliding(y, 1)}, width_, flux);
+    std::int64_t sweepRow(int y) const {
+        const CellRow row = rowAt(y);
+        if (!kSandAlong && balances(y)) {
+            keepOldHeights(y);
         }
-        hold(y, 1, flux);
-        if (patch_.openRim && patch_.cells.x0 == 0) {
-            flux[-1] = -overRim(eastLaw_, y, 0, riseNorthOf(y, 0), -flux[-1]);
+        std::int64_t outflow = 0;
+        for (int from = run_.x0; from < run_.x1; from += kPiece) {
+            const int end = std::min(from + kPiece, run_.x1);
+            if constexpr (Law::kBand) {
+                markAbove(y, from, end);
+            }
+            outflow +=
+                PieceFluxes<Law, kSandAlong>(sweep_, eastLaw_, northLaw_, row, from, end).compute(y == blocks_.y0);
+            useFluxes(y, from, end);
         }
-        if (patch_.cells.x1 == patch_.columns) {
-            const int last = width_ - 1;
-            flux[last] = patch_.openRim ? overRim(eastLaw_, y, last, riseNorthOf(y, last), lastAtRim) : 0;
-        }
+        return outflow;
     }
 
-    void rimNorth(int y) {
-        if (!patch_.openRim) {
+    /// Keeps the heights of row y in a buffer. Those of the run's cells are there already, except in the first row.
+    void keepOldHeights(int y) const {
+        std::int32_t* const old = buffers_.old[y % 3];
+        if (y == blocks_.y0) {
+            std::copy(field(y) + run_.x0, field(y) + run_.x1, old + run_.x0);
+        }
+        old[run_.x0 - 1] = field(y)[run_.x0 - 1];
+        old[run_.x1] = field(y)[run_.x1];
+    }
+
+    /// Marks the sliding cells of row y + 1. The fluxes of row y must still be those of the last sweep.
+    void markAbove(int y, int from, int end) const {
+        if (y + 1 == sweep_.rows) {
             return;
         }
-        const int inner = std::max(y, 0);
-        std::int32_t* flux = north(y);
-        for (int i = 0; i < width_; ++i) {
-            const float along = riseEastOf(inner, i);
-            flux[i] =
-                y < 0 ? -overRim(northLaw_, inner, i, along, -flux[i]) : overRim(northLaw_, inner, i, along, flux[i]);
+        if (y + 1 == blocks_.y1) {
+            std::copy(north(y) + from, north(y) + end, buffers_.before + from);
+            if (blocks_.slidingAbove != nullptr) {
+                return;
+            }
         }
+        Sliding* const sliding = buffers_.sliding[isOdd(y + 1)];
+        markRow(east(y + 1) + from, north(y) + from, north(y + 1) + from, end - from, sliding + from);
+        sliding[run_.x1] = 0;
     }
 
-    /// Returns for one cell the number that riseEast() computes for all cells of a row.
-    [[nodiscard]] float riseEastOf(int y, int i) const {
-        if constexpr (kSandAlong) {
-            return riseEast_[static_cast<unsigned>(y) % 2].values[static_cast<unsigned>(i + kKernelMargin)];
+    /// Records where sand flows, and balances the row if nothing else needs its old heights.
+    void useFluxes(int y, int from, int end) const {
+        std::int32_t* const flowed = buffers_.flowed[y == blocks_.y0 ? 0 : y >= blocks_.y1 - 2 ? 2 : 1];
+        if (balances(y)) {
+            addUpAndRecord(east(y) + from, north(y - 1) + from, north(y) + from, end - from, field(y) + from,
+                           flowed + from);
         } else {
-            return static_cast<float>(heights(y)[i + 1] - heights(y)[i - 1]);
+            record(east(y) + from, north(y) + from, end - from, flowed + from);
         }
-    }
-    /// Returns for one cell the number that riseNorth() computes for all cells of a row.
-    [[nodiscard]] float riseNorthOf(int y, int i) const {
-        if constexpr (kSandAlong) {
-            return riseNorth_[static_cast<unsigned>(i)];
-        } else {
-            return static_cast<float>(heights(y + 1)[i] - heights(y - 1)[i]);
+        if (from == 0) {
+            flowed[0] |= east(y)[-1];
+        }
+        if (y == 0) {  // the faces at the southern rim are not northern faces of any cell
+            for (int x = from; x < end; ++x) {
+                buffers_.flowed[1][x] |= north(-1)[x];
+            }
         }
     }
 
-    /// Returns the flux over an open rim, where sand falls to height 0 and never comes back. `rise` is the difference
-    /// along the rim beside the cell.
-    std::int32_t overRim(const Law& law, int y, int i, float rise, std::int32_t last) {
-        const std::int32_t slides = Law::kBand ? sliding(y)[i] : 0;
-        std::int32_t flux = std::max(law(heights(y)[i], 2 * rise, last, slides), 0);
-        if (patch_.sand != nullptr) {
-            flux = std::min(flux, held(patch_.sand, y)[i] / 4);
-        }
-        outflow_ += flux;
-        return flux;
-    }
-
-    const FluxPatch& patch_;
+    const Sweep& sweep_;
+    const RowBuffers& buffers_;
+    const BlockRow& blocks_;
+    const Run& run_;
     const Law eastLaw_, northLaw_;
-    const int width_;
-    std::int64_t outflow_ = 0;
-    // Numbers for even and odd rows. The arrays are empty if slopes are taken from the heights themselves.
-    std::array<Row<float>, kSandAlong ? 2 : 0> riseEast_;
-    std::array<Row<std::int32_t>, kSandAlong ? 2 : 0> steps_;
-    std::array<float, kSandAlong ? kMaxPatch + 2 * kKernelMargin : 0> riseNorth_;
 };
 
+/// Calls task(run sweep) for each run, with the fastest sweep that the run allows.
+template <class Law, class Task>
+void forEachRun(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row, const Law& east, const Law& north,
+                const Task& task) {
+    for (const Run& run : row.runs) {
+        run.sand != nullptr ? task(RunSweep<Law, true>(sweep, buffers, row, run, east, north))
+                            : task(RunSweep<Law, false>(sweep, buffers, row, run, east, north));
+    }
+}
+
 template <class Law>
-std::int64_t run(const FluxPatch& patch, const Law& east, const Law& north) {
-    return patch.sand != nullptr ? Fluxes<Law, true>(patch, east, north).run()
-                                 : Fluxes<Law, false>(patch, east, north).run();
+std::int64_t walkWith(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row, const Law& east,
+                      const Law& north) {
+    std::int64_t outflow = 0;
+    forEachRun(sweep, buffers, row, east, north, [&](const auto& run) { outflow += run.first(); });
+    balance(sweep, &buffers, row.below, row.y0 - 1);
+    forEachRun(sweep, buffers, row, east, north, [&](const auto& run) { outflow += run.rest(); });
+    for (const Run& run : row.runs) {
+        reportFlow(sweep, buffers, row, run);
+    }
+    return outflow;
 }
 
 template <bool kBand>
-std::int64_t runWithBand(const FluxPatch& patch) {
-    if (!patch.inertial) {
+std::int64_t walkWithBand(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row) {
+    if (!sweep.inertial) {
         using Law = Isotropic<kBand>;
-        return run(patch, Law{patch.eastLaw}, Law{patch.northLaw});
+        return walkWith(sweep, buffers, row, Law{sweep.eastLaw}, Law{sweep.northLaw});
     }
     using Law = Inertial<kBand>;
-    return run(patch, Law(patch.eastLaw, patch.momentum), Law(patch.northLaw, patch.momentum));
-}
-
-/// Adds the fluxes to the heights of a row. `moved` collects in each column the bits of all rows in which sand flows.
-/// Blocks are then inspected once, not once per row.
-void addUp(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
-           const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
-           std::int32_t* __restrict moved) {
-    for (int i = 0; i < count; ++i) {
-        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
-        moved[i] |= (east[i] | north[i]) != 0 ? ofRow : 0;
-    }
-}
-
-/// Adds the fluxes to the heights of a row like addUp(), and marks where sand slid. Only a band needs the marks.
-void addUpAndMark(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
-                  const std::int32_t* __restrict north, int count, std::int32_t ofRow, std::int32_t* __restrict heights,
-                  std::int32_t* __restrict moved, Sliding* __restrict sliding) {
-    for (int i = 0; i < count; ++i) {
-        heights[i] += east[i - 1] - east[i] + south[i] - north[i];
-        const std::int32_t own = east[i] | north[i];
-        moved[i] |= own != 0 ? ofRow : 0;
-        sliding[i] = (own | east[i - 1] | south[i]) != 0 ? -1 : 0;
-    }
-}
-
-void markRow(const std::int32_t* __restrict east, const std::int32_t* __restrict south,
-             const std::int32_t* __restrict north, int count, Sliding* __restrict sliding) {
-    for (int i = 0; i < count; ++i) {
-        sliding[i] = (east[i - 1] | east[i] | south[i] | north[i]) != 0 ? -1 : 0;
-    }
-}
-
-void markRow(const BalancePatch& patch, int y) {
-    const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-    markRow(patch.east + flux, patch.north + flux - patch.fluxStride, patch.north + flux,
-            patch.cells.x1 - patch.cells.x0, patch.sliding + y * patch.slidingStride + patch.cells.x0);
-}
-
-/// Returns the bits of `flow` for a row in which sand flows, in a block of rows [first, end).
-std::int32_t flowIn(int row, int first, int end) {
-    return flow::kSomewhere | (row == first ? flow::kSouth : 0) | (row >= end - 2 ? flow::kNorth : 0);
-}
-
-/// Writes where sand flows in each block of a row of blocks, and clears `moved` for the next row of blocks.
-void reportMoved(const BalancePatch& patch, int blockRow, Row<std::int32_t>& moved) {
-    const int width = patch.cells.x1 - patch.cells.x0;
-    std::uint8_t* flags = patch.moved + blockRow * patch.blocksAcross;
-    for (int x = 0; x < width; x += patch.blockSize) {
-        const std::int32_t* const column = moved.data() + x;
-        const int count = std::min(patch.blockSize, width - x);
-        std::int32_t bits = 0;
-        for (int i = 0; i < count; ++i) {
-            bits |= column[i];
-        }
-        bits |= column[0] != 0 ? flow::kWest : 0;
-        bits |= (column[count - 1] | column[std::max(count - 2, 0)]) != 0 ? flow::kEast : 0;
-        *flags++ = static_cast<std::uint8_t>(bits);
-    }
-    std::fill_n(moved.data(), width, 0);
+    return walkWith(sweep, buffers, row, Law(sweep.eastLaw, sweep.momentum), Law(sweep.northLaw, sweep.momentum));
 }
 
 }  // namespace
 
-std::int64_t sweepFluxes(const FluxPatch& patch) {
-    return patch.sliding != nullptr ? runWithBand<true>(patch) : runWithBand<false>(patch);
+std::int64_t walk(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row) {
+    return sweep.band ? walkWithBand<true>(sweep, buffers, row) : walkWithBand<false>(sweep, buffers, row);
 }
 
-void markSliding(const BalancePatch& patch) {
-    for (int y = patch.cells.y0; y < patch.cells.y1; ++y) {
-        markRow(patch, y);
-    }
-}
-
-void balance(const BalancePatch& patch) {
-    const int width = patch.cells.x1 - patch.cells.x0;
-    Row<std::int32_t> moved;
-    std::fill_n(moved.data(), width, 0);
-    if (patch.cells.y0 == 0) {  // the faces at the southern rim are not northern faces of any cell
-        const std::int32_t* south = patch.north - patch.fluxStride + patch.cells.x0;
-        std::transform(south, south + width, moved.data(), [](int flux) { return flux != 0 ? flow::kSomewhere : 0; });
-    }
-    int blockRow = 0;
-    for (int y = patch.cells.y0; y < patch.cells.y1; ++blockRow) {
-        const int first = y, end = std::min(y + patch.blockSize, patch.cells.y1);
-        for (; y < end; ++y) {
-            const std::int32_t ofRow = flowIn(y, first, end);
-            const std::ptrdiff_t flux = y * patch.fluxStride + patch.cells.x0;
-            const std::int32_t* const east = patch.east + flux;
-            const std::int32_t* const north = patch.north + flux;
-            const std::int32_t* const south = north - patch.fluxStride;
-            std::int32_t* const heights = patch.heights + y * patch.heightStride + patch.cells.x0;
-            if (patch.sliding != nullptr) {
-                Sliding* const sliding = patch.sliding + y * patch.slidingStride + patch.cells.x0;
-                addUpAndMark(east, south, north, width, ofRow, heights, moved.data(), sliding);
-            } else {
-                addUp(east, south, north, width, ofRow, heights, moved.data());
-            }
-            if (patch.cells.x0 == 0) {
-                moved.data()[0] |= patch.east[flux - 1] != 0 ? ofRow : 0;
-            }
+void balance(const Sweep& sweep, const RowBuffers* buffers, std::span<const Run> runs, int y) {
+    for (const Run& run : runs) {
+        const std::ptrdiff_t flux = y * sweep.fluxStride + run.x0;
+        addUp(sweep.east + flux, sweep.north + flux - sweep.fluxStride, sweep.north + flux, run.x1 - run.x0,
+              sweep.heights + y * sweep.heightStride + run.x0);
+        if (buffers != nullptr && sweep.band) {
+            std::fill(buffers->before + run.x0, buffers->before + run.x1, 0);
         }
-        reportMoved(patch, blockRow, moved);
+    }
+}
+
+void markSliding(const Sweep& sweep, std::span<const Run> runs, int y, Sliding* sliding) {
+    for (const Run& run : runs) {
+        const std::ptrdiff_t flux = y * sweep.fluxStride + run.x0;
+        markRow(sweep.east + flux, sweep.north + flux - sweep.fluxStride, sweep.north + flux, run.x1 - run.x0,
+                sliding + run.x0);
     }
 }
 

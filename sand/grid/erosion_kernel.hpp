@@ -4,18 +4,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "sand/model/cell_array.hpp"
 
 namespace sand::grid {
 
-inline constexpr int kMaxBlock = 128;    // [cell], side of the largest block
-inline constexpr int kMaxPatch = 512;    // [cell], longest row that a kernel handles at once
-inline constexpr int kKernelMargin = 8;  // [cell], width of the margin that a kernel may read around its cells
+inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
 
 /// Mask of ones if sand slid in a cell, or 0 if it did not. Sand slid in a cell if some flowed through one of its faces
-/// in the last sweep. The mask is as wide as a height. With narrower masks, g++ compiles the loop for 32 cells at once,
-/// and patches are often 8 cells wide.
+/// in the last sweep. The mask is as wide as a height, so that a vector holds as many masks as heights.
 using Sliding = std::int32_t;
 
 /// Constants of the isotropic law for the faces across one axis. sand/grid/erosion.hpp states the law.
@@ -26,64 +24,75 @@ struct AxisLaw {
     float along;  // factor from the sum of four differences along the face to their mean, in the unit across it
 };
 
-/// Fluxes of one sweep through the faces of a patch. A patch is a rectangle of whole blocks. Its faces are the eastern
-/// and northern faces of its cells, and the faces at the field's western or southern rim if it lies there. A kernel
-/// handles a whole patch at once, because the ends of a row need work that cannot be done eight cells at a time.
-struct FluxPatch {
-    const std::int32_t* heights;  // at the patch's first cell; read up to one cell beyond the patch on every side
+/// Run of active blocks: those of one row of blocks that touch each other. Two runs of a row of blocks have a block at
+/// rest between them, which is at least two cells wide. So neither reads a number that the other one writes.
+struct Run {
+    int x0, x1;  // columns of its cells
+    // Limits over its cells and one more cell on every side, row by row; null without limits.
+    const std::int32_t* heights;  // [unit], heights before the sweep with walls raised; only with a ground
+    const std::int32_t* sand;     // thickness of the sand [unit]; a face gives at most a quarter; only with a ground
+    const std::int32_t* room;     // most that each cell may receive through one face [unit]
+};
+
+/// Numbers of one cell row that a walk hands on to its next row. Each pointer is at column 0 of a row as long as the
+/// field's, with a margin.
+struct RowBuffers {
+    std::int32_t* old[3];     // heights before the sweep; row y is in old[y % 3] [unit]
+    std::int32_t* rise[2];    // sand that each cell's eastern neighbour is higher than its western one [unit]
+    Sliding* sliding[2];      // of an even and an odd row
+    std::int32_t* before;     // last sweep's fluxes to the north of the row below the run; 0 where no run is below
+    std::int32_t* flowed[3];  // not 0 where sand flows: in a block's first row, between, and in its last two rows
+    Sliding* slidingAtStart;  // of the first cell row of a strip that has a strip below it; 0 outside its runs
+};
+
+/// One sweep over a field. Pointers are at cell (0,0).
+struct Sweep {
+    std::int32_t* heights;        // [unit]
     std::ptrdiff_t heightStride;  // [cell]
-    std::int32_t* east;           // at cell (0,0) of the field: flux to the eastern neighbour [unit]
-    std::int32_t* north;  // flux to the northern neighbour [unit]; the last sweep's before the call, then this sweep's
-    std::ptrdiff_t fluxStride;  // [cell]
-    CellRect cells;             // cells of the patch, at most kMaxPatch wide
-    int columns, rows;          // size of the field [cell]
+    std::int32_t* east;           // flux to the eastern neighbour [unit]: the last sweep's before, then this sweep's
+    std::int32_t* north;          // flux to the northern neighbour [unit]
+    std::ptrdiff_t fluxStride;    // [cell]
+    int columns, rows;            // size of the field [cell]
+    int blockSize;                // [cell]
     AxisLaw eastLaw, northLaw;
     float momentum;  // share of the last sweep's flux that continues
     bool inertial;   // whether the law has inertia; false for plain G
+    bool band;       // whether sand starts to slide beyond a higher threshold than the one at which it stops
     bool openRim;
-    const Sliding* sliding;        // at cell (0,0) of the field, with ghost cells around; null without a band
-    std::ptrdiff_t slidingStride;  // [cell]
-    // Limits over `cells` and one more cell on every side, row by row; null without limits.
-    const std::int32_t* room;  // most that each cell may receive through one face [unit]
-    const std::int32_t* sand;  // thickness of the sand in each cell [unit]; a face gives at most a quarter
+    std::uint8_t* flowed;         // bits of `flow` of block (0,0)
+    std::ptrdiff_t flowedStride;  // [block]
 };
 
-/// Bits that record where in a block sand flows. A block owns the eastern and northern faces of its cells. A face
-/// changes two heights. The fluxes of a block depend on its heights and on those one cell around it. If no sand flows
-/// near a side of a block, the block beyond that side therefore does not change.
-namespace flow {
-inline constexpr int kSomewhere = 1;
-inline constexpr int kWest = 2, kSouth = 4;   // in the block's first column or row
-inline constexpr int kEast = 8, kNorth = 16;  // in the block's last two columns or rows
-}  // namespace flow
-
-/// Change of a patch's heights by the fluxes of a sweep.
-struct BalancePatch {
-    std::int32_t* heights;  // at cell (0,0) of the field [unit]
-    std::ptrdiff_t heightStride;
-    const std::int32_t* east;  // fluxes at cell (0,0) of the field [unit], see FluxPatch
-    const std::int32_t* north;
-    std::ptrdiff_t fluxStride;
-    Sliding* sliding;  // at cell (0,0) of the field; receives where these fluxes slid; null without a band
-    std::ptrdiff_t slidingStride;
-    CellRect cells;
-    int blockSize;        // [cell]
-    std::uint8_t* moved;  // receives the bits of `flow`, beginning with the patch's first block
-    int blocksAcross;     // distance from a block's `moved` to that of the block north of it
+/// Row of blocks with its active runs, in cells.
+struct BlockRow {
+    int y0, y1;                  // cell rows of these blocks
+    std::span<const Run> runs;   // from west to east
+    std::span<const Run> below;  // of the row of blocks below, if this walk sweeps it and has not balanced its last row
+    bool keepsFirst;             // whether row y0 keeps its old heights, because a strip below reads them
+    // Masks of sliding cells that other strips would overwrite; null if the walk makes them itself.
+    const Sliding* slidingFirst;  // of row y0
+    const Sliding* slidingAbove;  // of row y1
 };
 
-// These functions are compiled twice from one source (sand/CMakeLists.txt). Both versions return the same heights bit
-// for bit. sweepFluxes() returns the outflow over an open rim [unit · cell]. markSliding() does only that part of
-// balance().
-namespace baseline {
-std::int64_t sweepFluxes(const FluxPatch& patch);
-void balance(const BalancePatch& patch);
-void markSliding(const BalancePatch& patch);
-}  // namespace baseline
-namespace v3 {
-std::int64_t sweepFluxes(const FluxPatch& patch);
-void balance(const BalancePatch& patch);
-void markSliding(const BalancePatch& patch);
-}  // namespace v3
+// These functions are compiled once per code path (sand/CMakeLists.txt). All versions return the same heights bit for
+// bit.
+//
+// A sweep walks over the rows of blocks from south to north. walk() sweeps one of them. It computes the fluxes of its
+// first cell row, and balances the last cell row of the runs below. Then it computes and balances the other cell rows.
+// So a cell row keeps its old heights until all fluxes that depend on them are known. The last cell row stays for the
+// next row of blocks; if that one has no runs, call balance(). Returns the outflow over an open rim [unit · cell].
+//
+// balance() applies the fluxes of one cell row to its heights. With buffers, also clears what they hold of the last row
+// of these runs. markSliding() writes where sand slid in one cell row before the sweep.
+#define SANDWALL_DECLARE_KERNEL(path)                                                              \
+    namespace path {                                                                               \
+    std::int64_t walk(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row);         \
+    void balance(const Sweep& sweep, const RowBuffers* buffers, std::span<const Run> runs, int y); \
+    void markSliding(const Sweep& sweep, std::span<const Run> runs, int y, Sliding* sliding);      \
+    }
+SANDWALL_DECLARE_KERNEL(baseline)
+SANDWALL_DECLARE_KERNEL(v3)
+SANDWALL_DECLARE_KERNEL(v4)
+#undef SANDWALL_DECLARE_KERNEL
 
 }  // namespace sand::grid

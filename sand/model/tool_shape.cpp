@@ -64,8 +64,8 @@ void TurnedShape::undersides(std::int32_t z, const Offset& first, std::span<std:
                               .first = first.x,
                               .centre = std::int64_t{z} * kUnitsPerProbe,
                               .count = static_cast<int>(row.size())};
-        path_ == base::CodePath::v3 ? v3::undersidesOfSphere(cells, row.data())
-                                    : baseline::undersidesOfSphere(cells, row.data());
+        path_ != base::CodePath::baseline ? v3::undersidesOfSphere(cells, row.data())
+                                          : baseline::undersidesOfSphere(cells, row.data());
         return;
     }
     Offset offset = first;

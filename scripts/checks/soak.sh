@@ -22,7 +22,7 @@ cmake --build build/release --target sand_soak
 soak=build/release/bin/sand_soak
 
 one=$("$soak" --edits "$edits" --threads 1 --block 64)
-other=$("$soak" --edits "$edits" --threads 3 --block 16 --baseline)
+other=$("$soak" --edits "$edits" --threads 3 --block 16 --path baseline)
 echo "$edits edits, 1 thread,  blocks of 64, fastest code path:  $one"
 echo "$edits edits, 3 threads, blocks of 16, baseline code path: $other"
 [[ $one == "$other" ]] || { echo "soak.sh: the hashes differ" >&2; exit 1; }

@@ -24,7 +24,7 @@ def benchmark(program, pattern):
                "--benchmark_repetitions=5", "--benchmark_report_aggregates_only=true"]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
     results = json.loads(output)["benchmarks"]
-    return {r["run_name"]: r for r in results if r["aggregate_name"] == "median"}
+    return {r["run_name"].split("/iterations:")[0]: r for r in results if r["aggregate_name"] == "median"}
 
 
 def micro(result):
@@ -40,7 +40,7 @@ def processor():
 
 
 def sand_rows():
-    sand = benchmark("sand_bench", "sweep/G/512|sweep/G_baseline/512|memcpy/512|dig|idle")
+    sand = benchmark("sand_bench", "sweep/G/512|sweep/G_baseline/512|memcpy/512|dig/(paper_tool|tool_of_12_cells)/|idle")
     sweep, copy = sand["sweep/G/512"]["ns_per_cell"], sand["memcpy/512"]["ns_per_cell"]
     baseline = sand["sweep/G_baseline/512"]["ns_per_cell"]
     yield f"G sweep at 512², {sand['sweep/G/512']['label']}", f"{sweep:.2f} ns per cell", f"{sweep / copy:.1f} × memcpy of the same bytes ({copy:.3f} ns)"

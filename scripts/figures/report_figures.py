@@ -228,8 +228,9 @@ def throughput(table):
     figure, axes = panels(1, 4.2)
     axis = axes[0]
     colours = {"copy": "#000000", "G": "#0072B2", "G plain": "#56B4E9", "G baseline x86-64": "#009E73",
-               "float32 N4 in place": "#D55E00", "float32 N4 Jacobi": "#CC79A7", "float32 N8 sqrt2 Jacobi": "#777777"}
-    for variant, marker in zip(table.distinct("variant"), MARKERS * 2):
+               "float32 N4 in place": "#D55E00", "float32 N4 Jacobi": "#CC79A7", "float32 N8 sqrt2 Jacobi": "#777777",
+               "G band": "#E69F00", "G lumps": "#882255", "G lumps band": "#F0E442", "loop": "#BBBBBB"}
+    for variant, marker in zip(table.distinct("variant"), MARKERS * 4):
         rows = table.where(variant=variant)
         axis.plot([row["N"] for row in rows], [row["ns_per_cell_median"] for row in rows], marker=marker, label=variant,
                   color=colours.get(variant, "#0072B2"), linestyle=":" if "threads" in variant else "-")

@@ -193,10 +193,11 @@ def throughput(tables):
     size = 512 if 512 in table.distinct("N") else table.distinct("N")[-1]
     lines = [[v, f"{table.one('ns_per_cell_median', variant=v, N=size):.2f}",
               f"{table.one('times_copy', variant=v, N=size):.1f}"] for v in table.distinct("variant")]
-    return ("In this field everything moves. With several threads the times are wall time. *copy* reads and writes one number "
-            "per cell in the same run: it is the memory's roofline. Sweeps compute square roots, and are far from it. Threads "
-            "help from about N = 256 on, and only if their cores are idle. On a shared machine the cores were not always "
-            f"idle. At N = {size}:\n\n" +
+    return ("In this field everything moves, except in the rows *lumps*: there one lump per 128 × 128 cells slides, and the "
+            "time is that per cell of the whole field. With several threads the times are wall time. *copy* reads and writes one "
+            "number per cell in the same run: it is the memory's roofline. *loop* computes one random number per cell without "
+            "memory: so much can threads gain on this machine. Threads help from about N = 256 on, and only if their cores are "
+            f"idle. On a shared machine the cores were not always idle. At N = {size}:\n\n" +
             markdown(["variant", "ns per cell", "times the copy"], lines))
 
 

@@ -84,7 +84,7 @@ TEST(Baselines, MoveTheSharesOfTheirRules) {
 }
 
 TEST(Baselines, AreTheSameInBothInstructionSets) {
-    if (!base::machineHasV3()) {
+    if (!base::machineHas(base::CodePath::v3)) {
         GTEST_SKIP() << "this machine has no x86-64-v3";
     }
     for (const BaselineScheme scheme : kAll) {
@@ -113,7 +113,7 @@ TEST(Baselines, IntegerN4GivesWhatPlainSweepsGive) {
         sand::HeightField expected = start;
         const sand::grid::NetFlux expectedFlux =
             reference::relax(expected, sand::kUnitsPerCell, reference::FourNeighbours());
-        for (const base::CodePath path : {base::CodePath::baseline, base::fastestCodePath()}) {
+        for (const base::CodePath path : base::codePathsHere()) {
             bench::IntegerN4 n4(start, bench::rulesFor(start), path);
             sand::grid::NetFlux flux(columns, rows);
             for (int sweep = 0; sweep < 100000 && !n4.atRest(); ++sweep) {

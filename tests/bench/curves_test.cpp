@@ -129,6 +129,8 @@ TEST(SandwallBench, RefusesInOneLineWhatItCannotDo) {
              {"rest --runs 0", "--runs"},
              {"rest --seed -1", "--seed"},
              {"rest --sizes 16 --out /nowhere/rest.csv", "/nowhere/rest.csv"},
+             {"throughput --path x86-64-v9", "x86-64-v4"},
+             {"throughput --rows G,H", "there is no \"H\"; choose from copy, G, "},
              {"explain", "SCENE"},
              {"explain nowhere.toml", "nowhere.toml"},
              {"explain nowhere.toml --sizes 16", "--sizes"}}) {

@@ -61,15 +61,15 @@ std::size_t firstDifference(const std::vector<std::uint64_t>& hashes) {
 /// Returns the first edit after which ranks differ, or 0. `all` becomes a hash over all hashes.
 std::uint64_t editAll(int rank, std::string_view kind, std::uint64_t& all) {
     const auto way = static_cast<std::size_t>(rank);
+    const std::vector<base::CodePath> paths = base::codePathsHere();
     host::WorkerPool team(kThreads.at(way % kThreads.size()));
     const scene::Scene scene = kind == "tin" ? smallTin() : smallScene();
     const bool wild = !kind.empty();
-    sand::Replica replica =
-        kind == "tin"
-            ? sand::Replica(scene, team.lend())
-            : samples::replicaSwept(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
-                                            .path = way % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline,
-                                            .executor = team.lend()});
+    sand::Replica replica = kind == "tin"
+                                ? sand::Replica(scene, team.lend())
+                                : samples::replicaSwept(scene, {.blockSize = kBlocks.at(way % kBlocks.size()),
+                                                                .path = paths.at(way / kThreads.size() % paths.size()),
+                                                                .executor = team.lend()});
     std::mt19937 random(53);
     for (std::uint64_t before = 0; before < (wild ? kWildEdits : kEdits); before += kTogether) {
         std::vector<std::uint64_t> hashes;

@@ -20,8 +20,9 @@ void expectHash(std::initializer_list<int> numbersOfRanks, const std::string& ar
     }
 }
 
-// Rank r sweeps with 1, 2, 3 or 7 threads, in blocks of 16, 32 or 64 cells, on one of two code paths. Twelve ranks have
-// every combination. One, two and four ranks show that the sand does not depend on the number of ranks.
+// Rank r sweeps with 1, 2, 3 or 7 threads, in blocks of 16, 32 or 64 cells, on one of up to three code paths.
+// Twelve ranks have each number of threads with each size of block and with each path. One, two and four ranks show
+// that the sand does not depend on the number of ranks.
 TEST(Edits, TenThousandHashAlikeOnOneTwoFourAndTwelveRanks) { expectHash({1, 2, 4, 12}, "", kOfSpheres); }
 TEST(Edits, WithEveryToolHashAlikeOnFourRanks) { expectHash({4}, "tools", kOfEveryTool); }
 TEST(Edits, OfATinHashAlikeOnTwelveRanks) { expectHash({12}, "tin", kOfTin); }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 
 #include "sand/grid/erosion.hpp"
@@ -19,14 +18,12 @@ using sand::grid::Erosion;
 // The memory of Erosion is private. A flipped bit does not respect that: an explicit instantiation may name it.
 CellArray& eastOf(Erosion& erosion);
 CellArray& northOf(Erosion& erosion);
-std::optional<CellArray>& slidingOf(Erosion& erosion);
-template <auto kEast, auto kNorth, auto kSliding>
+template <auto kEast, auto kNorth>
 struct Memory {
     friend CellArray& eastOf(Erosion& erosion) { return erosion.*kEast; }
     friend CellArray& northOf(Erosion& erosion) { return erosion.*kNorth; }
-    friend std::optional<CellArray>& slidingOf(Erosion& erosion) { return erosion.*kSliding; }
 };
-template struct Memory<&Erosion::east_, &Erosion::north_, &Erosion::sliding_>;
+template struct Memory<&Erosion::east_, &Erosion::north_>;
 
 namespace {
 
@@ -133,11 +130,6 @@ TEST(Audit, LeavesSandThatFallsOverAnOpenRim) {
     EXPECT_TRUE(audited.settled());
     EXPECT_GT(west, 10);
     EXPECT_GT(south, 10);
-}
-
-// Sand in a cell with such a mark would slide although it is not steep enough to start.
-TEST(Audit, FindsAMarkOfTheBandInEveryTile) {
-    expectFound([](Replica& replica, int column, int row) { slidingOf(memoryOf(replica))->row(row)[column] = 1; });
 }
 
 TEST(Audit, TakesTheTilesInTurn) {

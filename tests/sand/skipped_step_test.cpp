@@ -51,12 +51,14 @@ struct Overflow : std::overflow_error {
 
 class SkippedStep : public testing::Test {
 protected:
-    static constexpr int kBlock = 8;  // [cell], so that a sweep has several tasks
+    static constexpr int kBlock = 8;                   // [cell]
+    static constexpr int kColumns = 192, kRows = 128;  // large enough that a sweep has several tasks
 
     SkippedStep() {
-        // Columns of blocks that are too steep, between columns of blocks at rest. So each sweep has several patches.
+        // Columns of blocks that are too steep, between columns of blocks at rest. So each row of blocks has several
+        // runs.
         std::mt19937 random(7);
-        const sand::HeightField rough = samples::randomField(96, 64, 4 * sand::kUnitsPerCell, random);
+        const sand::HeightField rough = samples::randomField(kColumns, kRows, 4 * sand::kUnitsPerCell, random);
         for (int y = 0; y < rough.rows(); ++y) {
             for (int x = 0; x < rough.columns(); ++x) {
                 scene_.terrain.setHeight(x, y, x / 24 % 2 == 0 ? rough.height(x, y) : 0);
@@ -82,7 +84,7 @@ protected:
         return step;
     }
 
-    scene::Scene scene_ = samples::flatScene(96, 64);
+    scene::Scene scene_ = samples::flatScene(kColumns, kRows);
 };
 
 // The two replicas fail at different places of the step, with which a stroke begins. Only the tool has marked sand as

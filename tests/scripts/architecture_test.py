@@ -9,9 +9,9 @@ import unittest
 from launcher_fixture import ROOT
 
 # Each file, and why it must know the processor.
-NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-64-v3",
+NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-64-v3 and v4",
          "base/float_register.hpp": "reads and writes the register of the float arithmetic",
-         "CMakeLists.txt": "the flag of x86-64-v3, for the inner loops",
+         "CMakeLists.txt": "the flags of x86-64-v3 and v4, for the inner loops",
          "cmake/Arm64.cmake": "the cross compiler"}
 KNOWS = re.compile(r"[<\"][a-z]*intrin\.h|\b_mm[0-9]*_|__m(128|256|512)|__builtin_(cpu_|ia32_)|\basm\b|__(x86_64|aarch64|i386|arm|amd64|SSE|AVX)\w*\b|"
                    r"-m(arch|tune|fma|avx|sse|cpu)\b|aarch64|cpuid")

@@ -182,7 +182,7 @@ std::span<const std::int32_t> ActiveMesh::slide(bool held, bool band, std::size_
                             .bare = bare_.data() + first,
                             .sliding = sliding_.data() + first,
                             .slidBare = slidBare_.data()};
-    const std::size_t count = path_ == base::CodePath::v3 ? v3::slideFacets(sweep) : baseline::slideFacets(sweep);
+    const std::size_t count = path_ != base::CodePath::baseline ? v3::slideFacets(sweep) : baseline::slideFacets(sweep);
     for (std::size_t i = 0; i < count; ++i) {
         slidBare_[i] += static_cast<std::int32_t>(first);
     }
@@ -204,7 +204,7 @@ SweepResult ActiveMesh::move(bool held, double momentum) {
                            .rightWeights = rightWeights_.data(),
                            .momentum = momentum,
                            .fluxes = fluxes_.data()};
-    path_ == base::CodePath::v3 ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
+    path_ != base::CodePath::baseline ? v3::flowOverEdges(sweep) : baseline::flowOverEdges(sweep);
     if (isWide_) {
         return moveWide();
     }
@@ -220,7 +220,7 @@ SweepResult ActiveMesh::move(bool held, double momentum) {
                          .inflow = inflow_.data(),
                          .volumes = volumes_.data(),
                          .levels = levels_.data()};
-    return path_ == base::CodePath::v3 ? v3::moveSand(sand) : baseline::moveSand(sand);
+    return path_ != base::CodePath::baseline ? v3::moveSand(sand) : baseline::moveSand(sand);
 }
 
 SweepResult ActiveMesh::moveWide() {

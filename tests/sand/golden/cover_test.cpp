@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "host/worker_pool.hpp"
@@ -22,8 +24,9 @@ struct Way {
     base::CodePath path;
 };
 
-// Pairwise cover: each number of threads meets each size of block in one of the three kinds of build. scripts/test.sh
-// runs three builds of it. scripts/goldens.sh runs all optimisation levels of both compilers.
+// Each number of threads meets each code path of this CPU in every build. It meets each size of block in one of the
+// three kinds of build: scripts/test.sh runs three builds. scripts/goldens.sh runs all optimisation levels of both
+// compilers.
 #ifndef __OPTIMIZE__
 constexpr int kBuild = 0;
 #elif defined(__clang__)
@@ -34,9 +37,17 @@ constexpr int kBuild = 2;
 constexpr std::array kThreads{1, 2, 3, 7};
 constexpr std::array kBlocks{16, 32, 64};
 
+std::size_t waysHere() { return kThreads.size() * base::codePathsHere().size(); }
+
 Way wayOf(std::size_t i) {
-    return {kThreads[i], kBlocks[(i + kBuild) % kBlocks.size()],
-            i % 2 == 0 ? base::fastestCodePath() : base::CodePath::baseline};
+    const std::size_t threads = i % kThreads.size(), path = i / kThreads.size();
+    return {kThreads[threads], kBlocks[(threads + path + kBuild) % kBlocks.size()], base::codePathsHere().at(path)};
+}
+
+std::string nameOf(const Way& way) {
+    std::string name = fmt::format("{}_{}ThreadsBlocksOf{}", base::nameOf(way.path), way.threads, way.block);
+    std::ranges::replace(name, '-', '_');
+    return name;
 }
 
 /// Dunes on a field of odd size with an open rim.
@@ -73,8 +84,7 @@ TEST_P(Cover, TenThousandEditsHashAlike) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, Cover, testing::Range(std::size_t{0}, kThreads.size()), [](const auto& way) {
-    return fmt::format("{}ThreadsBlocksOf{}", wayOf(way.param).threads, wayOf(way.param).block);
-});
+INSTANTIATE_TEST_SUITE_P(Ways, Cover, testing::Range(std::size_t{0}, waysHere()),
+                         [](const auto& way) { return nameOf(wayOf(way.param)); });
 
 }  // namespace

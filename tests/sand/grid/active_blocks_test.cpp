@@ -11,7 +11,6 @@
 
 namespace {
 
-using base::CodePath;
 using samples::Law;
 using samples::nameOf;
 using sand::HeightField;
@@ -75,7 +74,7 @@ TEST(ActiveBlocks, BlockSizeInstructionSetAndThreadsChangeNothing) {
         HeightField expected = start;
         const std::int64_t outflow = Erosion(expected, rules, {.blockSize = 128}).sweep(expected, kSweeps);
         for (const int block : {2, 16, 31, 32, 64}) {
-            for (const auto path : {base::fastestCodePath(), CodePath::baseline}) {
+            for (const base::CodePath path : base::codePathsHere()) {
                 for (const base::Executor* threads : {static_cast<const base::Executor*>(nullptr), &executor}) {
                     HeightField field = start;
                     Erosion erosion(field, rules, {.blockSize = block, .path = path, .executor = threads});

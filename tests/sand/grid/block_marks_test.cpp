@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
+#include <vector>
 
 namespace {
 
@@ -31,6 +33,69 @@ TEST(BlockMarks, GiveEachOnceInOrderAndAreEmptyThen) {
         std::vector<int> taken;
         marks.takeAll([&](int block) { taken.push_back(block); });
         ASSERT_EQ(taken, std::vector<int>(expected.begin(), expected.end())) << "run " << run;
+    }
+}
+
+using sand::grid::FlowBits;
+namespace flow = sand::grid::flow;
+
+/// Returns whether a block must be visited because sand flowed in the block that is `east` columns and `north` rows
+/// before it.
+bool reaches(int bits, int east, int north) {
+    const int alongRow = east == 0 ? flow::kSomewhere : east > 0 ? flow::kEast : flow::kWest;
+    const int alongColumn = north == 0 ? flow::kSomewhere : north > 0 ? flow::kNorth : flow::kSouth;
+    return (bits & alongRow) != 0 && (bits & alongColumn) != 0;
+}
+
+/// Sand flows at random places of a few runs of blocks. Returns these runs.
+std::vector<sand::CellRect> randomFlow(std::mt19937& random, FlowBits& flowed) {
+    std::vector<sand::CellRect> runs;
+    for (int y = 0; y < kBlocksDown; ++y) {
+        for (int x = static_cast<int>(random() % 6); x < kBlocksAcross; x += 1 + static_cast<int>(random() % 4)) {
+            const int end = std::min(x + 1 + static_cast<int>(random() % 5), kBlocksAcross);
+            runs.push_back({x, y, end, y + 1});
+            for (; x < end; ++x) {
+                flowed.row(y)[x] = static_cast<std::uint8_t>(random() % 2 == 0 ? 0 : flow::kSomewhere | random() % 32);
+            }
+        }
+    }
+    return runs;
+}
+
+TEST(BlockMarks, HoldTheBlocksBesideFlowAndThoseThatChanged) {
+    std::mt19937 random(5);
+    for (int run = 0; run < 200; ++run) {
+        FlowBits flowed(kBlocksAcross, kBlocksDown);
+        sand::grid::BlockMarks beside(kBlocksAcross, kBlocksDown), changed(kBlocksAcross, kBlocksDown);
+        for (const sand::CellRect& blocks : randomFlow(random, flowed)) {
+            beside.addBeside(blocks, flowed);
+            changed.addChanged(blocks, flowed);
+        }
+        std::vector<int> expectedBeside, expectedChanged;
+        for (int block = 0; block < kBlocksAcross * kBlocksDown; ++block) {
+            const int x = block % kBlocksAcross, y = block / kBlocksAcross;
+            bool isBeside = false, isChanged = false;
+            for (int v = std::max(y - 1, 0); v <= std::min(y + 1, kBlocksDown - 1); ++v) {
+                for (int u = std::max(x - 1, 0); u <= std::min(x + 1, kBlocksAcross - 1); ++u) {
+                    const int bits = flowed.row(v)[u];
+                    isBeside = isBeside || reaches(bits, x - u, y - v);
+                    isChanged = isChanged || (bits != 0 && x >= u && y >= v && (x == u || y == v));
+                }
+            }
+            if (isBeside) {
+                expectedBeside.push_back(block);
+            }
+            if (isChanged) {
+                expectedChanged.push_back(block);
+            }
+        }
+        std::vector<int> taken;
+        beside.takeAll([&](int block) { taken.push_back(block); });
+        ASSERT_EQ(taken, expectedBeside) << "run " << run;
+        taken.clear();
+        changed.takeAll([&](int block) { taken.push_back(block); });
+        ASSERT_EQ(taken, expectedChanged) << "run " << run;
+        EXPECT_TRUE(beside.empty() && changed.empty());
     }
 }
 

@@ -74,9 +74,11 @@ TEST(Ground, BlocksThreadsAndCodePathsChangeNothing) {
         }
     };
     for (const int block : {2, 16, 64}) {
-        EXPECT_EQ(hashWith({.blockSize = block}), expected);
-        EXPECT_EQ(hashWith({.blockSize = block, .path = base::CodePath::baseline}), expected);
-        EXPECT_EQ(hashWith({.blockSize = block, .executor = &backwards}), expected);
+        for (const base::CodePath path : base::codePathsHere()) {
+            EXPECT_EQ(hashWith({.blockSize = block, .path = path}), expected) << base::nameOf(path);
+            EXPECT_EQ(hashWith({.blockSize = block, .path = path, .executor = &backwards}), expected)
+                << base::nameOf(path);
+        }
     }
 }
 

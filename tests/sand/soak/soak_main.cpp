@@ -21,7 +21,7 @@ struct Options {
     int columns = 61, rows = 43;  // [cell]
     int threads = 1;
     int block = sand::grid::Erosion::kDefaultBlock;  // [cell]
-    bool baseline = false;
+    base::CodePath path = base::fastestCodePath();
     std::uint32_t seed = 53;
 };
 
@@ -42,10 +42,10 @@ int run(const Options& options) {
     host::WorkerPool team(options.threads);
     const base::Executor executor = team.executor();
     const sand::Rules rules = dunes(options).rules;
-    sand::Replica replica = samples::replicaSwept(
-        dunes(options), {.blockSize = options.block,
-                         .path = options.baseline ? base::CodePath::baseline : base::fastestCodePath(),
-                         .executor = options.threads > 1 ? &executor : nullptr});
+    sand::Replica replica =
+        samples::replicaSwept(dunes(options), {.blockSize = options.block,
+                                               .path = base::chosenCodePath(options.path),
+                                               .executor = options.threads > 1 ? &executor : nullptr});
     const std::int64_t volume = samples::fieldOf(replica).volume();
     std::mt19937 random(options.seed);
     std::uint64_t all = 0;
@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     line.option("--rows", options.rows).range(1, sand::kMaxSide).showDefault();
     line.option("--threads", options.threads).range(1, 256).showDefault();
     line.option("--block", options.block, "side of a block [cell]").range(2, 128).showDefault();
-    line.flag("--baseline", options.baseline, "the code path of every x86-64");
+    line.choice("--path", options.path, "code path of the sweeps");
     line.option("--seed", options.seed).showDefault();
     return host::runMain(line, argc, argv, [&] { return run(options); });
 }
