@@ -44,10 +44,10 @@ struct PointerEvent {
 struct PlatformRequest {
     std::string processName = "this process";  // such as "rank 3 (r1c3)"; begins the last line that a process prints
                                                // when its X server is lost
-    std::string display;      // X display; empty: $DISPLAY
-    int device = -1;          // number of the EGL device; -1: the driver chooses
-    bool software = false;    // the driver chooses EGL's software device
-    bool eyesInTurn = false;  // active stereo; without quad buffers, one eye per frame in turn
+    std::string display;                       // X display; empty: $DISPLAY
+    int device = -1;                           // number of the EGL device; -1: the driver chooses
+    bool software = false;                     // the driver chooses EGL's software device
+    bool eyesInTurn = false;                   // active stereo; without quad buffers, one eye per frame in turn
     double refreshHz = 60;
     bool pointer = false;  // the pointer is shown, and takePointer() returns its events
     std::vector<WindowRequest> windows;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the walk over the rows bit for bit with sweeps in two passes over all blocks. scripts/checks/walk.sh compares more
-// sweeps.
+// Compares the walk over the rows bit for bit with sweeps in two passes over all blocks. scripts/checks/walk.sh
+// compares more sweeps.
 #include <gtest/gtest.h>
 
 #include "host/worker_pool.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the walk over the rows with sweeps in two passes, in more sweeps than a test has time for. scripts/checks/walk.sh
-// builds and runs it.
+// Compares the walk over the rows with sweeps in two passes, in more sweeps than a test has time for.
+// scripts/checks/walk.sh builds and runs it.
 #include <fmt/format.h>
 
 #include <chrono>
