@@ -177,7 +177,7 @@ void Erosion::resume(const Inertia& inertia) {
     undisturbed_ = inertia.undisturbed();
     // A sweep in which an executor threw has left numbers there.
     flowed_ = FlowBits(across_, down_);
-    walk_ = Walk();
+    walk_ = ErosionWalk();
     wakeAll();
 }
 

@@ -142,7 +142,7 @@ private:
     BlockMarks marked_;             // blocks for the next active set
     BlockMarks moved_;              // blocks changed since takeMoved()
     FlowBits flowed_;               // bits of this sweep; 0 between sweeps
-    Walk walk_;
+    ErosionWalk walk_;
 };
 
 }  // namespace sand::grid

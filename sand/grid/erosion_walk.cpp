@@ -54,12 +54,13 @@ void forEach(std::size_t count, const base::Executor* executor, const std::funct
 
 }  // namespace
 
-std::size_t Walk::bytes() const {
+std::size_t ErosionWalk::bytes() const {
     return std::accumulate(buffers_.begin(), buffers_.end(), runs_.capacity() * sizeof(Run),
                            [](std::size_t sum, const CellArray& rows) { return sum + rows.bytes(); });
 }
 
-std::int64_t Walk::sweep(const Sweep& sweep, const std::vector<CellRect>& runs, const Surroundings& surroundings) {
+std::int64_t ErosionWalk::sweep(const Sweep& sweep, const std::vector<CellRect>& runs,
+                                const Surroundings& surroundings) {
     const Kernel kernel = kernelOf(surroundings.path);
     findRows(runs);
     divide(sweep, surroundings.executor != nullptr);
@@ -78,7 +79,7 @@ std::int64_t Walk::sweep(const Sweep& sweep, const std::vector<CellRect>& runs, 
     return std::accumulate(outflows_.begin(), outflows_.end(), std::int64_t{0});
 }
 
-void Walk::findRows(const std::vector<CellRect>& runs) {
+void ErosionWalk::findRows(const std::vector<CellRect>& runs) {
     runs_.clear();
     rows_.clear();
     for (const CellRect& cells : runs) {
@@ -90,7 +91,7 @@ void Walk::findRows(const std::vector<CellRect>& runs) {
     }
 }
 
-void Walk::divide(const Sweep& sweep, bool shared) {
+void ErosionWalk::divide(const Sweep& sweep, bool shared) {
     std::vector<std::int64_t> cells(rows_.size());
     for (std::size_t row = 0; row < rows_.size(); ++row) {
         for (const Run& run : runsOf(row)) {
@@ -114,7 +115,7 @@ void Walk::divide(const Sweep& sweep, bool shared) {
     }
 }
 
-RowBuffers Walk::buffersOf(std::size_t strip) {
+RowBuffers ErosionWalk::buffersOf(std::size_t strip) {
     CellArray& rows = buffers_[strip];
     return {.old = {rows.row(kOld), rows.row(kOld + 1), rows.row(kOld + 2)},
             .rise = {rows.row(kRise), rows.row(kRise + 1)},
@@ -124,13 +125,15 @@ RowBuffers Walk::buffersOf(std::size_t strip) {
             .slidingAtStart = rows.row(kSlidingAtStart)};
 }
 
-std::span<const Run> Walk::runsOf(std::size_t row) const {
+std::span<const Run> ErosionWalk::runsOf(std::size_t row) const {
     return std::span(runs_).subspan(rows_[row].first, rows_[row].end - rows_[row].first);
 }
 
-bool Walk::continues(std::size_t row) const { return row + 1 < rows_.size() && rows_[row + 1].y0 == rows_[row].y1; }
+bool ErosionWalk::continues(std::size_t row) const {
+    return row + 1 < rows_.size() && rows_[row + 1].y0 == rows_[row].y1;
+}
 
-void Walk::limit(std::size_t row, const Surroundings& surroundings, std::vector<FluxLimits>& limits) {
+void ErosionWalk::limit(std::size_t row, const Surroundings& surroundings, std::vector<FluxLimits>& limits) {
     const Ground* const ground = surroundings.ground;
     const Obstacle* const obstacle = surroundings.obstacle;
     if (ground == nullptr && obstacle == nullptr) {
@@ -155,7 +158,7 @@ void Walk::limit(std::size_t row, const Surroundings& surroundings, std::vector<
     }
 }
 
-std::int64_t Walk::sweepStrip(const Sweep& sweep, std::size_t strip, const Surroundings& surroundings) {
+std::int64_t ErosionWalk::sweepStrip(const Sweep& sweep, std::size_t strip, const Surroundings& surroundings) {
     const Kernel kernel = kernelOf(surroundings.path);
     const RowBuffers buffers = buffersOf(strip);
     const std::size_t first = strips_[strip], end = strips_[strip + 1];
@@ -181,7 +184,7 @@ std::int64_t Walk::sweepStrip(const Sweep& sweep, std::size_t strip, const Surro
     return outflow;
 }
 
-void Walk::finishStrip(const Sweep& sweep, std::size_t strip, base::CodePath path) {
+void ErosionWalk::finishStrip(const Sweep& sweep, std::size_t strip, base::CodePath path) {
     const Kernel kernel = kernelOf(path);
     const RowBuffers buffers = buffersOf(strip);
     const std::size_t first = strips_[strip], last = strips_[strip + 1] - 1;

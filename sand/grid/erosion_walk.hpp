@@ -21,7 +21,7 @@ namespace sand::grid {
 /// are divided into strips of whole rows of blocks, which are swept at the same time. The first and the last cell row
 /// of a strip keep their old heights until all strips are swept. The strips beside it read them until then. So the
 /// result does not depend on the division. Not thread-safe.
-class Walk {
+class ErosionWalk {
 public:
     /// Limits of the fluxes, and means of the sweep.
     struct Surroundings {
