@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the time of a sweep per cell. Beside it, measures a copy, which is the limit of the machine's memory, and a
-// loop without memory, which is the limit of its threads.
+// Measures the time of a sweep per cell. Also measures a copy, because memory limits a sweep, and a loop without
+// memory, because cores limit threads.
 #include <algorithm>
 #include <functional>
 #include <random>
@@ -193,7 +193,7 @@ std::vector<Row> sweepRows(base::CodePath path, const sand::HeightField& rough, 
     return rows;
 }
 
-/// Returns all rows, or those that the user has named.
+/// Returns the rows with the names in `settings`, or all rows without a name.
 std::vector<Row> rowsFor(const Settings& settings, const sand::HeightField& rough, const sand::HeightField& lumps) {
     std::vector<Row> rows{{"copy", 1, measureCopy}};
     std::ranges::move(sweepRows(base::chosenCodePath(settings.path.value_or(base::fastestCodePath())), rough, lumps),
