@@ -234,6 +234,17 @@ def unknown_tests(repository, name):
             yield f"{name}: names the test {span}, which is not in the project"
 
 
+def missing_pages(sources):
+    """Returns a line for each page that a source names, such as the help of an option, and that does not exist."""
+    return [f"{name}: names {page}, which does not exist" for name, text in sources.items()
+            for page in dict.fromkeys(re.findall(r"\bdocs/\w+\.md\b", text)) if not (ROOT / page).is_file()]
+
+
+def constant(file, name):
+    """Returns the digits of a constant of a C++ header."""
+    return re.search(rf"\b{name} = (\d+);", (ROOT / file).read_text(encoding="utf-8"))[1]
+
+
 def faults(repository):
     found = []
     for name in repository.documents:
@@ -293,6 +304,20 @@ class Documents(unittest.TestCase):
         built = re.search(r"^project\(sandwall VERSION ([\d.]+) ", (ROOT / "CMakeLists.txt").read_text(), re.MULTILINE)[1]
         cited = re.search(r"^version: (.*)$", (ROOT / "CITATION.cff").read_text(), re.MULTILINE)[1]
         self.assertEqual(cited, built)
+
+    def test_programs_name_pages_that_exist(self):
+        sources = tracked("*.cpp", "*.hpp", "*.py", "*.sh", "scripts/launcher/sandwall")
+        self.assertEqual(missing_pages({name: (ROOT / name).read_text(encoding="utf-8") for name in sources
+                                        if not name.startswith("tests/")}), [])
+
+    def test_a_page_that_is_gone_is_named(self):
+        self.assertEqual(missing_pages({"master/main.cpp": '"see docs/journal.md and docs/no_page.md"'}),
+                         ["master/main.cpp: names docs/no_page.md, which does not exist"])
+
+    def test_the_page_of_the_journal_has_the_versions_of_the_code(self):
+        said = re.search(r"this is [\d.]+ \(format (\d+), algorithm (\d+)\)", (ROOT / "docs/journal.md").read_text(encoding="utf-8"))
+        self.assertEqual(said.groups(), (constant("master/journal/format.hpp", "kJournalVersion"),
+                                         constant("sand/model/rules.hpp", "kAlgorithmVersion")))
 
     def test_a_link_to_nothing_is_named(self):
         good = "[a](other.md) [b](images/a.png) [c](other.md#the-law-how-it-holds) [d](https://no.where/x) [e](../sand) [f](#page)\n# Page\n"
