@@ -53,7 +53,8 @@ struct PlacedTool {
         const long double along = static_cast<long double>(whole.first) / length;
         const long double across = static_cast<long double>(whole.second) / length;
         const sand::SolePiece all{0, 0, 1, 1, 0, 0};
-        const auto pieces = tool.kind == footprint ? sand::solePieces(footprint) : std::span(&all, 1);
+        const auto sole = sand::solePieces(tool.kind);
+        const auto pieces = sole.empty() ? std::span(&all, 1) : sole;
         return static_cast<int>(std::count_if(pieces.begin(), pieces.end(), [&](const sand::SolePiece& piece) {
             const long double x = (along - static_cast<long double>(piece.along) * tool.radius) /
                                   (static_cast<long double>(piece.halfLength) * tool.radius + margin);

@@ -64,7 +64,7 @@ TEST(Outline, EdgesMakeClosedRings) {
             const LatticePoint& place = outline.points[static_cast<std::size_t>(point)];
             EXPECT_EQ(count, 2) << "edges end at " << place.x << ' ' << place.y;
         }
-        if (tool.radius >= 655 && tool.kind != ToolKind::footprint) {
+        if (tool.radius >= 655 && sand::solePieces(tool.kind).empty()) {
             const bool bowl = tool.kind == ToolKind::sphere || tool.kind == ToolKind::ellipsoid;
             const double narrow = bowl && tool.halfWidth > 0 ? tool.halfWidth : tool.radius;
             // A bowl has a ring at 0.96 and, from a radius of 7 cells on, another one between it and the outline. Rings
