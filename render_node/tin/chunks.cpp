@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Assigns the triangles of a TIN to chunks and parts of triangles that are close together.
+#include "render_node/tin/chunks.hpp"
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <compare>
 #include <utility>
 
-#include "render_node/tin/vertices.hpp"
-
 namespace render_node {
 namespace {
+
+constexpr double kTrianglesPerChunk = 512;
+constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // a coarse TIN becomes fine where sand is dug
 
 /// Triangle of a chunk, with the order in which a chunk sorts its triangles.
 struct Ordered {
@@ -18,47 +22,64 @@ struct Ordered {
     friend auto operator<=>(const Ordered&, const Ordered&) = default;
 };
 
+bool overlapOnGround(const Box& a, const Box& b) {
+    return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
 }  // namespace
 
-void TinVertices::replace(std::int32_t slot, const TinTriangle& now) {
-    if (triangle(slot).alive()) {
+double TinChunks::sideFor(const sand::tin::Triangles& mesh) {
+    const double wanted = std::ceil(std::sqrt(static_cast<double>(mesh.triangles.size()) / kTrianglesPerChunk));
+    return std::max(mesh.width, mesh.depth) / std::clamp(wanted, kFewestChunksAcross, kMostChunksAcross);
+}
+
+TinChunks::TinChunks(std::int32_t width, std::int32_t depth, double side)
+    : across_(static_cast<int>(width / side) + 1),
+      side_(side),
+      chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth / side + 1)) {}
+
+void TinChunks::replace(TinGeometry& geometry, std::int32_t slot, const TinTriangle& now) {
+    if (geometry.triangle(slot).alive()) {
         leaveChunk(slot);
     }
-    triangle(slot) = now;
+    geometry.triangle(slot) = now;
     if (!now.alive()) {
         return;
     }
     InChunk& in = inChunk_[static_cast<std::size_t>(slot)];
-    in = homeOf(now);
+    in = homeOf(geometry, now);
     TinChunk& chunk = chunks_[static_cast<std::size_t>(in.chunk)];
     in.at = static_cast<int>(chunk.slots.size());
     chunk.slots.push_back(slot);
     chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
 }
 
-TinVertices::InChunk TinVertices::homeOf(const TinTriangle& triangle) const {
+TinChunks::InChunk TinChunks::homeOf(const TinGeometry& geometry, const TinTriangle& triangle) const {
     double x = 0, y = 0;  // [probe unit], sum of three corners
-    for (const Vertex corner : triangle.corner) {
-        x += vertices_[static_cast<std::size_t>(corner)].x;
-        y += vertices_[static_cast<std::size_t>(corner)].y;
+    for (const sand::tin::Vertex corner : triangle.corner) {
+        x += geometry.vertex(corner).x;
+        y += geometry.vertex(corner).y;
     }
-    const double parts = kPartsAcross / (3 * chunkSide_);
+    const double parts = kPartsAcross / (3 * side_);
     const int column = static_cast<int>(x * parts), row = static_cast<int>(y * parts);
     return {.chunk = row / kPartsAcross * across_ + column / kPartsAcross,
             .part = row % kPartsAcross * kPartsAcross + column % kPartsAcross};
 }
 
-/// Moves a triangle to the right chunk and part after its corners have moved. Its corners still have the same numbers,
-/// because a removed vertex's number can be given to a vertex at another place.
-void TinVertices::keepHome(std::int32_t slot) {
-    const TinTriangle same = triangle(slot);
-    const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(same);
+void TinChunks::keepHome(TinGeometry& geometry, std::int32_t slot) {
+    const TinTriangle same = geometry.triangle(slot);
+    const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(geometry, same);
     if (in.chunk != home.chunk || in.part != home.part) {
-        replace(slot, same);
+        replace(geometry, slot, same);
     }
 }
 
-void TinVertices::leaveChunk(std::int32_t slot) {
+void TinChunks::reshape(std::int32_t slot) {
+    TinChunk& chunk = chunks_[static_cast<std::size_t>(inChunk_[static_cast<std::size_t>(slot)].chunk)];
+    chunk.reshaped = chunk.partsReshaped = true;
+}
+
+void TinChunks::leaveChunk(std::int32_t slot) {
     InChunk& in = inChunk_[static_cast<std::size_t>(slot)];
     TinChunk& chunk = chunks_[static_cast<std::size_t>(in.chunk)];
     const std::int32_t last = chunk.slots.back();
@@ -69,25 +90,14 @@ void TinVertices::leaveChunk(std::int32_t slot) {
     in = {};
 }
 
-glm::dvec3 TinVertices::at(Vertex number) const {
-    const TinVertex& drawn = vertices_[static_cast<std::size_t>(number)];
-    return {drawn.x * probe_, drawn.y * probe_, drawn.height};
-}
-
-Box TinVertices::boxOf(const TinTriangle& triangle) const {
-    const glm::dvec3 a = at(triangle.corner[0]), b = at(triangle.corner[1]), c = at(triangle.corner[2]);
-    const double margin = 0.01 * cellSize_;  // for rounding of GL's floats
-    return {glm::min(a, glm::min(b, c)) - margin, glm::max(a, glm::max(b, c)) + margin};
-}
-
-bool TinVertices::settle(TinChunk& chunk) {
+bool TinChunks::settle(const TinGeometry& geometry, TinChunk& chunk) {
     if (!chunk.changed) {
         return false;
     }
     std::vector<Ordered> order;
     order.reserve(chunk.slots.size());
     for (const std::int32_t slot : chunk.slots) {
-        order.push_back({inChunk_[static_cast<std::size_t>(slot)].part, triangle(slot).corner, slot});
+        order.push_back({inChunk_[static_cast<std::size_t>(slot)].part, geometry.triangle(slot).corner, slot});
     }
     std::ranges::sort(order);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -98,14 +108,14 @@ bool TinVertices::settle(TinChunk& chunk) {
     return true;
 }
 
-const std::vector<TinChunk::Part>& TinVertices::partsOf(TinChunk& chunk) const {
+const std::vector<TinChunk::Part>& TinChunks::partsOf(const TinGeometry& geometry, TinChunk& chunk) const {
     if (chunk.partsReshaped) {
         chunk.parts.clear();
         int last = -1;
         for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
-            const TinTriangle& one = triangles_[static_cast<std::size_t>(chunk.slots[i])];
+            const TinTriangle& one = geometry.triangle(chunk.slots[i]);
             const int number = inChunk_[static_cast<std::size_t>(chunk.slots[i])].part;
-            const Box box = boxOf(one);
+            const Box box = geometry.boxOf(one);
             if (std::exchange(last, number) != number) {
                 chunk.parts.push_back({i, i, box});
             }
@@ -118,15 +128,25 @@ const std::vector<TinChunk::Part>& TinVertices::partsOf(TinChunk& chunk) const {
     return chunk.parts;
 }
 
-const Box& TinVertices::boxOf(TinChunk& chunk) const {
+const Box& TinChunks::boxOf(const TinGeometry& geometry, TinChunk& chunk) {
     if (chunk.reshaped) {
-        chunk.box = boxOf(triangles_[static_cast<std::size_t>(chunk.slots.front())]);
+        chunk.box = geometry.boxOf(geometry.triangle(chunk.slots.front()));
         for (const std::int32_t slot : chunk.slots) {
-            chunk.box = around(chunk.box, boxOf(triangles_[static_cast<std::size_t>(slot)]));
+            chunk.box = around(chunk.box, geometry.boxOf(geometry.triangle(slot)));
         }
         chunk.reshaped = false;
     }
     return chunk.box;
+}
+
+Box TinChunks::withChunksAt(const TinGeometry& geometry, const Box& box) {
+    Box all = box;
+    for (TinChunk& chunk : chunks_) {
+        if (!chunk.slots.empty() && overlapOnGround(boxOf(geometry, chunk), box)) {
+            all = around(all, boxOf(geometry, chunk));
+        }
+    }
+    return all;
 }
 
 }  // namespace render_node

@@ -1,57 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/tin/vertices.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
-
-#include "sand/model/height_field.hpp"
 
 namespace render_node {
 namespace {
 
-using sand::tin::kNoNumber;
-using sand::tin::LatticePoint;
 using sand::tin::SurfaceView;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
 
-constexpr double kTrianglesPerChunk = 512;
-constexpr double kFewestChunksAcross = 32, kMostChunksAcross = 64;  // a coarse TIN becomes fine where sand is dug
-
 }  // namespace
 
-TinTriangle TinVertices::drawnOf(const sand::tin::Triangle& triangle) {
-    TinTriangle drawn;
-    if (!triangle.isGround()) {
-        return drawn;
-    }
-    const auto least = std::min_element(triangle.corner.begin(), triangle.corner.end()) - triangle.corner.begin();
-    for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t from = (static_cast<std::size_t>(least) + i) % 3;
-        drawn.corner[i] = triangle.corner[from];
-        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != kNoNumber;
-    }
-    return drawn;
-}
-
-double TinVertices::chunkSideFor(const Triangles& mesh) {
-    const double wanted = std::ceil(std::sqrt(static_cast<double>(mesh.triangles.size()) / kTrianglesPerChunk));
-    return std::max(mesh.width, mesh.depth) / std::clamp(wanted, kFewestChunksAcross, kMostChunksAcross);
-}
-
 TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSide)
-    : cellSize_(cellSize),
-      unit_(cellSize / sand::kUnitsPerCell),
-      probe_(cellSize / kCell),
-      width_(tin.triangles.width),
+    : width_(tin.triangles.width),
       depth_(tin.triangles.depth),
-      across_(static_cast<int>(width_ / chunkSide) + 1),
-      chunkSide_(chunkSide),
-      chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth_ / chunkSide + 1)),
-      squares_(width_, depth_, chunkSide),
-      relief_(width_, depth_),
-      changedBoxes_(width_ * probe_, depth_ * probe_) {
+      geometry_{.cellSize = cellSize},
+      chunks_(width_, depth_, chunkSide),
+      light_(width_, depth_, chunkSide),
+      changedBoxes_(width_ * geometry_.probe, depth_ * geometry_.probe) {
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<Vertex> all;
@@ -60,35 +27,31 @@ TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSi
             all.push_back(number);
         }
     }
-    ever_.lowest = ever_.highest = static_cast<float>(tin.heights[static_cast<std::size_t>(all.front())] * unit_);
+    ever_.lowest = ever_.highest =
+        static_cast<float>(tin.heights[static_cast<std::size_t>(all.front())] * geometry_.unit);
     (void)move(tin, all);
     elsewhere_ = std::vector<Vertex>();  // frees the room for all vertices
     for (std::size_t slot = 0; slot < mesh.triangles.size(); ++slot) {
-        replace(static_cast<std::int32_t>(slot), drawnOf(mesh.triangles[slot]));
-        addToRelief(tin, triangles_[slot]);
+        chunks_.replace(geometry_, static_cast<std::int32_t>(slot), TinGeometry::drawnOf(mesh.triangles[slot]));
     }
-    (void)relief_.takeChanged();
-    for (const Vertex number : all) {
-        lightFrom(tin, number);
-        openTo(tin, number);
-    }
+    light_.lightAll(tin, geometry_, all);
 }
 
 void TinVertices::grow(const Triangles& mesh) {
-    vertices_.resize(std::max(vertices_.size(), mesh.places.size()));
-    triangles_.resize(std::max(triangles_.size(), mesh.triangles.size()));
-    inChunk_.resize(triangles_.size());
+    geometry_.grow(mesh);
+    chunks_.grow(geometry_.triangles.size());
 }
 
 TinVertices::Change TinVertices::replaceWhole(const SurfaceView& tin) {
-    TinVertices anew(tin, cellSize_, chunkSide_);
+    TinVertices anew(tin, geometry_.cellSize, chunks_.side());
     anew.ever_ = around(ever_, anew.ever_);
     *this = std::move(anew);
     Change change;
     change.whole = change.rim = true;
+    const double cell = geometry_.cellSize, probe = geometry_.probe;
     change.boxes.push_back(
-        {glm::dvec3(-cellSize_, -cellSize_, ever_.lowest - cellSize_),
-         glm::dvec3((width_ + kCell) * probe_, (depth_ + kCell) * probe_, double{ever_.highest} + cellSize_)});
+        {glm::dvec3(-cell, -cell, ever_.lowest - cell),
+         glm::dvec3((width_ + kCell) * probe, (depth_ + kCell) * probe, double{ever_.highest} + cell)});
     return change;
 }
 
@@ -96,13 +59,16 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
+    const auto drawn = [&](std::int32_t slot) {
+        return TinGeometry::drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]);
+    };
     std::vector<std::int32_t> replaced;
     for (const std::int32_t slot : sandChange.triangles) {
-        if (triangle(slot) != drawnOf(mesh.triangles[static_cast<std::size_t>(slot)])) {
+        if (geometry_.triangle(slot) != drawn(slot)) {
             replaced.push_back(slot);
         }
     }
-    std::vector<Vertex> others = moved(tin, sandChange.vertices);
+    std::vector<Vertex> others = geometry_.moved(tin, sandChange.vertices);
     reshaped_.clear();
     reshaped_.add(replaced);
     for (const Vertex number : others) {
@@ -110,27 +76,20 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
             aroundVertex(mesh, number, [this](std::int32_t slot, int) { reshaped_.add(slot); });
         }
     }
-    const auto addBoxes = [&] {
-        for (const std::int32_t slot : reshaped_.all()) {
-            if (triangle(slot).alive()) {
-                changedBoxes_.add(boxOf(triangle(slot)));
-            }
-        }
-    };
-    addBoxes();
+    addBoxes(reshaped_.all());
     change.rim = move(tin, others);
     for (const std::int32_t slot : replaced) {
-        replace(slot, drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]));
+        chunks_.replace(geometry_, slot, drawn(slot));
     }
     for (const Vertex number : elsewhere_) {
         aroundVertex(mesh, number, [this](std::int32_t slot, int) {
-            if (triangle(slot).alive()) {
-                keepHome(slot);
+            if (geometry_.triangle(slot).alive()) {
+                chunks_.keepHome(geometry_, slot);
             }
         });
     }
-    addBoxes();
-    const std::vector<Vertex> lit = relight(tin, reshaped_.all());
+    addBoxes(reshaped_.all());
+    const std::vector<Vertex> lit = relight(tin);
     others.insert(others.end(), lit.begin(), lit.end());
     sortOnce(others);
     change.vertices = std::move(others);
@@ -138,34 +97,43 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
     return change;
 }
 
-TinVertex TinVertices::placed(const SurfaceView& tin, Vertex number) const {
-    const bool known = static_cast<std::size_t>(number) < vertices_.size();
-    TinVertex now = known ? vertices_[static_cast<std::size_t>(number)] : TinVertex{};
-    if (!tin.triangles.alive(number)) {
-        now.x = now.y = -1;
-        return now;
+/// Lights the surface after a change of the triangles in reshaped_. Returns the vertices whose light has changed. Adds
+/// the triangles around them to the changes.
+std::vector<Vertex> TinVertices::relight(const SurfaceView& tin) {
+    for (const std::int32_t slot : reshaped_.all()) {
+        if (geometry_.triangle(slot).alive()) {
+            chunks_.reshape(slot);
+        }
     }
-    const LatticePoint& place = tin.triangles.places[static_cast<std::size_t>(number)];
-    now.x = place.x;
-    now.y = place.y;
-    now.height = static_cast<float>(tin.heights[static_cast<std::size_t>(number)] * unit_);
-    return now;
+    std::vector<Vertex> lit = light_.relight(tin, geometry_, reshaped_.all());
+    shaded_.clear();
+    for (const Vertex number : lit) {
+        aroundVertex(tin.triangles, number, [this](std::int32_t slot, int) { shaded_.add(slot); });
+    }
+    addBoxes(shaded_.all());
+    return lit;
 }
 
-/// Returns the vertices among `asked` that are new, removed, or at another place than drawn.
-std::vector<Vertex> TinVertices::moved(const SurfaceView& tin, std::span<const Vertex> asked) const {
-    std::vector<Vertex> others;
-    for (const Vertex number : asked) {
-        if (static_cast<std::size_t>(number) >= vertices_.size()) {
-            continue;  // the vertex was added and removed between two updates
-        }
-        const TinVertex& drawn = vertices_[static_cast<std::size_t>(number)];
-        const TinVertex now = placed(tin, number);
-        if (drawn.x != now.x || drawn.y != now.y || drawn.height != now.height) {
-            others.push_back(number);
+/// Adds boxes around triangles to the changes. Triangles in holes are not drawn.
+void TinVertices::addBoxes(const std::vector<std::int32_t>& slots) {
+    for (const std::int32_t slot : slots) {
+        if (geometry_.triangle(slot).alive()) {
+            changedBoxes_.add(geometry_.boxOf(geometry_.triangle(slot)));
         }
     }
-    return others;
+}
+
+std::optional<Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
+    const TinBounds changed = geometry_.boundsOf(tin, sandChange);
+    if (changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
+        return std::nullopt;
+    }
+    const double probe = geometry_.probe;
+    const Box reach{{changed.west * probe, changed.south * probe, changed.lowest},
+                    {changed.east * probe, changed.north * probe, changed.highest}};
+    // Vertices within this distance see a changed sky, and the triangles around them are shaded again.
+    const double margin = TinLight::kReach * geometry_.cellSize;
+    return chunks_.withChunksAt(geometry_, {reach.low - margin, reach.high + margin});
 }
 
 /// Copies places and heights of `vertices`. Returns whether the rim has changed.
@@ -176,13 +144,16 @@ bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices)
     }
     elsewhere_.clear();
     for (const Vertex number : vertices) {
-        TinVertex& drawn = vertex(number);
-        const TinVertex before = std::exchange(drawn, placed(tin, number));
+        TinVertex& drawn = geometry_.vertex(number);
+        const TinVertex before = std::exchange(drawn, geometry_.placed(tin, number));
         if (before.x != drawn.x || before.y != drawn.y) {
-            moveSquare(number, before);
+            light_.move(number, before, drawn);
+            if (drawn.x >= 0) {
+                elsewhere_.push_back(number);
+            }
         }
         if (drawn.x >= 0) {
-            drawn.mottling = mottlingOf(drawn.x, drawn.y);
+            drawn.mottling = TinLight::mottlingOf(drawn.x, drawn.y);
             ever_ = around(ever_, {drawn.height, drawn.height});
             rim |= keepRim(number, true);
         }
@@ -190,20 +161,9 @@ bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices)
     return rim;
 }
 
-void TinVertices::moveSquare(Vertex number, const TinVertex& before) {
-    const TinVertex& drawn = vertex(number);
-    if (before.x >= 0) {
-        squares_.remove(number, {before.x, before.y});
-    }
-    if (drawn.x >= 0) {
-        squares_.add(number, {drawn.x, drawn.y});
-        elsewhere_.push_back(number);
-    }
-}
-
 /// Adds a vertex to the rim, or removes it, if it lies on the rim. Returns whether it does.
 bool TinVertices::keepRim(Vertex number, bool present) {
-    const TinVertex& drawn = vertex(number);
+    const TinVertex& drawn = geometry_.vertex(number);
     if (drawn.x < 0) {
         return false;
     }
@@ -227,7 +187,7 @@ SandRim TinVertices::rim() const {
     SandRim rim;
     for (std::size_t side = 0; side < rim_.size(); ++side) {
         for (const auto& [along, number] : rim_[side]) {
-            rim.sides[side].emplace_back(at(number));
+            rim.sides[side].emplace_back(geometry_.at(number));
         }
     }
     return rim;
