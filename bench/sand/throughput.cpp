@@ -63,7 +63,7 @@ double (*clockFor(int threads))() { return threads > 1 ? wallSeconds : cpuSecond
 std::vector<double> measure(const Variant& variant, const sand::HeightField& start, int runs) {
     sand::Rules rules = rulesFor(start, variant.lumpy ? 1.0 : 64.0 / sand::kUnitsPerCell);
     rules.scheme = variant.scheme;
-    // At least one unit, because the band would otherwise be none with the low threshold of the rough field.
+    // The threshold of the rough field is so low that the band would be rounded to 0. So it is at least one unit.
     rules.tuning.startThreshold +=
         variant.band > 0 ? std::max(1, static_cast<int>(rules.tuning.threshold * variant.band)) : 0;
     host::WorkerPool pool(variant.threads);

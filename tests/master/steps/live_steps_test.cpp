@@ -5,68 +5,21 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <atomic>
 #include <chrono>
 #include <thread>
 
-#include "tests/haptic_bridge/client/sand_server.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/master/steps/live_steps_fixture.hpp"
 
 namespace {
 
 using haptic_bridge::TimedStep;
-using samples::withNumber;
 using test::eventually;
 using test::FakeServer;
+using test::kFrameNs;
+using test::kLooks;
+using test::LiveStepsTest;
 using test::SandServer;
 using namespace std::chrono_literals;
-
-constexpr std::int64_t kFrameNs = 16'666'667;
-constexpr std::chrono::milliseconds kLooks = 1200ms;  // time in which a link looks at its clock twice
-
-/// A wall without ranks. It shows each step that it takes.
-class LiveStepsTest : public testing::Test {
-protected:
-    master::LiveSteps stepsFrom(const haptic_bridge::Address& server) {
-        return {server, scene_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
-    }
-    void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
-    /// Shows one frame, and returns its steps.
-    std::vector<TimedStep> show(master::LiveSteps& live, std::size_t most = 4) {
-        std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
-        for (const TimedStep& timed : steps) {
-            wall_.apply(timed.step);
-            if (timed.step.edit.any()) {
-                edits_.push_back(timed.step.edit);
-            }
-        }
-        live.shown(wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no);
-        differed_ += live.proveServer(steps, wall_.stateHash()) ? 0 : 1;
-        return steps;
-    }
-    template <class Done>
-    bool showUntil(master::LiveSteps& live, const Done& done) {
-        return eventually([&] {
-            show(live);
-            return done();
-        });
-    }
-    /// Returns whether the master numbers the steps.
-    bool numbersAlone(master::LiveSteps& live) {
-        const std::vector<TimedStep> steps = show(live);
-        return !live.linked() && steps.size() == 1 && steps[0].serverHash == 0 && steps[0].step.epoch == live.epoch();
-    }
-    static std::uint64_t refusedForSilence(const master::LiveSteps& live) {
-        return live.counters().refused[static_cast<std::size_t>(haptic_bridge::RefusalCode::limit) - 1];
-    }
-
-    const scene::Scene scene_ = samples::flatScene(32, 24);
-    sand::Replica wall_{scene_};
-    std::atomic<std::int64_t> nowNs_{1'000'000'000};
-    int differed_ = 0;
-    std::vector<sand::Edit> edits_;  // of the steps that were shown
-};
 
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
     master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
@@ -281,159 +234,6 @@ TEST_F(LiveStepsTest, AServerThatFailsRightAfterEachLinkIsAskedMoreRarelyEachTim
     EXPECT_GE(std::chrono::steady_clock::now() - began, 1500ms);
     EXPECT_GE(live.counters().links, 3U) << "the server was linked each time";
     EXPECT_TRUE(eventually([&] { return !live.linked() && numbersAlone(live); })) << "the wall continues meanwhile";
-}
-
-TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
-    SandServer server(scene_);
-    master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
-    const base::Bytes sand = wall_.copySand()->encode();
-    const std::vector<sand::Edit> asked{withNumber(1, sand::Edit::settle), withNumber(2, sand::Edit::settle),
-                                        withNumber(3, sand::Edit::loaded(sand)),
-                                        withNumber(4, sand::Edit::loaded(sand)), withNumber(5, sand::Edit::reset)};
-    for (const sand::Edit& edit : asked) {
-        live.request(edit);
-    }
-    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 5; }));
-    EXPECT_EQ(edits_, asked) << "in the order in which they were asked for, also if two are equal";
-    EXPECT_EQ(edits_[2].sand, asked[2].sand) << "the same bytes in memory";
-    const std::uint64_t then = wall_.stepNumber();
-    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));
-    EXPECT_EQ(edits_.size(), 5U);
-    EXPECT_EQ(server.requests(), 5);
-    EXPECT_FALSE(server.crowded()) << "a server keeps one for its next step";
-    EXPECT_EQ(differed_, 0);
-}
-
-TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
-    std::atomic<int> asked = 0;
-    FakeServer server([&](FakeServer::Connection& connection) {
-        if (!connection.await<haptic_bridge::Hello>()) {
-            return;
-        }
-        connection.send(haptic_bridge::Welcome{
-            {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        const auto start = connection.await<haptic_bridge::Start>();
-        if (!start) {
-            return;
-        }
-        connection.send(haptic_bridge::Ready{});
-        if (server.connections() > 1) {  // it does the edit late, in the next epoch
-            connection.send(haptic_bridge::StepMessage{
-                1, 1, {start->epoch, start->stepNumber + 1, false, {}, withNumber(1, sand::Edit::settle)}});
-            connection.await<haptic_bridge::Bye>();
-        } else if (connection.await<haptic_bridge::EditRequest>()) {
-            ++asked;  // the server then closes the link
-        }
-    });
-    master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    live.request(withNumber(1, sand::Edit::settle));
-    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 1; }));
-    EXPECT_EQ(asked, 1);
-    EXPECT_FALSE(live.linked());
-    EXPECT_EQ(edits_[0].number, 1U);
-    const auto garbage = [&] {
-        return live.counters().refused[static_cast<std::size_t>(haptic_bridge::RefusalCode::garbage) - 1];
-    };
-    ASSERT_TRUE(showUntil(live, [&] { return garbage() == 1; })) << "it was not asked for in this epoch";
-    for (int frame = 0; frame < 20; ++frame) {
-        show(live);
-    }
-    EXPECT_EQ(edits_.size(), 1U) << "each number is in one step";
-}
-
-// The server of the first link is wrong from step 30 on. The master then numbers the steps until it is linked again.
-TEST_F(LiveStepsTest, EditsKeepTheirNumbersOverEpochs) {
-    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
-        return link == 1 && step >= 30 ? hash ^ 1 : hash;
-    });
-    master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
-    live.request(withNumber(8, sand::Edit::settle));
-    ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
-    ASSERT_FALSE(live.linked());
-    live.request(withNumber(9, sand::Edit::settle));
-    live.request(withNumber(10, sand::Edit::settle));
-    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && live.linked(); }));
-    live.request(withNumber(11, sand::Edit::settle));
-    ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 4; }));
-    const std::uint64_t then = wall_.stepNumber();
-    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));
-    std::vector<std::uint64_t> numbers;
-    for (const sand::Edit& edit : edits_) {
-        numbers.push_back(edit.number);
-    }
-    EXPECT_EQ(numbers, (std::vector<std::uint64_t>{8, 9, 10, 11}));
-    EXPECT_GE(live.epoch(), 3U);
-}
-
-// A server may send 50,000 messages a second, and each piece goes into the journal.
-TEST_F(LiveStepsTest, TicksThatNoHandCanMakeAreLeftOut) {
-    constexpr int kPieces = 400;
-    constexpr std::size_t kPiece = 60'000;
-    std::atomic<bool> sent = false;
-    FakeServer server(test::toTheFirst([&](FakeServer::Connection& connection) {
-        if (!connection.await<haptic_bridge::Hello>()) {
-            return;
-        }
-        connection.send(haptic_bridge::Welcome{
-            {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (connection.await<haptic_bridge::Start>()) {
-            connection.send(haptic_bridge::Ready{});
-            const base::Bytes piece = haptic_bridge::encode(haptic_bridge::TickPiece{base::Bytes(kPiece, 1)});
-            for (int i = 0; i < kPieces; ++i) {
-                connection.send(piece);
-            }
-            sent = true;
-            connection.await<haptic_bridge::Bye>();
-        }
-    }));
-    master::LiveSteps live = stepsFrom(server.address());
-    std::size_t bytes = 0;
-    const auto keep = [&] {
-        for (const base::Bytes& piece : live.ticks()) {
-            bytes += piece.size();
-        }
-    };
-    ASSERT_TRUE(showUntil(live, [&] {
-        keep();
-        return sent.load();
-    }));
-    const bool all = eventually(
-        [&] {
-            show(live);
-            keep();
-            return bytes > std::size_t{kPieces} * kPiece / 2;
-        },
-        kLooks);
-    EXPECT_FALSE(all) << bytes;
-    EXPECT_GT(bytes, kPiece);
-}
-
-TEST_F(LiveStepsTest, EveryServerBeginsWithTheShareThatAnOperatorHasSet) {
-    SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
-        return link == 1 && step >= 40 ? hash ^ 1 : hash;
-    });
-    master::LiveSteps live = stepsFrom(server.address());
-    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    using haptic_bridge::ForceShare;
-    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}})) << "no operator has set a share";
-    live.shareForce(0.5);
-    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 30; }));
-    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}, {0.5, true}}));
-    ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2; }));
-    const std::uint64_t then = wall_.stepNumber();
-    ASSERT_TRUE(showUntil(live, [&] { return server.shown() > then + 20; }));
-    EXPECT_EQ(server.shares(), (std::vector<ForceShare>{{1, false}, {0.5, true}, {0.5, true}})) << "once per link";
-}
-
-TEST_F(LiveStepsTest, AShareThatIsSetBeforeAServerLinksIsThatOfItsFirstStep) {
-    SandServer server(scene_);
-    master::LiveSteps live = stepsFrom(server.address());
-    live.shareForce(0);
-    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    EXPECT_EQ(server.shares(), (std::vector<haptic_bridge::ForceShare>{{0, true}}));
 }
 
 }  // namespace
