@@ -22,7 +22,7 @@ COUNT = 64  # bugs that are drawn
 SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_tests", "window_tests", "module_tests"}
 # A few sessions, for the parts of the programs that no unit test reaches.
 SESSIONS = "cluster_tests Lockstep.*:Resuming.*:WrongServer.*:Devices.*"
-WITH_SESSIONS = ("haptic_bridge", "lockstep", "master", "render_node", "tracking", "walls")
+WITH_SESSIONS = ("haptic_bridge", "lockstep", "master", "render_node", "replay", "tracking", "walls")
 # Python tests that start neither sessions nor windows.
 SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
 

@@ -12,6 +12,7 @@
 #include "sand/grid/dunes.hpp"
 #include "sand/grid/settle.hpp"
 #include "scene/model/scene.hpp"
+#include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -19,13 +20,16 @@ namespace {
 
 using Options = sand::grid::Erosion::Options;
 
-/// Expects the same hash on every code path of this CPU, with one thread and with three.
+/// Expects the same hash on every code path of this CPU, with one thread and with three. Builds with sanitizers leave
+/// out the threads, which the tests of the walk and of the covers have, too.
 void expectHash(const std::string& expected, const std::function<std::uint64_t(const Options&)>& hashWith) {
     host::WorkerPool team(3);
     for (const base::CodePath path : base::codePathsHere()) {
         EXPECT_EQ(fmt::format("{:016x}", hashWith({.path = path})), expected) << base::nameOf(path);
-        EXPECT_EQ(fmt::format("{:016x}", hashWith({.path = path, .executor = team.lend()})), expected)
-            << base::nameOf(path) << ", three threads";
+        if (!samples::kSanitized) {
+            EXPECT_EQ(fmt::format("{:016x}", hashWith({.path = path, .executor = team.lend()})), expected)
+                << base::nameOf(path) << ", three threads";
+        }
     }
 }
 
