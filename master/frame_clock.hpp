@@ -10,7 +10,7 @@ namespace master {
 /// One swap of the wall: the moment after the master has sent the verdict that all ranks agree. Each rank swaps when it
 /// has the verdict.
 struct Swap {
-    std::int64_t timeNs = 0;    // [ns]
+    std::int64_t timeNs = 0;    // of that moment
     std::int64_t interval = 0;  // [ns], since the swap before; 0 at the first swap
     bool first = false;         // the first swap of this process
 

@@ -79,14 +79,14 @@ public:
     void operator()(const master::JournalForce&) {}
 
 private:
-    void compare(const master::JournalEnd& said) {
+    void compare(const master::JournalEnd& recorded) {
         ++hashes_;
-        if (said.step == replica_.stepNumber() && said.hash == replica_.stateHash()) {
+        if (recorded.step == replica_.stepNumber() && recorded.hash == replica_.stateHash()) {
             return;
         }
         if (differing_++ == 0) {
-            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", said.step, said.hash,
-                            replica_.stateHash());
+            host::printLine("after step {}: the session had {:016x}, the replay has {:016x}", recorded.step,
+                            recorded.hash, replica_.stateHash());
         }
     }
     void compareCheckpoint() {

@@ -64,7 +64,6 @@ constexpr auto valuesOf(Stereo) {
                       base::Named{anaglyphHalf, "anaglyph_half"},
                       base::Named{anaglyphDubois, "anaglyph_dubois"}};
 }
-inline constexpr Stereo kLastStereo = valuesOf(Stereo{}).back().value;
 
 [[nodiscard]] inline std::string_view eyeName(Eye eye) { return base::nameOf(eye); }
 [[nodiscard]] inline std::string_view stereoName(Stereo stereo) { return base::nameOf(stereo); }

@@ -14,9 +14,6 @@ namespace {
 
 using sand::Between;
 
-constexpr std::pair<Between, const char*> kWays[]{
-    {Between::local, "local"}, {Between::hold, "hold"}, {Between::interpolate, "interpolate"}};
-
 constexpr double kTapBegins = 2.5, kTapTakes = 0.1;  // [s]
 
 /// Returns the height of a tapping tip over level sand [m]. The tip goes down by `depth` and back in 0.1 s.
@@ -69,7 +66,7 @@ void betweenStability(const Settings&, Csv& csv) {
     csv.note("until the arm is below 1 mm/s for good [s]; speed: the greatest one of the last 0.5 s [mm/s]; force: at");
     csv.note("the end [N].");
     csv.columns("between,arm,grip,grip_damping,K,rest,speed,force");
-    for (const auto& [between, way] : kWays) {
+    for (const auto& [between, way] : valuesOf(Between{})) {
         const scene::Scene scene = test::writingSand(between);
         for (const std::string_view name : haptic_bridge::kArmPresets) {
             for (const haptic_bridge::Grip& grip : {test::kLightGrip, test::kUsualGrip}) {
@@ -92,7 +89,7 @@ void tap(const Settings&, Csv& csv) {
     csv.note("K: stiffness that the guards allow [N/m]; peak: greatest force [N]; delay: of the peak behind the");
     csv.note("deepest place [ms]; work: that the sand does on the tip [mJ], positive if the hand gains.");
     csv.columns("between,arm,K,peak,delay,work");
-    for (const auto& [between, way] : kWays) {
+    for (const auto& [between, way] : valuesOf(Between{})) {
         const scene::Scene scene = test::writingSand(between);
         for (const std::string_view name : haptic_bridge::kArmPresets) {
             progress("tap, {}, {}", way, name);

@@ -33,7 +33,7 @@ bool MessageReader::mayBeLong(std::uint8_t type) const {
 void MessageReader::freeLongMessage() {
     const auto rest = std::span<const std::uint8_t>(buffer_).subspan(begin_);
     if (buffer_.capacity() > kMaxKept && rest.size() <= kMaxKept) {
-        buffer_ = base::Bytes(rest.begin(), rest.end());  // `= {}` would keep the memory
+        buffer_ = base::Bytes(rest.begin(), rest.end());  // a new vector, because clear() and `= {}` keep the memory
         begin_ = 0;
     }
 }

@@ -212,7 +212,7 @@ void serve(const Options& options) {
     const auto datum =
         settings.datum.value_or(device.physics() ? HandSettings::Datum::level : HandSettings::Datum::surface);
     HapticTick hand(scene, std::move(opened), datum, options.guards);
-    hand.shareForce(0);  // until a master has told its share
+    hand.shareForce(0);  // until a master has sent its share
     // So that a master that links before the force loop's first tick also feels the sand under the hand.
     channel.failure.run("device " + options.device, [&hand] { hand.rest(0); });
     channel.failure.rethrow();

@@ -364,8 +364,8 @@ void Peer::end(const std::string& why, Connection::Fault fault) {
         log(why);
     }
     if (fault) {
-        const std::string who = unauthenticated ? "an unauthenticated connection: " : "a watcher: ";
-        gate_.refused(*fault, connection_->address(), master ? "" : who + why, host::monotonicNs());
+        const std::string name = unauthenticated ? "an unauthenticated connection: " : "a watcher: ";
+        gate_.refused(*fault, connection_->address(), master ? "" : name + why, host::monotonicNs());
     }
     phase_ = Phase::over;
     reportTimer_.cancel();

@@ -92,7 +92,7 @@ private:
         std::size_t lastBytes = 0;
     } sent_;  // counts of step messages
     RoundTrips roundTrips_;
-    std::string goodbye_;  // reason of the goodbye that is to be said
+    std::string goodbye_;  // reason of the goodbye that is to be sent
     std::int64_t heardNs_ = 0;
 };
 

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "master/journal/file_origin.hpp"
 
 namespace master {
-
-inline constexpr std::size_t kLongestBuild = 256;  // [byte] of a build id
 
 /// The whole sand after a step, in a file beside the journal. With it, a resumed session need not replay the whole
 /// journal.

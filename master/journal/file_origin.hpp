@@ -11,6 +11,8 @@
 
 namespace master {
 
+inline constexpr std::size_t kLongestBuild = 256;  // [byte] of a build id
+
 /// Release that wrote a file, with its format and algorithm. In journals, checkpoints and saved sand it follows the
 /// magic number (docs/journal.md).
 struct FileOrigin {

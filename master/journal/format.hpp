@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
-#include "master/journal/checkpoint.hpp"
 #include "master/journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 #include "scene/model/material.hpp"

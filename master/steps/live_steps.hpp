@@ -102,7 +102,7 @@ private:
     std::uint32_t epoch_;
     std::int64_t waitingSinceNs_;   // [ns], since when the master waits for the server
     std::uint64_t linksNoted_ = 0;  // number of the link whose last report noteLastReport() has judged
-    bool memoryChanged_ = false;    // a server has said so, and proveServer() has not told it yet
+    bool memoryChanged_ = false;    // a server has reported it, and proveServer() has not returned it yet
     bool serverUnhealed_ = false;
     std::optional<bool> serverAtEnd_;
 };

@@ -51,12 +51,8 @@ struct ForceConstants {
     double validity = 0.5;       // [tool reach], distance over which the local model is valid
     double recoveryTime = 0.05;  // time constant with which a new local model takes over [s]
 
-    /// The first three numbers of forceKeys(). An encoded scene has them before the sand.
     template <class Self, class Visit>
-    static void oldestFields(Self& it, Visit& visit);
-    /// All other constants. An encoded scene has them behind the sand.
-    template <class Self, class Visit>
-    static void otherFields(Self& it, Visit& visit);
+    static void fields(Self& it, Visit& visit);
     friend bool operator==(const ForceConstants&, const ForceConstants&) = default;
 };
 
@@ -69,15 +65,8 @@ struct ForceKey {
 [[nodiscard]] std::span<const ForceKey> forceKeys();
 
 template <class Self, class Visit>
-void ForceConstants::oldestFields(Self& it, Visit& visit) {
-    for (const ForceKey& key : forceKeys().first(3)) {
-        visit(key.name, base::limited(it.*key.constant, key.lowest, key.highest));
-    }
-}
-
-template <class Self, class Visit>
-void ForceConstants::otherFields(Self& it, Visit& visit) {
-    for (const ForceKey& key : forceKeys().subspan(3)) {
+void ForceConstants::fields(Self& it, Visit& visit) {
+    for (const ForceKey& key : forceKeys()) {
         visit(key.name, base::limited(it.*key.constant, key.lowest, key.highest));
     }
     visit("law", it.law);

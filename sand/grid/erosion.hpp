@@ -36,9 +36,9 @@ namespace sand::grid {
 /// - m: slope
 /// - t: threshold
 /// - q_last: flux of the face in the last sweep
-/// - M = n / (n + 25), at most 0.9: inertia, where n counts the sweeps that moved sand since touch(). A small pile
-/// rests
-///   after few sweeps, so that it has little inertia and does not overshoot.
+/// - M = n / (n + 25), at most 0.9: inertia, where n counts the sweeps that moved sand since touch()
+///
+/// A small pile rests after few sweeps, so that it has little inertia and does not overshoot.
 ///
 /// The two properties need only the cut. Plain G is the law without inertia. Sand at rest starts to slide at the same
 /// slope under both laws. The piles of both are equal to three digits, but the default law needs a tenth of the sweeps.

@@ -5,10 +5,9 @@
 #include <string>
 
 #include "base/field_forms.hpp"
+#include "scene/model/longest_text.hpp"
 
 namespace scene {
-
-inline constexpr std::size_t kLongestText = 1 << 16;  // [byte] in an encoded scene; the longest WKT takes a tenth of it
 
 /// Units of the lengths and heights of a raster. Programs hold heights in the unit of lengths, whatever unit the file
 /// has.

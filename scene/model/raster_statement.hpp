@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/field_forms.hpp"
-#include "scene/model/georeference.hpp"
+#include "scene/model/longest_text.hpp"
 
 namespace scene {
 

@@ -88,14 +88,12 @@ struct Whole {
     static void fields(Self& it, Visit& visit) {
         AnyScene& scene = it.scene;
         Head::fields(scene, visit);
-        sand::ForceConstants::oldestFields(scene.force, visit);
-        Look::colourFields(scene.look, visit);
         double cellSize = scene.terrain.cellSize();
         visit("cell_size",
               base::limited(cellSize, std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()));
         visit("sand", Sand<AnyScene>{scene, cellSize});
-        Look::shadingFields(scene.look, visit);
-        sand::ForceConstants::otherFields(scene.force, visit);
+        Look::fields(scene.look, visit);
+        sand::ForceConstants::fields(scene.force, visit);
         visit("parts", Parts<AnyScene>{scene, it.withStatements});
     }
 };

@@ -28,16 +28,11 @@ struct Look {
     double detail = 0.5;
     static constexpr double kMostDetail = 64;  // [pixel]
 
-    /// The colours and the sun. An encoded scene has them before the sand.
     template <class Self, class Visit>
-    static void colourFields(Self& it, Visit& visit) {
-        visit("sand", base::exactly(it.sandColour, 3));
+    static void fields(Self& it, Visit& visit) {
+        visit("sand_colour", base::exactly(it.sandColour, 3));
         visit("background", base::exactly(it.backgroundColour, 3));
         visit("sun", base::exactly(it.sunDirection, 3));
-    }
-    /// The rest. An encoded scene has it behind the sand.
-    template <class Self, class Visit>
-    static void shadingFields(Self& it, Visit& visit) {
         visit("shading", base::flags(it.hillShade, it.flatShading));
         visit("detail", base::limited(it.detail, 0, kMostDetail));
     }

@@ -31,8 +31,8 @@ using Types = std::tuple<
     master::JournalFrame, master::JournalEnd, master::JournalResumed, master::JournalTicks, master::JournalDoubt,
     master::JournalChecked, master::JournalContinued, master::JournalForce,
     // scenes
-    sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::StateHead, scene::Material, scene::Georeference,
-    scene::RasterStatement, sand::tin::Holes::Run, sand::tin::TinStart,
+    sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::StateHead, sand::ForceConstants, scene::Look,
+    scene::Material, scene::Georeference, scene::RasterStatement, sand::tin::Holes::Run, sand::tin::TinStart,
     // walls
     walls::Screen, walls::Output, walls::Place, walls::Tile, walls::Viewer, walls::Clip, walls::Stage, walls::Grid,
     walls::Wall>;

@@ -102,10 +102,10 @@ public:
             line += fmt::format(" {}x{}", bytes.size(), bytes.back());
         }
         const base::Bytes passed = barrier_.pass(2, {1, 3}, base::Bytes(rank == 2 ? 5 : 0, 9));
-        const base::Bytes told = barrier_.broadcast(base::Bytes(cluster_.isMaster() ? 7 : 0, 4));
+        const base::Bytes received = barrier_.broadcast(base::Bytes(cluster_.isMaster() ? 7 : 0, 4));
         line += "; passed and told";
         for (const base::Bytes& one :
-             barrier_.collect({static_cast<std::uint8_t>(passed.size()), static_cast<std::uint8_t>(told.size())})) {
+             barrier_.collect({static_cast<std::uint8_t>(passed.size()), static_cast<std::uint8_t>(received.size())})) {
             line += fmt::format(" {}+{}", one[0], one[1]);
         }
         return line;

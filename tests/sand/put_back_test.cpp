@@ -296,7 +296,11 @@ TEST(Edits, AStateWithASpoiltStrokeIsRefusedWhole) {
     Replica dug(scene);
     Hand(dug).stroke(32);
     base::Bytes state = dug.encodeState();
-    state[4 + 8 + 12 + 4 + 16 + 4 + 8 + 4] ^= 0xff;  // the first byte of the compressed heights before the stroke
+    base::ByteReader reader(state);
+    (void)base::read<sand::StateHead>(reader);
+    constexpr std::size_t kBefore =
+        4 + 8 + 4;  // length of the sand before the stroke, its outflow, length of its heights
+    state[state.size() - reader.rest().size() + kBefore] ^= 0xff;  // the first byte of the compressed heights
     Replica replica(scene);
     const std::uint64_t hash = replica.stateHash();
     EXPECT_THROW(replica.decodeState(state), base::FormatError);

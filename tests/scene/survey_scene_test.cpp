@@ -16,10 +16,10 @@ namespace {
 
 class SurveyScene : public test::FolderTest {
 protected:
-    void writeDunes(const std::string& replica, const std::string& tin) const {
+    void writeDunes(const std::string& terrain, const std::string& tin) const {
         std::ofstream(folder_ / "scene.toml")
             << "[field]\ncolumns = 64\nwidth = 2.0\n[terrain]\nkind = \"dunes\"\nheight = 0.3\n"
-            << replica << "[tin]\n"
+            << terrain << "[tin]\n"
             << tin << "[material]\ntalus_deg = 34\n[tool]\nradius = 0.1\n";
     }
 };

@@ -77,10 +77,10 @@ TEST(CheckProgram, CountsOutputsAndThoseWithAPlace) {
 
 TEST(CheckProgram, ShowsAnyWallInAnyMode) {
     for (const std::string& name : configNames()) {
-        for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
-            const std::string stereo(stereoName(static_cast<Stereo>(mode)));
-            const std::string text = describe(loadWallAs(pathOf(name), stereo));
-            EXPECT_NE(text.find(mode == 0 ? ", mono," : fmt::format(", {} stereo,", stereo)), std::string::npos)
+        for (const auto& [stereo, mode] : valuesOf(Stereo{})) {
+            const std::string text = describe(loadWallAs(pathOf(name), std::string(mode)));
+            const bool mono = stereo == Stereo::mono;
+            EXPECT_NE(text.find(mono ? ", mono," : fmt::format(", {} stereo,", mode)), std::string::npos)
                 << name << "\n"
                 << text;
         }

@@ -86,16 +86,15 @@ TEST(PixelShape, MayBeStretchedOnlyAsTheDisplayStretchesHalves) {
 }
 
 TEST(ShownIn, GivesEveryTileTheOutputsOfTheMode) {
-    for (int mode = 0; mode <= static_cast<int>(kLastStereo); ++mode) {
-        const auto stereo = static_cast<Stereo>(mode);
+    for (const auto& [stereo, mode] : valuesOf(Stereo{})) {
         const Wall wall = shownIn(config("tiled_3x4.toml"), stereo);
         EXPECT_EQ(wall.stereo, stereo);
         ASSERT_EQ(wall.tiles.size(), 12U);
         for (const Tile& tile : wall.tiles) {
-            EXPECT_EQ(tile.outputs, outputsOf(stereo, tile.name)) << stereoName(stereo);
+            EXPECT_EQ(tile.outputs, outputsOf(stereo, tile.name)) << mode;
             EXPECT_EQ(tile.pixels, glm::ivec2(1024, 768));
         }
-        EXPECT_EQ(Wall::decode(wall.encode()), wall) << stereoName(stereo);
+        EXPECT_EQ(Wall::decode(wall.encode()), wall) << mode;
     }
 }
 

@@ -129,7 +129,7 @@ TEST(WallConfigs, ShowStereoInEveryWayThereIs) {
     for (const std::string& name : configNames()) {
         shown.insert(config(name).stereo);
     }
-    EXPECT_EQ(shown.size(), static_cast<std::size_t>(kLastStereo) + 1);
+    EXPECT_EQ(shown.size(), valuesOf(walls::Stereo{}).size());
 }
 
 TEST(WallConfigs, PortableHasOneBufferForBothEyes) {

@@ -51,7 +51,7 @@ std::shared_ptr<const Holes> holesOf(const TinStart& start, std::vector<Holes::R
     try {
         return std::make_shared<const Holes>(cells, std::move(runs));
     } catch (const std::invalid_argument& wrong) {
-        throw base::FormatError(std::string("not a TIN: ") + wrong.what());
+        throw base::FormatError(wrong.what());
     }
 }
 

@@ -38,10 +38,10 @@ inline constexpr std::int32_t kNoNumber = -1;  // stands for a missing vertex, t
 /// Triangle with its corners counter-clockwise. neighbour[k] and constrained[k] belong to the edge opposite corner[k].
 struct Triangle {
     std::array<Vertex, 3> corner{kNoNumber, kNoNumber, kNoNumber};
-    std::array<std::int32_t, 3> neighbour{kNoNumber, kNoNumber,
-                                          kNoNumber};  // by slot; kNoNumber across the field's rim
-    std::array<bool, 3> constrained{};                 // always true for edges of the rim
-    bool hole = false;                                 // without ground: cells without data (holes.hpp)
+    // By slot; kNoNumber across the field's rim.
+    std::array<std::int32_t, 3> neighbour{kNoNumber, kNoNumber, kNoNumber};
+    std::array<bool, 3> constrained{};  // always true for edges of the rim
+    bool hole = false;                  // without ground: cells without data (holes.hpp)
     [[nodiscard]] bool alive() const { return corner[0] != kNoNumber; }
     [[nodiscard]] bool isGround() const { return alive() && !hole; }
 };

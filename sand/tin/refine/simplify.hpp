@@ -34,9 +34,8 @@ struct SimplifyGoal {
 
 /// A choice of a raster's samples whose triangulation is close to all samples.
 struct Simplified {
-    std::vector<LatticePoint>
-        places;                   // the field's corners, the given points, then samples in the order of their choice
-    std::vector<double> heights;  // [the raster's unit]
+    std::vector<LatticePoint> places;   // the field's corners, the given points, then samples as they were chosen
+    std::vector<double> heights;        // [the raster's unit]
     double maxError = 0, rmsError = 0;  // vertical, over all samples with data [the raster's unit]
 };
 

@@ -163,8 +163,8 @@ private:
             }
             return corners;
         };
-        std::transform(difference_.removed.begin(), difference_.removed.end(), std::back_inserter(went_), cornersOf);
-        std::transform(difference_.added.begin(), difference_.added.end(), std::back_inserter(came_), cornersOf);
+        std::transform(difference_.removed.begin(), difference_.removed.end(), std::back_inserter(removed_), cornersOf);
+        std::transform(difference_.added.begin(), difference_.added.end(), std::back_inserter(added_), cornersOf);
         std::vector<std::uint32_t> order(found.size()), rank(found.size());
         std::iota(order.begin(), order.end(), 0U);
         std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return found[a] < found[b]; });
@@ -175,7 +175,7 @@ private:
             nodes_[i].place = found[order[i]].place;
             nodes_[i].part = i;
         }
-        for (auto* triangles : {&went_, &came_}) {
+        for (auto* triangles : {&removed_, &added_}) {
             for (Corners& corners : *triangles) {
                 std::transform(corners.begin(), corners.end(), corners.begin(),
                                [&rank](std::uint32_t number) { return rank[number]; });
@@ -184,15 +184,15 @@ private:
     }
 
     void gatherStars() {
-        for (std::size_t i = 0; i < went_.size(); ++i) {
-            for (const std::uint32_t corner : went_[i]) {
+        for (std::size_t i = 0; i < removed_.size(); ++i) {
+            for (const std::uint32_t corner : removed_[i]) {
                 Node& node = nodes_[corner];
                 node.star += (node.before ? 0 : stars_[indexOf(node.vertex)]) - areaOf(difference_.removed[i]);
                 node.before = true;
             }
         }
-        for (std::size_t i = 0; i < came_.size(); ++i) {
-            for (const std::uint32_t corner : came_[i]) {
+        for (std::size_t i = 0; i < added_.size(); ++i) {
+            for (const std::uint32_t corner : added_[i]) {
                 nodes_[corner].star += areaOf(difference_.added[i]);
                 nodes_[corner].now = true;
             }
@@ -208,7 +208,7 @@ private:
     }
 
     void gatherParts() {
-        for (const auto* triangles : {&went_, &came_}) {
+        for (const auto* triangles : {&removed_, &added_}) {
             for (const Corners& corners : *triangles) {
                 for (const std::uint32_t corner : {corners[1], corners[2]}) {
                     const std::uint32_t a = first(corners[0]);
@@ -231,8 +231,8 @@ private:
             part.empty = false;
             part.moves = part.moves || moving_[indexOf(nodes_[i].vertex)] != 0;
         }
-        for (std::size_t i = 0; i < came_.size(); ++i) {
-            parts_[nodes_[came_[i][0]].part].area += areaOf(difference_.added[i]);
+        for (std::size_t i = 0; i < added_.size(); ++i) {
+            parts_[nodes_[added_[i][0]].part].area += areaOf(difference_.added[i]);
         }
     }
 
@@ -315,7 +315,7 @@ private:
     const std::vector<std::uint8_t>& moving_;
     std::optional<Strips> strips_;  // of the triangles that went; created when first needed
     std::vector<Node> nodes_;       // in the order of Key
-    std::vector<Corners> went_, came_;
+    std::vector<Corners> removed_, added_;
     std::vector<Part> parts_;  // by their first node
 };
 

@@ -193,13 +193,13 @@ TEST_F(Mapped, RefusesAHeightThatFollowsTheSurface) {
 
 TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
     TroubleCounts counts;
-    TroubleReporter teller("device Touch");
-    EXPECT_TRUE(teller.lines(counts, 0).empty());
+    TroubleReporter reporter("device Touch");
+    EXPECT_TRUE(reporter.lines(counts, 0).empty());
     int told = 0;
     std::string first;
     for (int tick = 0; tick < 25'000; ++tick) {
         counts.count(Trouble::noNumber);
-        for (const std::string& line : teller.lines(counts, tick * kArmTick)) {
+        for (const std::string& line : reporter.lines(counts, tick * kArmTick)) {
             first = first.empty() ? line : first;
             ++told;
         }
@@ -212,14 +212,14 @@ TEST(Troubles, AreToldOnceNotAThousandTimesASecond) {
 
 TEST(Troubles, AnAbsentDeviceIsToldWhenItGoesAndWhenItIsBack) {
     TroubleCounts counts;
-    TroubleReporter teller("device Touch");
+    TroubleReporter reporter("device Touch");
     std::vector<std::string> told;
     const auto run = [&](int from, int to, bool away) {  // [tick]
         for (int tick = from; tick < to; ++tick) {
             if (away) {
                 counts.count(Trouble::absent);
             }
-            for (const std::string& line : teller.lines(counts, tick * kArmTick)) {
+            for (const std::string& line : reporter.lines(counts, tick * kArmTick)) {
                 told.push_back(line);
             }
         }

@@ -53,7 +53,7 @@ TEST(TinReplicaUnderATool, WhatWasForgottenSlidesAsSoonAsItIsAskedFor) {
         }
     }
 }
-TEST_F(TinReplica, WhatHasLookedInVainCoarsensAgainOnceSandHasSlid) {
+TEST_F(TinReplica, WhatCouldNotBeRemovedCoarsensAgainOnceSandHasSlid) {
     Replica replica(scene());
     std::uint64_t number = 0;
     replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
