@@ -11,9 +11,10 @@
 namespace lockstep {
 
 Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame,
-                    PointerReport* pointer) {
-    static_assert(sizeof(Arrival) + sizeof(PointerReport) < kArrivalRoom);
-    const int expected = static_cast<int>(sizeof(Arrival) + (pointer == nullptr ? 0 : sizeof(PointerReport)));
+                    haptic_bridge::PointerReport* pointer) {
+    static_assert(sizeof(Arrival) + sizeof(haptic_bridge::PointerReport) < kArrivalRoom);
+    const int expected =
+        static_cast<int>(sizeof(Arrival) + (pointer == nullptr ? 0 : sizeof(haptic_bridge::PointerReport)));
     if (length == kCutShort) {
         throw base::FormatError(fmt::format("longer than {} bytes", kArrivalRoom));
     }
@@ -26,7 +27,7 @@ Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length
         throw base::FormatError(fmt::format("of frame {}", arrival.frame));
     }
     if (pointer != nullptr) {
-        PointerReport report;
+        haptic_bridge::PointerReport report;
         std::memcpy(&report, room.data() + sizeof arrival, sizeof report);
         requireValid(report);
         *pointer = report;

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "base/byte_stream.hpp"
-#include "lockstep/pointer.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
 
 namespace lockstep {
 
@@ -36,7 +36,7 @@ inline constexpr int kCutShort = -1;
 /// @param pointer  Not null in a session whose hand is the pointer. The message then has a valid PointerReport behind
 ///          the arrival, which is stored here.
 [[nodiscard]] Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame,
-                                  PointerReport* pointer = nullptr);
+                                  haptic_bridge::PointerReport* pointer = nullptr);
 
 /// Returns the random bytes that a drill sends instead of the arrival at frame `frame`. Their number changes from frame
 /// to frame: the length of an arrival, 200, and 4000, which is longer than the master's buffer.

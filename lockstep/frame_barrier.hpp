@@ -66,10 +66,10 @@ public:
     /// Makes all further arrivals carry a PointerReport. Collective: every rank calls it before the first frame.
     void carryPointers();
     /// Sets the report that this rank sends with its further arrivals. Needs carryPointers().
-    void setPointer(const PointerReport& report) { pointer_ = report; }
+    void setPointer(const haptic_bridge::PointerReport& report) { pointer_ = report; }
     /// Returns the reports at the last barrier in order of rank; that of the master is empty. Empty on other ranks and
     /// without carryPointers().
-    [[nodiscard]] const std::vector<PointerReport>& pointers() const { return pointers_; }
+    [[nodiscard]] const std::vector<haptic_bridge::PointerReport>& pointers() const { return pointers_; }
 
     /// Returns the earliest time at which the next frame begins [ns, this rank's clock]. begin() sleeps until then.
     [[nodiscard]] std::int64_t quietUntil() const { return quietUntil_; }
@@ -129,8 +129,8 @@ private:
     std::vector<std::string> names_;
     double endLimit_;  // [s]
     std::vector<Arrival> arrivals_;
-    std::optional<PointerReport> pointer_;  // of this rank; nullopt: arrivals carry no report
-    std::vector<PointerReport> pointers_;   // of all ranks, at the master
+    std::optional<haptic_bridge::PointerReport> pointer_;  // of this rank; nullopt: arrivals carry no report
+    std::vector<haptic_bridge::PointerReport> pointers_;   // of all ranks, at the master
     std::vector<Nonsense> nonsense_;
     std::vector<int> ranks_;                        // all render ranks; empty except at the master
     std::unique_ptr<std::atomic<bool>[]> missing_;  // by rank, also read by the watchdog's thread

@@ -91,8 +91,8 @@ void OperatorDesk::obeyKey(char key) {
     }
 }
 
-void OperatorDesk::turnView(std::span<const lockstep::PointerReport> pointers) {
-    for (const lockstep::PointerReport& pointer : pointers) {
+void OperatorDesk::turnView(std::span<const haptic_bridge::PointerReport> pointers) {
+    for (const haptic_bridge::PointerReport& pointer : pointers) {
         views_.turn(static_cast<double>(pointer.turnX), static_cast<double>(pointer.turnY));
     }
 }

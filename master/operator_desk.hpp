@@ -58,7 +58,7 @@ public:
     /// windows. Answers the clients of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
     /// Turns the view as the right button has dragged it in the ranks' windows.
-    void turnView(std::span<const lockstep::PointerReport> pointers);
+    void turnView(std::span<const haptic_bridge::PointerReport> pointers);
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }

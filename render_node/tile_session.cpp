@@ -140,7 +140,7 @@ private:
         }
     }
 
-    [[nodiscard]] lockstep::PointerReport readPointer(const lockstep::ViewState& view, std::int64_t clockAhead) {
+    [[nodiscard]] haptic_bridge::PointerReport readPointer(const lockstep::ViewState& view, std::int64_t clockAhead) {
         return pointer_.read(context_->takePointer(), *replica_, view, painter_->heightsEver(), clockAhead);
     }
 

@@ -54,7 +54,7 @@ public:
                                    std::uint64_t stateHash) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override { return link_.ticks(); }
     /// From the first call on, the pointers are the hand. Call it only without a server.
-    void pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand,
+    void pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
                  std::int64_t receivedNs) override {
         own_.pointed(reports, sand, receivedNs);
     }

@@ -43,7 +43,7 @@ void OwnSteps::followPositions(haptic_bridge::Client& client, haptic_bridge::Lin
     }
 }
 
-void OwnSteps::pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand,
+void OwnSteps::pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
                        std::int64_t receivedNs) {
     if (!pointer_) {
         pointer_.emplace(stepsPerSecond_, sand);

@@ -7,8 +7,8 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/hand/pace.hpp"
-#include "lockstep/pointer.hpp"
-#include "master/steps/pointer_hand.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
+#include "haptic_bridge/hand/pointer_hand.hpp"
 #include "master/steps/position_source.hpp"
 #include "master/steps/step_source.hpp"
 #include "sand/replica.hpp"
@@ -39,7 +39,8 @@ public:
     void followPositions(haptic_bridge::Client& client, haptic_bridge::Link link, const sand::Replica& sand,
                          std::int64_t nowNs);
     /// Takes the pointers. From the first call on they are the hand.
-    void pointed(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand, std::int64_t receivedNs);
+    void pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
+                 std::int64_t receivedNs);
 
     /// Returns whether a server streams positions.
     [[nodiscard]] bool streaming() const { return positions_.streaming(); }
@@ -52,9 +53,9 @@ private:
     int stepsPerSecond_;
     haptic_bridge::Pace pace_;
     PositionSource positions_;
-    std::optional<PointerHand> pointer_;  // nullopt before pointed()
-    std::int64_t pointedNs_ = 0;          // [ns], when the last reports arrived
-    double owed_ = 0;                     // [step]
+    std::optional<haptic_bridge::PointerHand> pointer_;  // nullopt before pointed()
+    std::int64_t pointedNs_ = 0;                         // [ns], when the last reports arrived
+    double owed_ = 0;                                    // [step]
     std::int64_t lastNs_ = 0;
 };
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "haptic_bridge/client/client.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
 #include "lockstep/fault.hpp"
-#include "lockstep/pointer.hpp"
 #include "sand/replica.hpp"
 
 namespace master {
@@ -57,7 +57,7 @@ public:
 
     /// Takes the pointers of the ranks' windows at the last barrier, in order of rank. `receivedNs` is when the last of
     /// them arrived [ns, the master's clock].
-    virtual void pointed(std::span<const lockstep::PointerReport> /* reports */, const sand::Replica& /* sand */,
+    virtual void pointed(std::span<const haptic_bridge::PointerReport> /* reports */, const sand::Replica& /* sand */,
                          std::int64_t /* receivedNs */) {}
 
     /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since

@@ -10,7 +10,7 @@
 namespace render_node {
 namespace {
 
-using lockstep::PointerReport;
+using haptic_bridge::PointerReport;
 
 /// Removes readings until a report can hold the rest. Keeps the last one, and those at which the pointer was pressed or
 /// released. Removes first a reading whose neighbours are close in time.
@@ -116,7 +116,7 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         if (reading.pressed && touched_ == nullptr && !replica.surface().readsKept()) {
             touched_ = replica.surface().clone();
         }
-        lockstep::PointerSample& sample = report.samples[report.count++] =
+        haptic_bridge::PointerSample& sample = report.samples[report.count++] =
             this->sample(reading, replica, view, heights);
         sample.readNs = reading.ns - clockAhead;
     }
@@ -128,8 +128,8 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
     return report;
 }
 
-lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& replica,
-                                              const lockstep::ViewState& view, HeightRange heights) {
+haptic_bridge::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& replica,
+                                                   const lockstep::ViewState& view, HeightRange heights) {
     const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
     const Ray units = sightRay(eye, roomPoint(wall_, tile(), reading.place), glm::make_mat4(view.sceneToRoom.data()));
     const double cell = replica.cellSize();
@@ -145,7 +145,7 @@ lockstep::PointerSample PointerReader::sample(const Reading& reading, const sand
                         heights.highest / cell + margin,
                         0.5,
                         [&](double x, double y) { return heightAt(x * kProbe, y * kProbe) / sand::kUnitsPerCell; }};
-    lockstep::PointerSample sample;
+    haptic_bridge::PointerSample sample;
     sample.pressed = pressed ? 1 : 0;
     const std::optional<glm::dvec2> place = meetSand(cells, sand);
     if (!place) {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "haptic_bridge/hand/pointer.hpp"
 #include "lockstep/frame_message.hpp"
-#include "lockstep/pointer.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/pointer/window_ray.hpp"
 #include "render_node/surface/height_range.hpp"
@@ -31,9 +31,9 @@ public:
     ///
     /// @param heights  No height of the sand is outside of these [scene unit].
     /// @param clockAhead  This rank's clock − master's clock [ns].
-    [[nodiscard]] lockstep::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& replica,
-                                               const lockstep::ViewState& view, HeightRange heights,
-                                               std::int64_t clockAhead);
+    [[nodiscard]] haptic_bridge::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& replica,
+                                                    const lockstep::ViewState& view, HeightRange heights,
+                                                    std::int64_t clockAhead);
 
 private:
     /// A place of the pointer, before its ray is computed.
@@ -42,10 +42,10 @@ private:
         WindowPlace place{};
         bool pressed = false;
     };
-    void follow(const PointerEvent& event, lockstep::PointerReport& report);
+    void follow(const PointerEvent& event, haptic_bridge::PointerReport& report);
     [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
-    [[nodiscard]] lockstep::PointerSample sample(const Reading& reading, const sand::Replica& replica,
-                                                 const lockstep::ViewState& view, HeightRange heights);
+    [[nodiscard]] haptic_bridge::PointerSample sample(const Reading& reading, const sand::Replica& replica,
+                                                      const lockstep::ViewState& view, HeightRange heights);
     /// Returns a height [unit] of the current sand, or of the sand from before the stroke if `pressed`.
     [[nodiscard]] double heightOf(const sand::Replica& replica, bool pressed, double x,
                                   double y /* [probe unit] */) const;

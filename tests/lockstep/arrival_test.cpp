@@ -65,20 +65,20 @@ TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
 }
 
 /// Returns the bytes of an arrival with a pointer behind it.
-Room letterWith(const lockstep::PointerReport& pointer) {
+Room letterWith(const haptic_bridge::PointerReport& pointer) {
     Room room = letterOf(kFrame);
     std::memcpy(room.data() + kLength, &pointer, sizeof pointer);
     return room;
 }
 
-constexpr int kWithPointer = kLength + static_cast<int>(sizeof(lockstep::PointerReport));
+constexpr int kWithPointer = kLength + static_cast<int>(sizeof(haptic_bridge::PointerReport));
 
 TEST(Arrival, CarriesAPointerIfTheSessionsHandIsOne) {
-    lockstep::PointerReport pointer;
+    haptic_bridge::PointerReport pointer;
     pointer.touch = 3;
     pointer.count = 1;
     pointer.samples[0] = {7, {1, -2, 3}, 1, 1, {}};
-    lockstep::PointerReport read;
+    haptic_bridge::PointerReport read;
     EXPECT_EQ(lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read).key, 'q');
     EXPECT_EQ(read, pointer);
     EXPECT_THROW((void)lockstep::readArrival(letterWith(pointer), kLength, kFrame, &read), base::FormatError);
@@ -87,30 +87,30 @@ TEST(Arrival, CarriesAPointerIfTheSessionsHandIsOne) {
 }
 
 TEST(Arrival, WithAnImpossiblePointerIsNone) {
-    const auto fault = [](const lockstep::PointerReport& pointer) {
-        lockstep::PointerReport read;
+    const auto fault = [](const haptic_bridge::PointerReport& pointer) {
+        haptic_bridge::PointerReport read;
         try {
             (void)lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read);
         } catch (const base::FormatError& error) {
-            EXPECT_EQ(read, lockstep::PointerReport{});
+            EXPECT_EQ(read, haptic_bridge::PointerReport{});
             return std::string(error.what());
         }
         return std::string("nothing");
     };
-    lockstep::PointerReport many;
-    many.count = lockstep::PointerReport::kMostSamples + 1;
+    haptic_bridge::PointerReport many;
+    many.count = haptic_bridge::PointerReport::kMostSamples + 1;
     EXPECT_EQ(fault(many), "a pointer with 7 places");
-    lockstep::PointerReport far;
+    haptic_bridge::PointerReport far;
     far.count = 1;
     far.samples[0].probe.y = sand::kMaxProbe;
     EXPECT_EQ(fault(far), "a pointer at 16777216");
     for (const std::int64_t time : {std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()}) {
-        lockstep::PointerReport late;
+        haptic_bridge::PointerReport late;
         late.count = 1;
         late.samples[0].readNs = time;
         EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
     }
-    lockstep::PointerReport wheel;
+    haptic_bridge::PointerReport wheel;
     wheel.wheel = std::numeric_limits<float>::infinity();
     EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
 }

@@ -270,7 +270,7 @@ TEST_F(Desk, TakesKeysAsCommandsIfTheHandIsThePointer) {
 
 // The wall of these tests is in stereo, so that it is not a desktop.
 TEST_F(Desk, TurnsTheSandOfADesktopOnly) {
-    std::array<lockstep::PointerReport, 2> pointers{};
+    std::array<haptic_bridge::PointerReport, 2> pointers{};
     pointers[1].turnX = 0.25F;
     const auto before = desk_->views().at(0).sceneToRoom;
     desk_->turnView(pointers);

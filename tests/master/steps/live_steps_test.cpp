@@ -24,7 +24,7 @@ using namespace std::chrono_literals;
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
     master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
                            [this] { return nowNs_.load(); });
-    std::array<lockstep::PointerReport, 2> reports{};
+    std::array<haptic_bridge::PointerReport, 2> reports{};
     live.pointed(reports, wall_, nowNs_);
     EXPECT_STREQ(live.hand(), "hand points");
     for (int frame = 0; frame < 60; ++frame) {

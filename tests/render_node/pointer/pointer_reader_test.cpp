@@ -14,8 +14,8 @@ namespace render_node {
 namespace {
 
 using Kind = PointerEvent::Kind;
-using lockstep::PointerReport;
-using lockstep::PointerSample;
+using haptic_bridge::PointerReport;
+using haptic_bridge::PointerSample;
 
 constexpr int kCells = 64;
 constexpr double kProbe = sand::kProbePerCell;

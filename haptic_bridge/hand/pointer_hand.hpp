@@ -6,18 +6,18 @@
 #include <span>
 
 #include "haptic_bridge/hand/hand.hpp"
-#include "lockstep/pointer.hpp"
-#include "master/steps/pointer_arbiter.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
+#include "haptic_bridge/hand/pointer_arbiter.hpp"
 #include "sand/replica.hpp"
 
-namespace master {
+namespace haptic_bridge {
 
 /// Makes the paths of the master's own steps from the pointers of the ranks' windows.
 ///
 /// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is `depth()` below
 /// the sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves
 /// nothing. Used by one thread.
-class PointerHand : public haptic_bridge::Hand {
+class PointerHand : public Hand {
 public:
     static constexpr double kHover = 1.3;          // [tool radius] from the surface to the centre of a tool that hovers
     static constexpr double kDepthPerNotch = 0.1;  // [tool radius]
@@ -27,14 +27,14 @@ public:
     PointerHand(int stepsPerSecond, const sand::Replica& sand);
 
     /// Takes the reports of a frame, in order of rank. `sand` gives the size of the tool.
-    void take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand);
+    void take(std::span<const PointerReport> reports, const sand::Replica& sand);
 
     [[nodiscard]] double depth() const { return depth_; }  // [tool radius]
     /// Returns whether a pointer has moved or touched.
     [[nodiscard]] bool pointed() const { return hand_.has_value(); }
 
 private:
-    void point(const lockstep::PointerSample& sample, const sand::Replica& sand);
+    void point(const PointerSample& sample, const sand::Replica& sand);
     void lift(std::int64_t readNs /* [ns] */);
     void hoverAt(const sand::Replica& sand);
 
@@ -45,4 +45,4 @@ private:
     double depth_ = 0.5;
 };
 
-}  // namespace master
+}  // namespace haptic_bridge

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/steps/pointer_hand.hpp"
+#include "haptic_bridge/hand/pointer_hand.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-using lockstep::PointerReport;
+using haptic_bridge::PointerReport;
 
 constexpr std::int64_t kReadingNs = 1'000'000;
 constexpr std::int32_t kPerCell = sand::kProbePerCell;
@@ -23,7 +23,7 @@ protected:
     /// Adds a place of rank `rank`'s pointer, in cells.
     void add(std::size_t rank, int x, int y, bool pressed, bool meets = true) {
         PointerReport& report = reports_.at(rank);
-        lockstep::PointerSample& sample = report.samples.at(report.count++);
+        haptic_bridge::PointerSample& sample = report.samples.at(report.count++);
         sample = {clock_ += kReadingNs,
                   {x * kPerCell, y * kPerCell, 0},
                   static_cast<std::uint8_t>(pressed ? 1 : 0),
@@ -51,7 +51,7 @@ protected:
 
     const scene::Scene scene_ = samples::flatScene(64, 64);
     sand::Replica replica_{scene_};
-    master::PointerHand hand_{60, replica_};
+    haptic_bridge::PointerHand hand_{60, replica_};
     std::array<PointerReport, 3> reports_{};
     std::int64_t clock_ = 20'000 * kReadingNs;
     std::int64_t read_ = 0;
@@ -62,7 +62,7 @@ TEST_F(PointerHand, DigsAFurrowAlongThePressedPlaces) {
     sand::Step hovers = step();
     EXPECT_FALSE(hovers.engaged);
     ASSERT_EQ(hovers.path.size(), 1U);
-    EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * 4 * kPerCell));
+    EXPECT_EQ(hovers.path[0].z, std::lround(haptic_bridge::PointerHand::kHover * 4 * kPerCell));
     for (int x = 20; x <= 40; x += 4) {
         add(1, x, 32, true);
     }
@@ -85,7 +85,7 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
         const sand::Step hovers = step();
         EXPECT_FALSE(hovers.engaged);
         ASSERT_EQ(hovers.path.size(), 1U);
-        EXPECT_EQ(hovers.path[0].z, std::lround(master::PointerHand::kHover * cells * kPerCell));
+        EXPECT_EQ(hovers.path[0].z, std::lround(haptic_bridge::PointerHand::kHover * cells * kPerCell));
         EXPECT_EQ(read_, 0) << "the pointer has not moved";
         EXPECT_TRUE(step().path.empty());
     }
@@ -102,7 +102,7 @@ TEST_F(PointerHand, TheWheelSetsTheDepthWithinItsLimits) {
     reports_[2].wheel = 1000;
     add(1, 24, 32, true);
     EXPECT_EQ(step().path.at(0).z, -4 * kPerCell);
-    EXPECT_NEAR(hand_.depth(), master::PointerHand::kDeepest, 1e-12);
+    EXPECT_NEAR(hand_.depth(), haptic_bridge::PointerHand::kDeepest, 1e-12);
 }
 
 TEST_F(PointerHand, BesideTheSandMovesNothing) {

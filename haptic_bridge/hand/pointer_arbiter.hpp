@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "lockstep/pointer.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
 
-namespace master {
+namespace haptic_bridge {
 
 /// Decides which rank's pointer is the hand, because several people may point at one wall.
 ///
@@ -19,7 +19,7 @@ class PointerArbiter {
 public:
     /// Takes the reports of a frame, in order of rank. Returns the rank whose pointer is the hand in this frame, or
     /// nullopt as long as no pointer has moved or touched. Call it once per frame.
-    [[nodiscard]] std::optional<std::size_t> hand(std::span<const lockstep::PointerReport> reports);
+    [[nodiscard]] std::optional<std::size_t> hand(std::span<const PointerReport> reports);
 
 private:
     struct Touch {
@@ -30,4 +30,4 @@ private:
     std::optional<std::size_t> last_;  // the hand of the frame before
 };
 
-}  // namespace master
+}  // namespace haptic_bridge

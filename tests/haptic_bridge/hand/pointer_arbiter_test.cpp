@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/steps/pointer_arbiter.hpp"
+#include "haptic_bridge/hand/pointer_arbiter.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-using lockstep::PointerReport;
+using haptic_bridge::PointerReport;
 using Hand = std::optional<std::size_t>;
 
 PointerReport still() { return {}; }
@@ -36,7 +36,7 @@ protected:
     Hand hand(const PointerReport& first, const PointerReport& second, const PointerReport& third) {
         return arbiter_.hand(std::array{PointerReport{}, first, second, third});
     }
-    master::PointerArbiter arbiter_;
+    haptic_bridge::PointerArbiter arbiter_;
 };
 
 TEST_F(PointerArbiter, GivesTheHandToThePointerThatMoves) {

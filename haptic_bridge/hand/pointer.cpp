@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lockstep/pointer.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/byte_stream.hpp"
 
-namespace lockstep {
+namespace haptic_bridge {
 
 bool PointerReport::touches() const {
     return pressed != 0 ||
@@ -37,4 +37,4 @@ void requireValid(const PointerReport& report) {
     }
 }
 
-}  // namespace lockstep
+}  // namespace haptic_bridge

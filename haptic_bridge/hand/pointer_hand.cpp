@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/steps/pointer_hand.hpp"
+#include "haptic_bridge/hand/pointer_hand.hpp"
 
 #include <algorithm>
 #include <utility>
 
-namespace master {
+namespace haptic_bridge {
 namespace {
 
 /// Returns `surface` raised by `above` [probe unit].
@@ -19,7 +19,7 @@ PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
     Hand::begin(sand);
 }
 
-void PointerHand::point(const lockstep::PointerSample& sample, const sand::Replica& sand) {
+void PointerHand::point(const PointerSample& sample, const sand::Replica& sand) {
     radius_ = sand.tool().radius;
     surface_.reset();
     if (sample.meets == 0) {
@@ -34,7 +34,7 @@ void PointerHand::point(const lockstep::PointerSample& sample, const sand::Repli
 /// Puts a tool that hovers at rest to the height for its new size.
 void PointerHand::hoverAt(const sand::Replica& sand) {
     radius_ = sand.tool().radius;
-    const haptic_bridge::HandSample& before = last();
+    const HandSample& before = last();
     add({.readNs = before.readNs,
          .probe = raised({before.probe.x, before.probe.y, *surface_}, kHover * radius_),
          .read = false});
@@ -42,8 +42,8 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
 
 void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
-void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
-    for (const lockstep::PointerReport& report : reports) {
+void PointerHand::take(std::span<const PointerReport> reports, const sand::Replica& sand) {
+    for (const PointerReport& report : reports) {
         depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.wheel), 0.0, kDeepest);
     }
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
@@ -57,7 +57,7 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
         const auto ended = reports[*former].taken();
         lift(!samples.empty() ? samples.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
     }
-    for (const lockstep::PointerSample& sample : samples) {
+    for (const PointerSample& sample : samples) {
         point(sample, sand);
     }
     if (surface_ && !last().engaged && sand.tool().radius != radius_) {
@@ -65,4 +65,4 @@ void PointerHand::take(std::span<const lockstep::PointerReport> reports, const s
     }
 }
 
-}  // namespace master
+}  // namespace haptic_bridge

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/steps/pointer_arbiter.hpp"
+#include "haptic_bridge/hand/pointer_arbiter.hpp"
 
 #include <algorithm>
 
-namespace master {
+namespace haptic_bridge {
 
-std::optional<std::size_t> PointerArbiter::hand(std::span<const lockstep::PointerReport> reports) {
+std::optional<std::size_t> PointerArbiter::hand(std::span<const PointerReport> reports) {
     std::erase_if(touches_, [&](const Touch& touch) {
         return touch.rank >= reports.size() || !reports[touch.rank].touches() ||
                reports[touch.rank].touch != touch.number;
@@ -27,4 +27,4 @@ std::optional<std::size_t> PointerArbiter::hand(std::span<const lockstep::Pointe
     return last_;
 }
 
-}  // namespace master
+}  // namespace haptic_bridge

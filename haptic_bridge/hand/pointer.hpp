@@ -9,7 +9,7 @@
 
 #include "sand/model/probe_point.hpp"
 
-namespace lockstep {
+namespace haptic_bridge {
 
 /// One reading of the pointer: where its ray meets the sand.
 struct PointerSample {
@@ -48,4 +48,4 @@ static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 24 + 24 * 
 /// shows, or a number that is not finite.
 void requireValid(const PointerReport& report);
 
-}  // namespace lockstep
+}  // namespace haptic_bridge
