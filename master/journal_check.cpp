@@ -15,7 +15,7 @@ namespace master {
 JournalCheck::JournalCheck(Record record, std::filesystem::path out, Incidents& incidents)
     : record_(std::move(record)), out_(std::move(out)), incidents_(incidents) {}
 
-void JournalCheck::begin(std::uint64_t frame, const JournalEnd& sand) {
+void JournalCheck::begin(std::uint64_t frame, const journal::JournalEnd& sand) {
     if (record_.journal().empty()) {
         return;
     }
@@ -63,7 +63,7 @@ std::unique_ptr<sand::Replica> JournalCheck::rightSand(std::uint64_t step) {
     return nullptr;
 }
 
-void JournalCheck::look(std::uint64_t frame, const JournalEnd& shown) {
+void JournalCheck::look(std::uint64_t frame, const journal::JournalEnd& shown) {
     if (!replay_) {
         return;
     }
@@ -75,7 +75,7 @@ void JournalCheck::look(std::uint64_t frame, const JournalEnd& shown) {
     }
 }
 
-void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const JournalEnd& shown) {
+void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const journal::JournalEnd& shown) {
     rightHash_ = hash;
     if (hash == majority_.sand.hash) {
         replay_.reset();
@@ -92,7 +92,7 @@ void JournalCheck::compare(std::uint64_t frame, std::uint64_t hash, const Journa
                        frame, majority_.frame, majority_.sand.step, majority_.sand.hash, hash));
 }
 
-void JournalCheck::taken(std::uint64_t frame, const JournalEnd& shown) {
+void JournalCheck::taken(std::uint64_t frame, const journal::JournalEnd& shown) {
     ++incidents_.outvoted;
     wrong_ = holds_ = taking_ = false;
     record_.checked({frame, shown, true});
@@ -101,7 +101,7 @@ void JournalCheck::taken(std::uint64_t frame, const JournalEnd& shown) {
                        frame, majority_.frame));
 }
 
-void JournalCheck::finish(std::uint64_t frame, const JournalEnd& shown, std::chrono::milliseconds patience) {
+void JournalCheck::finish(std::uint64_t frame, const journal::JournalEnd& shown, std::chrono::milliseconds patience) {
     constexpr std::chrono::milliseconds kPause{5};
     for (std::chrono::milliseconds left = patience; replay_ && !wrong_ && left.count() > 0; left -= kPause) {
         std::this_thread::sleep_for(kPause);

@@ -23,8 +23,8 @@ public:
     /// Functions that write to the journal.
     struct Record {
         std::function<std::filesystem::path()> journal;  // its first file; an empty path without a journal
-        std::function<void(const JournalDoubt&)> doubt;
-        std::function<void(const JournalChecked&)> checked;
+        std::function<void(const journal::JournalDoubt&)> doubt;
+        std::function<void(const journal::JournalChecked&)> checked;
     };
     /// `out` gets divergence.txt. `incidents` counts the majorities that the journal outvotes.
     JournalCheck(Record record, std::filesystem::path out, Incidents& incidents);
@@ -36,18 +36,18 @@ public:
 
     /// Begins to check a majority that has decided in frame `frame` that `sand` is right. Without a journal does
     /// nothing. All steps up to `sand`.step must be in the journal.
-    void begin(std::uint64_t frame, const JournalEnd& sand);
+    void begin(std::uint64_t frame, const journal::JournalEnd& sand);
     /// Called in every frame before the ranks meet. `step` is the last step of the frame, which is in the journal.
     /// Returns the journal's sand after this step if all ranks must take it; null otherwise.
     [[nodiscard]] std::unique_ptr<sand::Replica> rightSand(std::uint64_t step);
     /// Called in every frame after all ranks agreed on the sand `shown`. Compares the replay with the majority as soon
     /// as the replay has reached the majority's step.
-    void look(std::uint64_t frame, const JournalEnd& shown);
+    void look(std::uint64_t frame, const journal::JournalEnd& shown);
     /// Called when all ranks have the sand that rightSand() has returned.
-    void taken(std::uint64_t frame, const JournalEnd& shown);
+    void taken(std::uint64_t frame, const journal::JournalEnd& shown);
     /// Called after the last frame, when no rank can take other sand any more. Waits at most `patience` for the replay.
     /// failed() then returns false if the session's sand is confirmed.
-    void finish(std::uint64_t frame, const JournalEnd& shown, std::chrono::milliseconds patience);
+    void finish(std::uint64_t frame, const journal::JournalEnd& shown, std::chrono::milliseconds patience);
     /// Counts and reports a majority that the replay outvoted when the session was resumed.
     void reportResumed(const Outvoted& outvoted);
 
@@ -66,14 +66,14 @@ public:
 
 private:
     void start();
-    void compare(std::uint64_t frame, std::uint64_t hash, const JournalEnd& shown);
+    void compare(std::uint64_t frame, std::uint64_t hash, const journal::JournalEnd& shown);
     void fail(std::uint64_t frame, const std::string& error);
     void report(std::uint64_t frame, const char* state, std::uint64_t rightHash, const std::string& line) const;
 
     const Record record_;
     const std::filesystem::path out_;
     Incidents& incidents_;
-    JournalDoubt majority_;  // its latest decision
+    journal::JournalDoubt majority_;  // its latest decision
     std::unique_ptr<BackgroundReplay> replay_;
     bool wrong_ = false;           // the journal disagrees with majority_
     std::uint64_t rightHash_ = 0;  // after the step of majority_

@@ -21,6 +21,7 @@
 #include "lockstep/session_message.hpp"
 #include "lockstep/watchdog.hpp"
 #include "master/injection.hpp"
+#include "master/journal/journal.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
@@ -117,8 +118,8 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     }
     master::requireMemoryOfJournal(cluster.hosts(), options.replay);
     master::SessionOptions& session = options.session;
-    session.recording = std::make_shared<const master::Recording>(master::readJournal(options.replay), options.replay,
-                                                                  options.framesPerSecond);
+    session.recording = std::make_shared<const journal::Recording>(master::readJournal(options.replay), options.replay,
+                                                                   options.framesPerSecond);
     if (!session.recording->shortcoming().empty()) {
         host::printLine("{}", session.recording->shortcoming());
     }
@@ -365,7 +366,7 @@ int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-master",
                              {{"algorithm", sand::kAlgorithmVersion},
                               {"protocol", haptic_bridge::kProtocolVersion},
-                              {"journal", master::kJournalVersion},
+                              {"journal", journal::kJournalVersion},
                               {"state", sand::kStateVersion}})) {
         return 0;
     }

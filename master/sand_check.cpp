@@ -49,7 +49,7 @@ void SandCheck::serverDiffered(std::uint64_t frame) {
     compared_.differed(frame);
 }
 
-void SandCheck::shown(std::uint64_t frame, const JournalEnd& sand) {
+void SandCheck::shown(std::uint64_t frame, const journal::JournalEnd& sand) {
     if (journal_.taking()) {
         journal_.taken(frame, sand);
     }

@@ -49,7 +49,7 @@ public:
     void serverDiffered(std::uint64_t frame);
     /// The wall shows frame `frame` with the sand `sand`. Starts and ends the comparison of a majority's decision with
     /// the journal.
-    void shown(std::uint64_t frame, const JournalEnd& sand);
+    void shown(std::uint64_t frame, const journal::JournalEnd& sand);
 
     /// Returns whether a majority's decision has not been compared with the journal yet.
     [[nodiscard]] bool pending() const { return journal_.pending(); }
@@ -59,7 +59,7 @@ public:
     /// from the first call on. `step` is the last step that this frame shows.
     [[nodiscard]] bool mayEnd(std::int64_t nowNs, std::uint64_t step);
     /// Called after the last frame. Waits at most `patience` for the replay of the journal.
-    void finish(std::uint64_t frame, const JournalEnd& shown, std::chrono::milliseconds patience) {
+    void finish(std::uint64_t frame, const journal::JournalEnd& shown, std::chrono::milliseconds patience) {
         journal_.finish(frame, shown, patience);
     }
     /// Returns why the latest decision of a majority could not be compared; an empty text if it was, or if there was

@@ -61,8 +61,9 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
               measure_.ranks(),
               {[this] { return record_.journalFile(); },
                [this] { return record_.sandOfJournal(sand_, options_.executor); }},
-              {[this] { return record_.journalFile(); }, [this](const JournalDoubt& doubt) { record_.doubt(doubt); },
-               [this](const JournalChecked& checked) { record_.checked(checked); }},
+              {[this] { return record_.journalFile(); },
+               [this](const journal::JournalDoubt& doubt) { record_.doubt(doubt); },
+               [this](const journal::JournalChecked& checked) { record_.checked(checked); }},
               sand_.allTiles(),
               record_.before().firstDifference}) {
     if (options_.record.resumed && options_.record.resumed->outvoted) {

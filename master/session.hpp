@@ -70,7 +70,7 @@ private:
     }
     /// Meets the ranks at the barrier of `frame`. Returns whether all ranks agreed.
     [[nodiscard]] bool agree(const lockstep::FrameMessage& frame);
-    [[nodiscard]] JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
+    [[nodiscard]] journal::JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }
     /// Returns why the session's sand cannot be trusted at its end; an empty text if it can.
     [[nodiscard]] std::string doubtAbout(const Summary& result) const;
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts

@@ -10,9 +10,9 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/hand/pace.hpp"
+#include "journal/recording.hpp"
 #include "master/drills.hpp"
 #include "master/film.hpp"
-#include "master/journal/recording.hpp"
 #include "master/master_sand.hpp"
 #include "master/operator_desk.hpp"
 #include "master/session_record.hpp"
@@ -40,9 +40,9 @@ struct SessionOptions {
     std::filesystem::path out;
     DeskOptions desk;
     RecordOptions record;
-    const base::Executor* executor = nullptr;    // for the master's own replicas; see sand::Replica
-    std::shared_ptr<const Recording> recording;  // source of the steps of a replay, which writes no journal
-    bool film = false;                           // writes a picture of every frame, and no other pictures
+    const base::Executor* executor = nullptr;             // for the master's own replicas; see sand::Replica
+    std::shared_ptr<const journal::Recording> recording;  // source of the steps of a replay, which writes no journal
+    bool film = false;                                    // writes a picture of every frame, and no other pictures
     std::optional<FilmEye> filmEye;
     std::vector<Drill> drills;  // drills that are still to happen
 };

@@ -40,7 +40,7 @@ void forgetOldResults(const std::filesystem::path& folder, bool resumed) {
     Film::forget(folder);
 }
 
-JournalEnd endOf(const MasterSand& sand) { return {sand.replica().stepNumber(), sand.hash()}; }
+journal::JournalEnd endOf(const MasterSand& sand) { return {sand.replica().stepNumber(), sand.hash()}; }
 
 }  // namespace
 
@@ -81,7 +81,7 @@ void SessionRecord::onDisk(const Write& write) {
     }
 }
 
-void SessionRecord::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
+void SessionRecord::keep(const journal::JournalFrame& frame, const std::vector<scene::Material>& materials) {
     onDisk([&](JournalKeeper& journal) { journal.keep(frame, materials); });
 }
 
@@ -89,11 +89,11 @@ void SessionRecord::keepTicks(const std::vector<base::Bytes>& pieces) {
     onDisk([&](JournalKeeper& journal) { journal.keepTicks(pieces); });
 }
 
-void SessionRecord::doubt(const JournalDoubt& doubt) {
+void SessionRecord::doubt(const journal::JournalDoubt& doubt) {
     onDisk([&](JournalKeeper& journal) { journal.doubt(doubt); });
 }
 
-void SessionRecord::checked(const JournalChecked& checked) {
+void SessionRecord::checked(const journal::JournalChecked& checked) {
     onDisk([&](JournalKeeper& journal) { journal.checked(checked); });
 }
 

@@ -46,13 +46,13 @@ public:
     /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that the edits of
     /// these steps set. If the disk refuses them and the policy is `required`, writes failure.json and throws
     /// DiskFailure.
-    void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
+    void keep(const journal::JournalFrame& frame, const std::vector<scene::Material>& materials);
     /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
     /// Write that a majority has decided which sand is right, and that it has been compared with the journal. Between
     /// the two no checkpoint is made, and the journal gets no end. Throw as keep() does.
-    void doubt(const JournalDoubt& doubt);
-    void checked(const JournalChecked& checked);
+    void doubt(const journal::JournalDoubt& doubt);
+    void checked(const journal::JournalChecked& checked);
     /// Writes the share of the force that an operator has set, at once if the disk has room. Throws as keep() does.
     void keepForce(double share);
     /// Called when the wall shows frame `frame`. Reports a recovery at the first one, and begins a checkpoint when one

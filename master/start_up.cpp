@@ -42,12 +42,12 @@ void requireMemoryOfRaster(const std::vector<lockstep::RankHost>& ranks, int col
 }
 
 void requireMemoryOfJournal(const std::vector<lockstep::RankHost>& ranks, const std::filesystem::path& journal) {
-    const JournalReader reader(journal);
-    const sand::FieldSize size = sand::FieldSize::of(rulesOf(reader));
+    const journal::JournalReader reader = openJournal(journal);
+    const sand::FieldSize size = sand::FieldSize::of(journal::rulesOf(reader));
     if (size.bytesOfReplica()) {
         requireMemory(ranks, size, journal.string());
     } else {
-        requireMemory(ranks, sceneOf(reader), journal.string());
+        requireMemory(ranks, journal::sceneOf(reader), journal.string());
     }
 }
 

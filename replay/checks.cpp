@@ -12,11 +12,11 @@
 namespace replay {
 
 void requireMemory(const std::filesystem::path& journal, DecodedFor use, std::int64_t freeBytes) {
-    const master::JournalReader reader(journal);
-    const sand::FieldSize size = sand::FieldSize::of(master::rulesOf(reader));
+    const journal::JournalReader reader = master::openJournal(journal);
+    const sand::FieldSize size = sand::FieldSize::of(journal::rulesOf(reader));
     if (!size.bytesOfReplica()) {
         if (use == DecodedFor::replica) {
-            scene::requireReplica(master::sceneOf(reader), journal.string(), freeBytes);
+            scene::requireReplica(journal::sceneOf(reader), journal.string(), freeBytes);
         }
     } else if (use == DecodedFor::replica) {
         scene::requireReplica(size, journal.string(), freeBytes);

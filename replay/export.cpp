@@ -62,16 +62,16 @@ std::string pathText(const sand::Step& step, double unit) {
 
 void exportSteps(const std::filesystem::path& journal, const std::filesystem::path& file,
                  std::optional<std::uint64_t> until) {
-    master::JournalReader reader(journal);
-    ExportedTool tool(master::sceneOf(reader));
+    journal::JournalReader reader = master::openJournal(journal);
+    ExportedTool tool(journal::sceneOf(reader));
     host::WholeFile out(file);
     out.stream() << "epoch,number,frame,engaged,tool,radius,heading,path,edit\n";
     bool orderlyEnd = false;
     std::uint64_t last = 0;
     while (const auto record = reader.next()) {
-        orderlyEnd = std::holds_alternative<master::JournalEnd>(*record) ||
-                     (orderlyEnd && !std::holds_alternative<master::JournalResumed>(*record));
-        const auto* frame = std::get_if<master::JournalFrame>(&*record);
+        orderlyEnd = std::holds_alternative<journal::JournalEnd>(*record) ||
+                     (orderlyEnd && !std::holds_alternative<journal::JournalResumed>(*record));
+        const auto* frame = std::get_if<journal::JournalFrame>(&*record);
         if (frame == nullptr) {
             continue;
         }

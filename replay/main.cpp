@@ -59,7 +59,7 @@ struct Options {
 /// Recomputes the rows of sandwall-haptic-server --record while the steps are replayed.
 class Forces {
 public:
-    Forces(const master::Journal& journal, const Options& options) : options_(options), replay_(journal.scene, {}) {
+    Forces(const journal::Journal& journal, const Options& options) : options_(options), replay_(journal.scene, {}) {
         if (options.forces.empty()) {
             return;
         }
@@ -103,10 +103,10 @@ private:
 };
 
 /// Applies the journal's steps and checks the session's hashes on the way. Returns how many frames differed.
-int replaySteps(const master::Journal& journal, std::uint64_t until, sand::Replica& replica, Forces& forces) {
+int replaySteps(const journal::Journal& journal, std::uint64_t until, sand::Replica& replica, Forces& forces) {
     int differing = 0;
     forces.feel(replica);
-    for (const master::JournalFrame& frame : journal.frames) {
+    for (const journal::JournalFrame& frame : journal.frames) {
         if (frame.steps.empty() || replica.stepNumber() >= until) {
             continue;
         }
@@ -208,7 +208,7 @@ int run(const Options& options) {
             return 0;  // the export needs no sand
         }
     }
-    const master::Journal journal = master::readJournal(options.file);
+    const journal::Journal journal = master::readJournal(options.file);
     if (options.steps.empty()) {  // the export has printed it
         replay::printMissing(options.file, journal.tornBytes, journal.end.has_value());
     }
@@ -289,7 +289,7 @@ void describe(host::CommandLine& line, Options& options) {
 int main(int argc, char** argv) {
     if (host::answersVersion(argc, argv, "sandwall-replay",
                              {{"algorithm", sand::kAlgorithmVersion},
-                              {"journal", master::kJournalVersion},
+                              {"journal", journal::kJournalVersion},
                               {"state", sand::kStateVersion}})) {
         return 0;
     }

@@ -20,8 +20,8 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
     if (std::filesystem::exists(file, error)) {
         throw base::InputError(fmt::format("{}: is there already; choose another file", file.string()));
     }
-    master::JournalReader reader(journal);
-    scene::Scene scene = master::sceneOf(reader);
+    journal::JournalReader reader = master::openJournal(journal);
+    scene::Scene scene = journal::sceneOf(reader);
     scene.material = reader.header().material.value_or(scene::Material());
     if (file.has_parent_path()) {
         try {
@@ -36,7 +36,7 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
     try {
         while (const auto record = reader.next()) {
             ++records;
-            const auto* frame = std::get_if<master::JournalFrame>(&*record);
+            const auto* frame = std::get_if<journal::JournalFrame>(&*record);
             step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
             writer.keep(*record);
         }
@@ -44,12 +44,12 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
         damage = found.what();
     }
     writer.sync();
-    const std::int64_t lost = reader.allBytes() - reader.wholeBytes();
+    const std::int64_t lost = master::allBytes(journal) - reader.wholeBytes();
     if (!damage.empty()) {
         fmt::print("{}\n", damage);
     }
     fmt::print("{}: {} records, to step {}; {} of {} bytes are lost\n", file.string(), records, step, lost,
-               reader.allBytes());
+               master::allBytes(journal));
 }
 
 }  // namespace replay

@@ -10,8 +10,9 @@
 
 #include "base/input_error.hpp"
 #include "host/regular_file.hpp"
+#include "host/version.hpp"
 #include "host/whole_file.hpp"
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 
 namespace master {
 namespace {
@@ -19,7 +20,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint32_t kCheckpointMagic = 0x50435753;  // "SWCP"
-constexpr FileKind kCheckpointKind{.name = "checkpoint", .magic = kCheckpointMagic, .format = 2, .firstFormat = 2};
+constexpr journal::FileKind kCheckpointKind{
+    .name = "checkpoint", .magic = kCheckpointMagic, .format = 2, .firstFormat = 2};
 constexpr std::string_view kEnding = ".checkpoint";
 
 fs::path folderOf(const fs::path& journal) { return journal.parent_path() / "checkpoints"; }
@@ -34,10 +36,10 @@ std::optional<std::uint64_t> stepOf(const std::string& name) {
 
 }  // namespace
 
-base::Bytes Checkpoint::encode() const { return encodeFile(kCheckpointKind, *this); }
+base::Bytes Checkpoint::encode() const { return journal::encodeFile(kCheckpointKind, host::release(), *this); }
 
 Checkpoint Checkpoint::decode(std::span<const std::uint8_t> bytes) {
-    return decodeFile<Checkpoint>(kCheckpointKind, bytes);
+    return journal::decodeFile<Checkpoint>(kCheckpointKind, host::release(), bytes);
 }
 
 fs::path checkpointFile(const fs::path& journal, std::uint64_t step) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 
 namespace master {
 
@@ -25,7 +25,7 @@ struct Checkpoint {
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("session", it.session);
-        visit("build", base::text(it.buildId, kLongestBuild));
+        visit("build", base::text(it.buildId, journal::kLongestBuild));
         visit("scene_digest", it.sceneDigest);
         visit("step", it.step);
         visit("frame", it.frame);

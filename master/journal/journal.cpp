@@ -1,63 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/journal/journal.hpp"
 
-#include <fmt/format.h>
+#include <memory>
+#include <system_error>
 
-#include <utility>
-
-#include "base/input_error.hpp"
-#include "scene/model/scene.hpp"
+#include "host/version.hpp"
+#include "master/journal/file_parts.hpp"
 
 namespace master {
-namespace {
 
-struct Gather {
-    Journal& journal;
-    void operator()(JournalFrame& frame) const { journal.frames.push_back(std::move(frame)); }
-    void operator()(const JournalEnd& end) const { journal.end = end; }
-    void operator()(JournalTicks& ticks) const { journal.ticks.push_back(std::move(ticks.piece)); }
-    void operator()(JournalResumed& resumed) const {
-        journal.end.reset();
-        journal.resumes.push_back(std::move(resumed));
-    }
-    void operator()(const scene::Material&) const {}
-    void operator()(const JournalContinued&) const {}
-    void operator()(const JournalDoubt&) const {}
-    void operator()(const JournalChecked&) const {}
-    void operator()(const JournalForce&) const {}
-};
+namespace fs = std::filesystem;
 
-/// Returns the result of `decode` for the scene in the header. Errors name the journal.
-template <class Decode>
-auto decoded(const JournalReader& reader, Decode decode) {
-    try {
-        return decode(reader.header().scene);
-    } catch (const base::FormatError& error) {
-        throw base::InputError(fmt::format("{}: {}", reader.place().journal.string(), error.what()));
-    }
-}
-
-}  // namespace
-
-scene::Scene sceneOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decode); }
-
-sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene::Scene::decodeRules); }
-
-std::filesystem::path journalAt(const std::filesystem::path& named) {
+fs::path journalAt(const fs::path& named) {
     std::error_code none;
-    return std::filesystem::is_directory(named, none) ? named / "session.journal" : named;
+    return fs::is_directory(named, none) ? named / "session.journal" : named;
 }
 
-Journal readJournal(const std::filesystem::path& file) {
-    JournalReader reader(file);
-    Journal journal;
-    journal.scene = sceneOf(reader);
-    journal.buildId = reader.header().buildId;
-    while (auto record = reader.next()) {
-        std::visit(Gather{journal}, *record);
+journal::JournalReader openJournal(const fs::path& journal) {
+    return {std::make_unique<FileParts>(journal), host::release()};
+}
+
+journal::Journal readJournal(const fs::path& file) {
+    journal::JournalReader reader = openJournal(file);
+    return journal::readAll(reader);
+}
+
+std::int64_t allBytes(const fs::path& journal) {
+    std::int64_t sum = 0;
+    std::error_code error;
+    for (std::uint32_t part = 1;; ++part) {
+        const auto size = fs::file_size(partOf(journal, part), error);
+        if (error) {
+            return sum;
+        }
+        sum += static_cast<std::int64_t>(size);
     }
-    journal.tornBytes = reader.tornBytes();
-    return journal;
 }
 
 }  // namespace master

@@ -3,37 +3,22 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "master/journal/format.hpp"
-#include "master/journal/reader.hpp"
+#include "journal/journal.hpp"
+#include "journal/reader.hpp"
 #include "master/journal/writer.hpp"
-#include "scene/model/scene.hpp"
 
 namespace master {
-
-/// A whole session, read from its journal. Takes about 400 bytes per step and 65 bytes per tick of the tick track.
-struct Journal {
-    scene::Scene scene;
-    std::string buildId;
-    std::vector<JournalFrame> frames;
-    std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, if it recorded one
-    std::vector<JournalResumed> resumes;
-    std::optional<JournalEnd> end;  // nullopt if the session was cut off
-    std::int64_t tornBytes = 0;     // [byte], behind the last whole record of the last part; ignored
-};
 
 /// Returns the journal that a user has named: `named` itself, or the journal in it if it is a session's folder.
 [[nodiscard]] std::filesystem::path journalAt(const std::filesystem::path& named);
 
+/// Returns a reader of the journal in the file `journal` and of its parts beside it. Throws as its constructor does.
+[[nodiscard]] journal::JournalReader openJournal(const std::filesystem::path& journal);
 /// Reads a whole journal. Throws base::InputError if the file is missing, is not a journal, has another format or
 /// algorithm, or is damaged before its end. Also throws if one of its parts is missing.
-[[nodiscard]] Journal readJournal(const std::filesystem::path& file);
-/// Decodes the scene in the header. Throws base::InputError if it is invalid.
-[[nodiscard]] scene::Scene sceneOf(const JournalReader& reader);
-/// Decodes only the rules of the scene in the header, not its heights. Throws base::InputError if they are invalid.
-[[nodiscard]] sand::Rules rulesOf(const JournalReader& reader);
+[[nodiscard]] journal::Journal readJournal(const std::filesystem::path& file);
+/// Returns the length of all parts that exist [byte].
+[[nodiscard]] std::int64_t allBytes(const std::filesystem::path& journal);
 
 }  // namespace master

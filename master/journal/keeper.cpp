@@ -16,6 +16,7 @@
 #include "host/print_line.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/checkpoint.hpp"
+#include "master/journal/file_parts.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {
@@ -113,7 +114,7 @@ std::string_view JournalKeeper::state() const {
     return stopped_ ? "no_room" : writer_ ? "written" : options_.policy == JournalPolicy::off ? "off" : "failed";
 }
 
-bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
+bool JournalKeeper::hasRoom(std::int64_t bytes, const journal::JournalEnd& sand) {
     std::string why;
     if (writer_->makeRoom(bytes, sand, why) != JournalWriter::Room::none) {
         return true;
@@ -133,7 +134,7 @@ bool JournalKeeper::hasRoom(std::int64_t bytes, const JournalEnd& sand) {
     return false;
 }
 
-bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
+bool JournalKeeper::mayTake(std::int64_t bytes, const journal::JournalEnd& sand) {
     if (!writer_) {
         return true;
     }
@@ -152,7 +153,7 @@ bool JournalKeeper::mayTake(std::int64_t bytes, const JournalEnd& sand) {
     return room;
 }
 
-bool JournalKeeper::hasRoomFor(std::int64_t bytes, const JournalEnd& sand) {
+bool JournalKeeper::hasRoomFor(std::int64_t bytes, const journal::JournalEnd& sand) {
     if (!writer_ || options_.policy != JournalPolicy::required) {
         return true;
     }
@@ -169,7 +170,7 @@ void JournalKeeper::giveUp(const std::string& why) {
     host::emitEvent("journal", {{"state", "failed"}, {"error", why}});
 }
 
-void JournalKeeper::keep(const JournalFrame& frame, const std::vector<scene::Material>& materials) {
+void JournalKeeper::keep(const journal::JournalFrame& frame, const std::vector<scene::Material>& materials) {
     if (!writer_) {
         return;
     }
@@ -186,7 +187,7 @@ void JournalKeeper::keep(const JournalFrame& frame, const std::vector<scene::Mat
 void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
     for (const base::Bytes& piece : pieces) {
         try {
-            if (writer_ && !writer_->keep(JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
+            if (writer_ && !writer_->keep(journal::JournalTicks{piece}) && !std::exchange(ticksLeftOut_, true)) {
                 host::printLine("the disk has no room for the tick track; ticks are left out until there is room");
             }
         } catch (const base::InputError& error) {
@@ -195,7 +196,7 @@ void JournalKeeper::keepTicks(const std::vector<base::Bytes>& pieces) {
     }
 }
 
-void JournalKeeper::note(const JournalRecord& record) {
+void JournalKeeper::note(const journal::JournalRecord& record) {
     try {
         if (writer_) {
             (void)writer_->keep(record);
@@ -205,18 +206,18 @@ void JournalKeeper::note(const JournalRecord& record) {
     }
 }
 
-void JournalKeeper::doubt(const JournalDoubt& doubt) {
+void JournalKeeper::doubt(const journal::JournalDoubt& doubt) {
     doubted_ = true;
     note(doubt);
 }
 
-void JournalKeeper::checked(const JournalChecked& checked) {
+void JournalKeeper::checked(const journal::JournalChecked& checked) {
     doubted_ = false;
     note(checked);
     lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
-void JournalKeeper::force(const JournalForce& force) {
+void JournalKeeper::force(const journal::JournalForce& force) {
     note(force);
     try {
         if (writer_) {
@@ -264,7 +265,7 @@ void JournalKeeper::shown(const sand::Replica& replica, std::uint64_t frame, std
 
 double JournalKeeper::stoppedSeconds() const { return stoppedSeconds_ + (stopped_ ? now() - stoppedSince_ : 0); }
 
-void JournalKeeper::finish(const JournalEnd& end) {
+void JournalKeeper::finish(const journal::JournalEnd& end) {
     endCheckpoint(true);
     try {
         if (writer_ && doubted_) {

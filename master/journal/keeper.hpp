@@ -59,28 +59,28 @@ public:
     /// the disk has no room for them. Called before every frame. Tries a full disk again about once per second. `now`
     /// is the sand that the wall shows. When the sand is stopped, it continues only if there is room for kResumeBytes
     /// more, because otherwise it would stop again after a few steps.
-    [[nodiscard]] bool mayTake(std::int64_t bytes, const JournalEnd& now);
+    [[nodiscard]] bool mayTake(std::int64_t bytes, const journal::JournalEnd& now);
     /// Returns whether there is room for `bytes` bytes more, for example of sand that an operator asks to load.
     /// Returns false while the sand is stopped. The answer does not stop the sand.
-    [[nodiscard]] bool hasRoomFor(std::int64_t bytes, const JournalEnd& now);
+    [[nodiscard]] bool hasRoomFor(std::int64_t bytes, const journal::JournalEnd& now);
     static constexpr std::int64_t kResumeBytes = 1 << 20;  // [byte], of steps in about three minutes of digging
     /// Writes the steps of a frame, and returns when they are on disk. `materials` are the materials that their edits
     /// set. Throws DiskFailure if the disk refuses them and the policy is required.
-    void keep(const JournalFrame& frame, const std::vector<scene::Material>& materials);
+    void keep(const journal::JournalFrame& frame, const std::vector<scene::Material>& materials);
     /// Writes pieces of the tick track. They are on disk together with later steps. Throws as keep() does.
     void keepTicks(const std::vector<base::Bytes>& pieces);
     /// Writes that a majority of the ranks has decided which sand is right. No checkpoint is made until checked(),
     /// because it would hold the majority's sand.
-    void doubt(const JournalDoubt& doubt);
+    void doubt(const journal::JournalDoubt& doubt);
     /// Writes that the majority has been compared with the journal. A checkpoint is then due.
-    void checked(const JournalChecked& checked);
+    void checked(const journal::JournalChecked& checked);
     /// Writes the share of the force that an operator has set. It is on disk when the function returns, or with later
     /// steps if the disk is full.
-    void force(const JournalForce& force);
+    void force(const journal::JournalForce& force);
     /// Begins a checkpoint if one is due. Called after every frame, when all steps of `replica` are in the journal.
     void shown(const sand::Replica& replica, std::uint64_t frame, std::uint32_t epoch, std::uint64_t hash);
     /// Writes the end of the session. Between doubt() and checked() the journal gets no end.
-    void finish(const JournalEnd& end);
+    void finish(const journal::JournalEnd& end);
 
     [[nodiscard]] JournalPolicy policy() const { return options_.policy; }
     /// Returns "written", "no_room", "failed" or "off".
@@ -100,9 +100,9 @@ public:
     [[nodiscard]] bool whole() const { return ended_ && !lostSteps_; }
 
 private:
-    [[nodiscard]] bool hasRoom(std::int64_t bytes, const JournalEnd& now);
+    [[nodiscard]] bool hasRoom(std::int64_t bytes, const journal::JournalEnd& now);
     void giveUp(const std::string& why);
-    void note(const JournalRecord& record);
+    void note(const journal::JournalRecord& record);
     void refused(const std::string& why);
     void requireNoWriter() const;
     void setAside(std::uint64_t step);

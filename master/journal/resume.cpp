@@ -29,7 +29,7 @@ public:
     using base::InputError::InputError;
 };
 
-void requireHash(sand::Replica& replica, const JournalEnd& recorded, const fs::path& journal) {
+void requireHash(sand::Replica& replica, const journal::JournalEnd& recorded, const fs::path& journal) {
     if (replica.stepNumber() == recorded.step && replica.stateHash() != recorded.hash) {
         throw OtherSand(fmt::format(
             "{}: after step {} the session had {:016x}, the replay has {:016x}; it is of another version or damaged",
@@ -44,7 +44,7 @@ public:
         : journal_(journal), step_(step), replica_(restored.replica), outvoted_(restored.outvoted), how_(how) {}
 
     void run() {
-        JournalReader reader(journal_);
+        journal::JournalReader reader = openJournal(journal_);
         while (!(how_.beingWritten && replica_.stepNumber() >= step_) && !beyond_) {
             const auto record = reader.next();
             if (!record) {
@@ -61,7 +61,7 @@ public:
         }
     }
 
-    void operator()(const JournalFrame& frame) {
+    void operator()(const journal::JournalFrame& frame) {
         if (frame.steps.empty() || frame.steps.back().number <= replica_.stepNumber()) {
             return;
         }
@@ -83,21 +83,21 @@ public:
         }
         beyond_ = frame.steps.back().number > step_;
     }
-    void operator()(const JournalEnd& end) { requireHash(replica_, end, journal_); }
-    void operator()(const JournalDoubt& doubt) {
+    void operator()(const journal::JournalEnd& end) { requireHash(replica_, end, journal_); }
+    void operator()(const journal::JournalDoubt& doubt) {
         if (doubt.sand.step == replica_.stepNumber() && doubt.sand.hash != replica_.stateHash() && !outvoted_) {
             outvoted_ = Outvoted{doubt, replica_.stateHash()};
         }
     }
-    void operator()(const JournalChecked& checked) { endDoubt(checked.sand); }
-    void operator()(const JournalResumed& resumed) { endDoubt(resumed.sand); }
-    void operator()(const JournalTicks&) const {}
+    void operator()(const journal::JournalChecked& checked) { endDoubt(checked.sand); }
+    void operator()(const journal::JournalResumed& resumed) { endDoubt(resumed.sand); }
+    void operator()(const journal::JournalTicks&) const {}
     void operator()(const scene::Material&) const {}
-    void operator()(const JournalContinued&) const {}
-    void operator()(const JournalForce&) const {}
+    void operator()(const journal::JournalContinued&) const {}
+    void operator()(const journal::JournalForce&) const {}
 
 private:
-    void endDoubt(const JournalEnd& sand) {
+    void endDoubt(const journal::JournalEnd& sand) {
         requireHash(replica_, sand, journal_);
         outvoted_.reset();
     }
@@ -117,7 +117,7 @@ struct Walk {
     std::optional<scene::Material> pending;  // of the next steps, which a crash may have cut off
     std::uint64_t doubted = kNever;          // first step whose sand a majority has decided, and no check confirmed
 
-    void operator()(const JournalFrame& frame) {
+    void operator()(const journal::JournalFrame& frame) {
         session.frame = std::max(session.frame, frame.frame);
         session.material = std::exchange(pending, std::nullopt).value_or(session.material);
         for (const sand::Step& step : frame.steps) {
@@ -132,20 +132,20 @@ struct Walk {
         }
     }
     void operator()(const scene::Material& material) { pending = material; }
-    void operator()(const JournalResumed& resumed) {
+    void operator()(const journal::JournalResumed& resumed) {
         session.frame = std::max(session.frame, resumed.frame);
         pending.reset();
         doubted = kNever;
     }
-    void operator()(const JournalDoubt& doubt) { doubted = std::min(doubted, doubt.sand.step); }
-    void operator()(const JournalChecked&) { doubted = kNever; }
-    void operator()(const JournalEnd&) const {}
-    void operator()(const JournalTicks&) const {}
-    void operator()(const JournalContinued&) const {}
-    void operator()(const JournalForce& force) { session.forceShare = force.share; }
+    void operator()(const journal::JournalDoubt& doubt) { doubted = std::min(doubted, doubt.sand.step); }
+    void operator()(const journal::JournalChecked&) { doubted = kNever; }
+    void operator()(const journal::JournalEnd&) const {}
+    void operator()(const journal::JournalTicks&) const {}
+    void operator()(const journal::JournalContinued&) const {}
+    void operator()(const journal::JournalForce& force) { session.forceShare = force.share; }
 };
 
-void requireScene(const JournalReader& reader, const std::string& file) {
+void requireScene(const journal::JournalReader& reader, const std::string& file) {
     if (file.empty()) {
         return;
     }
@@ -153,11 +153,11 @@ void requireScene(const JournalReader& reader, const std::string& file) {
         throw base::InputError(
             fmt::format("{}: is not the scene of the session in {}; leave --scene out to continue "
                         "that session, or choose another --out",
-                        file, reader.place().journal.string()));
+                        file, reader.place().journal));
     };
     const auto raster = scene::checksOfOneReplica(file, host::freeMemoryOfProcess()).raster;
     // Refuses a scene of another size before its heights are made.
-    const auto otherSize = [&, recorded = sand::FieldSize::of(rulesOf(reader))](const sand::FieldSize& size) {
+    const auto otherSize = [&, recorded = sand::FieldSize::of(journal::rulesOf(reader))](const sand::FieldSize& size) {
         if (size != recorded) {
             fail();
         }
@@ -169,7 +169,7 @@ void requireScene(const JournalReader& reader, const std::string& file) {
 
 /// Returns the sand of a checkpoint, or nullopt after a line that says why it is left out. Only the checkpoint is left
 /// out if this machine has no memory: without memory for a step, the replay cannot go on from any checkpoint.
-std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const JournalHeader& header,
+std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const journal::JournalHeader& header,
                                               const sand::Replica& start) {
     try {
         return sandOfCheckpoint(file, header, start);
@@ -183,7 +183,7 @@ std::optional<sand::Replica> usableCheckpoint(const fs::path& file, const Journa
 
 }  // namespace
 
-sand::Replica sandOfCheckpoint(const fs::path& file, const JournalHeader& header, const sand::Replica& start) {
+sand::Replica sandOfCheckpoint(const fs::path& file, const journal::JournalHeader& header, const sand::Replica& start) {
     const Checkpoint checkpoint = readCheckpoint(file);
     if (checkpoint.session != header.session || checkpoint.sceneDigest != start.rules().digest()) {
         throw base::FormatError("is of another session");
@@ -202,8 +202,8 @@ void replayFurther(const fs::path& journal, std::uint64_t step, RestoredSand& re
 }
 
 RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Restoring& how) {
-    const JournalReader head(journal);
-    const sand::Replica start(sceneOf(head), how.executor);
+    const journal::JournalReader head = openJournal(journal);
+    const sand::Replica start(journal::sceneOf(head), how.executor);
     const std::int64_t volume = start.volume() + start.outflow();
     for (const std::uint64_t at : checkpointsOf(journal)) {
         if (at > std::min(step, how.newestCheckpoint)) {
@@ -232,10 +232,10 @@ std::optional<ResumedSession> readSession(const fs::path& journal, const std::st
     if (!fs::exists(journal, none)) {
         return std::nullopt;
     }
-    JournalReader reader(journal);
+    journal::JournalReader reader = openJournal(journal);
     requireScene(reader, scene);
     ResumedSession session;
-    session.scene = sceneOf(reader);
+    session.scene = journal::sceneOf(reader);
     session.scene.material = session.material = reader.header().material.value_or(scene::Material());
     Walk walk{session, journal, {}};
     try {

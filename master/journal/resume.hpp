@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "master/journal/reader.hpp"
+#include "journal/reader.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
 
@@ -17,7 +17,7 @@ namespace master {
 
 /// A majority of the ranks that the replay of the journal outvotes.
 struct Outvoted {
-    JournalDoubt majority;
+    journal::JournalDoubt majority;
     std::uint64_t rightHash = 0;  // after the same step
 };
 
@@ -60,16 +60,16 @@ void replayFurther(const std::filesystem::path& journal, std::uint64_t step, Res
 
 /// Returns the sand of the checkpoint `file`. `header` is the header of the session's journal, and `start` the sand at
 /// its start. Throws base::FormatError if the checkpoint is damaged or belongs to another session.
-[[nodiscard]] sand::Replica sandOfCheckpoint(const std::filesystem::path& file, const JournalHeader& header,
+[[nodiscard]] sand::Replica sandOfCheckpoint(const std::filesystem::path& file, const journal::JournalHeader& header,
                                              const sand::Replica& start);
 
 /// A session that has stopped, with everything that is needed to continue it.
 struct ResumedSession {
     scene::Scene scene;
-    scene::Material material;  // with the operator's changes
-    JournalPlace place;        // place at which the journal continues
-    std::uint64_t frame = 0;   // last frame in the journal
-    std::uint32_t epoch = 0;   // last epoch in the journal
+    scene::Material material;     // with the operator's changes
+    journal::JournalPlace place;  // place at which the journal continues
+    std::uint64_t frame = 0;      // last frame in the journal
+    std::uint32_t epoch = 0;      // last epoch in the journal
     std::uint64_t edits = 0;
     std::uint64_t lastEdit = 0;        // highest number of an edit in the journal; 0 without edits
     std::optional<double> forceShare;  // share of the force that an operator has set, 0 to 1; nullopt: none has

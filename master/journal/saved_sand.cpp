@@ -15,15 +15,16 @@
 
 #include "base/input_error.hpp"
 #include "host/regular_file.hpp"
+#include "host/version.hpp"
 #include "host/whole_file.hpp"
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 
 namespace master {
 namespace {
 
 constexpr std::uint32_t kSavedMagic = 0x44535753;  // "SWSD"
-constexpr FileKind kSavedKind{.name = "saved sand", .magic = kSavedMagic, .format = 2, .firstFormat = 2};
+constexpr journal::FileKind kSavedKind{.name = "saved sand", .magic = kSavedMagic, .format = 2, .firstFormat = 2};
 constexpr std::size_t kMostAround = 2 * kLongestSceneName;  // [byte], everything except the sand
 
 std::string shortName(const std::string& scene) { return scene.substr(0, kLongestSceneName); }
@@ -115,7 +116,7 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
                                            error.code().message()));
     }
     Unnamed unnamed(file);
-    unnamed.write(encodeFile(kSavedKind, saved));
+    unnamed.write(journal::encodeFile(kSavedKind, host::release(), saved));
     unnamed.name();
 }
 
@@ -132,7 +133,7 @@ SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& plac
         if (!bytes || bytes->empty()) {
             throw base::FormatError(bytes ? "is empty" : "cannot be read");
         }
-        auto saved = decodeFile<SavedSand>(kSavedKind, *bytes);
+        auto saved = journal::decodeFile<SavedSand>(kSavedKind, host::release(), *bytes);
         requireSamePlace(saved.place, place);
         // Decodes all of the sand before it is sent to the ranks, because a rank that applies a step cannot refuse it.
         (void)read(saved.sand);

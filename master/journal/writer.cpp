@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/version.hpp"
 #include "host/whole_file.hpp"
+#include "master/journal/file_parts.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {
@@ -28,12 +30,12 @@ std::uint64_t newSession() {
 PartFile makeFirst(const fs::path& file, const scene::Scene& scene, const std::string& buildId, std::uint64_t session,
                    std::uint64_t& chain) {
     keepPreviousJournal(file);
-    JournalHeader header;
+    journal::JournalHeader header;
     header.session = session;
     header.buildId = buildId;
     header.scene = scene.encode();
     header.material = scene.material;
-    return PartFile::make(file, encodeHeader(header, chain));
+    return PartFile::make(file, journal::encodeHeader(header, host::release(), chain));
 }
 
 }  // namespace
@@ -67,7 +69,7 @@ JournalWriter::JournalWriter(const fs::path& file, const scene::Scene& scene, co
       session_(newSession()),
       file_(makeFirst(file, scene, buildId, session_, chain_)) {}
 
-JournalWriter::JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes)
+JournalWriter::JournalWriter(const journal::JournalPlace& place, const std::string& buildId, std::int64_t partBytes)
     : journal_(place.journal),
       buildId_(buildId),
       partBytes_(partBytes),
@@ -79,19 +81,19 @@ JournalWriter::JournalWriter(const JournalPlace& place, const std::string& build
     fs::remove(partOf(journal_, part_ + 1), none);
 }
 
-void JournalWriter::rotate(const JournalEnd& now) {
+void JournalWriter::rotate(const journal::JournalEnd& now) {
     writeWaiting();
     // Makes the next part, with the checksum that it continues from, before this part names it.
     std::uint64_t chain = chain_;
     const base::Bytes continued =
-        encodeRecord(JournalContinued{part_ + 1}, chain, static_cast<std::uint64_t>(file_.size()));
-    JournalHeader header;
+        journal::encodeRecord(journal::JournalContinued{part_ + 1}, chain, static_cast<std::uint64_t>(file_.size()));
+    journal::JournalHeader header;
     header.session = session_;
     header.part = part_ + 1;
     header.continues = chain;
     header.sand = now;
     header.buildId = buildId_;
-    const base::Bytes begin = encodeHeader(header, chain);
+    const base::Bytes begin = journal::encodeHeader(header, host::release(), chain);
     PartFile next = PartFile::make(partOf(journal_, part_ + 1), begin);
     file_.write(continued);
     file_ = std::move(next);
@@ -99,7 +101,7 @@ void JournalWriter::rotate(const JournalEnd& now) {
     ++part_;
 }
 
-JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd& now, std::string& why) {
+JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const journal::JournalEnd& now, std::string& why) {
     if (file_.size() > partBytes_) {
         try {
             rotate(now);
@@ -116,10 +118,10 @@ JournalWriter::Room JournalWriter::makeRoom(std::int64_t bytes, const JournalEnd
     return error == ENOSPC || error == EDQUOT ? Room::none : Room::unknown;
 }
 
-void JournalWriter::put(const JournalRecord& record) {
+void JournalWriter::put(const journal::JournalRecord& record) {
     const std::size_t end = waiting_.size();
     const auto synced = end == 0 ? std::optional(static_cast<std::uint64_t>(file_.size())) : std::nullopt;
-    const base::Bytes bytes = encodeRecord(record, chain_, synced);
+    const base::Bytes bytes = journal::encodeRecord(record, chain_, synced);
     waiting_.resize(end + bytes.size());
     std::memcpy(waiting_.data() + end, bytes.data(), bytes.size());
 }
@@ -131,8 +133,8 @@ void JournalWriter::writeWaiting() {
     }
 }
 
-bool JournalWriter::keep(const JournalRecord& record) {
-    if (waiting_.size() > kMostHeld && std::holds_alternative<JournalTicks>(record)) {
+bool JournalWriter::keep(const journal::JournalRecord& record) {
+    if (waiting_.size() > kMostHeld && std::holds_alternative<journal::JournalTicks>(record)) {
         return false;
     }
     put(record);
@@ -149,18 +151,18 @@ void JournalWriter::writeIfRoom() {
     }
 }
 
-void JournalWriter::append(const JournalFrame& frame) {
+void JournalWriter::append(const journal::JournalFrame& frame) {
     put(frame);
     writeWaiting();
 }
 
-void JournalWriter::resume(const JournalResumed& resumed) {
+void JournalWriter::resume(const journal::JournalResumed& resumed) {
     put(resumed);
     writeWaiting();
 }
 
 void JournalWriter::finish(std::uint64_t step, std::uint64_t hash) {
-    put(JournalEnd{step, hash});
+    put(journal::JournalEnd{step, hash});
     writeWaiting();
 }
 

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "master/journal/format.hpp"
+#include "journal/format.hpp"
+#include "journal/reader.hpp"
 #include "master/journal/part_file.hpp"
-#include "master/journal/reader.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {
@@ -31,7 +31,7 @@ public:
                   std::int64_t partBytes = kPartBytes);
     /// Continues a journal at `place`, and cuts off the bytes behind it. Throws std::runtime_error as PartFile::open()
     /// does.
-    JournalWriter(const JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);
+    JournalWriter(const journal::JournalPlace& place, const std::string& buildId, std::int64_t partBytes = kPartBytes);
 
     enum class Room : std::uint8_t {
         reserved,  // the next records find room on the disk
@@ -40,18 +40,18 @@ public:
     };
     /// Reserves room on the disk for `bytes` more bytes. Begins a new part if one is due. `now` is the sand after the
     /// last step that was appended. Sets `why` to the reason if there is no room.
-    [[nodiscard]] Room makeRoom(std::int64_t bytes, const JournalEnd& now, std::string& why);
+    [[nodiscard]] Room makeRoom(std::int64_t bytes, const journal::JournalEnd& now, std::string& why);
 
     /// Writes the steps of a frame, and returns when they are on disk.
-    void append(const JournalFrame& frame);
+    void append(const journal::JournalFrame& frame);
     /// Adds any other record. It is on disk together with the next steps, or earlier if many bytes wait and the disk
     /// has room. Returns false if too many bytes of ticks wait for room, so that this piece of ticks was left out.
-    bool keep(const JournalRecord& record);
+    bool keep(const journal::JournalRecord& record);
     void sync() { writeWaiting(); }
     /// Writes the records that wait, unless the disk is full.
     void writeIfRoom();
     /// Writes that the session was resumed here.
-    void resume(const JournalResumed& resumed);
+    void resume(const journal::JournalResumed& resumed);
     /// Writes the orderly end of the session.
     void finish(std::uint64_t step, std::uint64_t hash);
 
@@ -62,8 +62,8 @@ public:
     [[nodiscard]] const std::filesystem::path& file() const { return file_.path(); }
 
 private:
-    void rotate(const JournalEnd& now);
-    void put(const JournalRecord& record);
+    void rotate(const journal::JournalEnd& now);
+    void put(const journal::JournalRecord& record);
     void writeWaiting();
 
     std::filesystem::path journal_;  // first part of the journal

@@ -8,7 +8,7 @@
 
 namespace master {
 
-RecordedSteps::RecordedSteps(std::shared_ptr<const Recording> recording, std::uint64_t last)
+RecordedSteps::RecordedSteps(std::shared_ptr<const journal::Recording> recording, std::uint64_t last)
     : recording_(std::move(recording)), last_(std::min(last, recording_->lastStep())) {}
 
 std::vector<haptic_bridge::TimedStep> RecordedSteps::next(const sand::Replica& /* sand */, std::uint64_t /* hash */,

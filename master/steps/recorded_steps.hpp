@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "master/journal/recording.hpp"
+#include "journal/recording.hpp"
 #include "master/steps/step_source.hpp"
 
 namespace master {
@@ -15,7 +15,7 @@ namespace master {
 class RecordedSteps : public StepSource {
 public:
     /// Returns no steps after step `last`.
-    RecordedSteps(std::shared_ptr<const Recording> recording, std::uint64_t last);
+    RecordedSteps(std::shared_ptr<const journal::Recording> recording, std::uint64_t last);
 
     /// Returns the steps that the recording has for the next frame. Ignores `most`.
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
@@ -28,7 +28,7 @@ public:
     [[nodiscard]] const char* hand() const override { return "recorded"; }
 
 private:
-    std::shared_ptr<const Recording> recording_;
+    std::shared_ptr<const journal::Recording> recording_;
     std::uint64_t last_;
     std::uint64_t frame_ = 0;
     bool strayed_ = false;

@@ -96,10 +96,10 @@ protected:
 
 /// Returns the step to whose sand the undo at step `undo` returns. It is the step before the last stroke, or the last
 /// reset or load within that stroke.
-std::uint64_t keptBefore(const master::Journal& journal, std::uint64_t undo) {
+std::uint64_t keptBefore(const journal::Journal& journal, std::uint64_t undo) {
     std::uint64_t kept = 0;
     bool engaged = false;
-    for (const master::JournalFrame& frame : journal.frames) {
+    for (const journal::JournalFrame& frame : journal.frames) {
         for (const sand::Step& step : frame.steps) {
             if (step.number <= undo && step.engaged && !engaged) {
                 kept = step.number - 1;

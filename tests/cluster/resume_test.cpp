@@ -33,7 +33,7 @@ protected:
     /// Returns the numbers of all edits in the journal.
     [[nodiscard]] std::vector<std::uint64_t> edits() const {
         std::vector<std::uint64_t> numbers;
-        for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
+        for (const journal::JournalFrame& frame : master::readJournal(journal()).frames) {
             for (const sand::Step& step : frame.steps) {
                 if (step.edit.any()) {
                     numbers.push_back(step.edit.number);

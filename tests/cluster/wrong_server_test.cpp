@@ -73,7 +73,7 @@ TEST_F(WrongServer, SeesNoStepShownThatADiskHasFailedToSync) {
     EXPECT_TRUE(support::holds(failure, {{"what", "disk"}, {"rank", 0}, {"host", host()}, {"tile", ""}})) << failure;
     EXPECT_FALSE(session->waitForEvent("failure", {{"failure", failure}}).is_null()) << session->output();
     EXPECT_FALSE(std::filesystem::exists(out() + "/summary.json")) << "a session that fails must write no summary";
-    const master::Journal journal = master::readJournal(out() + "/session.journal");
+    const journal::Journal journal = master::readJournal(out() + "/session.journal");
     ASSERT_EQ(journal.frames.size(), kFails - 1) << "the journal must hold exactly the frames before the failed sync";
     EXPECT_EQ(journal.tornBytes, 0);
     EXPECT_GT(server.shown(), 0U);

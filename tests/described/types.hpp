@@ -5,8 +5,8 @@
 
 #include "haptic_bridge/link/protocol.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
+#include "journal/format.hpp"
 #include "master/journal/checkpoint.hpp"
-#include "master/journal/format.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "sand/model/rules.hpp"
 #include "sand/replica.hpp"
@@ -27,9 +27,9 @@ using Types = std::tuple<
     haptic_bridge::StepMessage, haptic_bridge::TimingTest, haptic_bridge::Pong, haptic_bridge::TickPiece,
     haptic_bridge::Position, haptic_bridge::Bye, haptic_bridge::Report, haptic_bridge::TrackHeader,
     // files
-    master::FileOrigin, master::Checkpoint, master::SandPlace, master::SavedSand, master::JournalHeader,
-    master::JournalFrame, master::JournalEnd, master::JournalResumed, master::JournalTicks, master::JournalDoubt,
-    master::JournalChecked, master::JournalContinued, master::JournalForce,
+    journal::FileOrigin, master::Checkpoint, master::SandPlace, master::SavedSand, journal::JournalHeader,
+    journal::JournalFrame, journal::JournalEnd, journal::JournalResumed, journal::JournalTicks, journal::JournalDoubt,
+    journal::JournalChecked, journal::JournalContinued, journal::JournalForce,
     // scenes
     sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::StateHead, sand::ForceConstants, scene::Look,
     scene::Material, scene::Georeference, scene::RasterStatement, sand::tin::Holes::Run, sand::tin::TinStart,

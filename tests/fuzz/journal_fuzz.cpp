@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuzzes a journal, either as it is or put together from records with correct checksums. The correct checksums let the
 // fuzzer reach the contents of the records.
-#include "master/journal/recording.hpp"
+#include "host/version.hpp"
+#include "journal/recording.hpp"
+#include "master/journal/journal.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -9,12 +11,12 @@ namespace {
 
 /// Returns the header of a session of 8 x 8 cells.
 base::Bytes header(std::uint64_t& chain) {
-    master::JournalHeader header;
+    journal::JournalHeader header;
     header.session = 1;
     header.buildId = "build";
     header.scene = samples::flatScene(8, 8).encode();
     header.material = scene::Material();
-    return master::encodeHeader(header, chain);
+    return journal::encodeHeader(header, host::release(), chain);
 }
 
 /// Returns a journal whose records are pieces of the input. The first byte of each piece is the type of its record.
@@ -26,7 +28,7 @@ base::Bytes journalOf(fuzz::Input input) {
         if (!body.empty()) {
             writer.put(static_cast<std::uint32_t>(body.size() - 1));
             writer.putBytes(body);
-            chain = master::recordChecksum(body, chain);
+            chain = journal::recordChecksum(body, chain);
             writer.put(chain);
         }
     }
@@ -44,8 +46,8 @@ SANDWALL_FUZZER(journal) {
     const base::Bytes made = whole ? base::Bytes{} : journalOf(input);
     const fuzz::MemoryFile file(whole ? input : fuzz::Input(made));
     fuzz::takeOrRefuse([&] {
-        master::Journal journal = master::readJournal(file.path());
-        const master::Recording recording(std::move(journal), file.path(), 30);
+        journal::Journal journal = master::readJournal(file.path());
+        const journal::Recording recording(std::move(journal), file.path(), 30);
         (void)recording.stepsOf(1);
     });
     return 0;

@@ -38,7 +38,7 @@ protected:
         wall_.corrupt(3, 4, 12);
         wall_.audit(wall_.hashTiles().tileCount());
     }
-    [[nodiscard]] master::JournalEnd shown() { return {wall_.stepNumber(), wall_.stateHash()}; }
+    [[nodiscard]] journal::JournalEnd shown() { return {wall_.stepNumber(), wall_.stateHash()}; }
     void decide() { check_.begin(frame_, shown()); }
     /// Shows frames until the check is over, and returns the sand that the ranks must take. Shows a step in each frame
     /// while the check lets it.
@@ -67,16 +67,16 @@ protected:
     std::uint64_t frame_ = 0;
     int held_ = 0;  // frames in which the wall took no step
     bool hasJournal_ = true;
-    std::vector<master::JournalDoubt> doubts_;
-    std::vector<master::JournalChecked> checked_;
+    std::vector<journal::JournalDoubt> doubts_;
+    std::vector<journal::JournalChecked> checked_;
     std::optional<master::JournalKeeper> keeper_;
     master::Incidents incidents_;
     master::JournalCheck check_{{[this] { return hasJournal_ ? journal() : std::filesystem::path(); },
-                                 [this](const master::JournalDoubt& doubt) {
+                                 [this](const journal::JournalDoubt& doubt) {
                                      doubts_.push_back(doubt);
                                      keeper_->doubt(doubt);
                                  },
-                                 [this](const master::JournalChecked& checked) {
+                                 [this](const journal::JournalChecked& checked) {
                                      checked_.push_back(checked);
                                      keeper_->checked(checked);
                                  }},
@@ -119,7 +119,7 @@ TEST_F(Check, TheJournalOutvotesAMajorityThatIsWrong) {
     keeper_->finish(shown());
     int doubted = 0;
     sand::Replica replayed(scene_);
-    for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
+    for (const journal::JournalFrame& frame : master::readJournal(journal()).frames) {
         doubted += frame.doubted ? 1 : 0;
         EXPECT_TRUE(frame.doubted || frame.hashBefore == replayed.stateHash()) << frame.frame;
         for (const sand::Step& step : frame.steps) {
@@ -202,7 +202,7 @@ TEST_F(Check, AJournalThatCannotBeReplayedConfirmsNothing) {
 
 TEST_F(Check, OfALaterDecisionEndsTheDoubtOfAnEarlierOne) {
     showFrames(20);
-    const master::JournalEnd sand = shown();
+    const journal::JournalEnd sand = shown();
     const std::uint64_t frame = frame_;
     keeper_.reset();
     std::filesystem::create_directory(folder_ / "other");

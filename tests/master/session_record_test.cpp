@@ -52,7 +52,7 @@ TEST_F(Record, HoldsEveryStepAndTheSandOfEach) {
     ASSERT_NE(sand, nullptr);
     EXPECT_EQ(sand->stateHash(), sand_.hash());
     record.finish(sand_, true);
-    const master::Journal journal = master::readJournal(folder_ / "session.journal");
+    const journal::Journal journal = master::readJournal(folder_ / "session.journal");
     EXPECT_EQ(journal.frames.size(), 5U);
     ASSERT_TRUE(journal.end.has_value());
     EXPECT_EQ(journal.end->hash, sand_.hash());

@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "host/version.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
@@ -31,7 +32,7 @@ protected:
         std::mt19937 random(53);
         master::JournalWriter writer(journal(), scene, "test");
         for (std::uint64_t frame = 1; frame <= 20; ++frame) {
-            master::JournalFrame written{frame, replica.stateHash() ^ (frame == 10 ? hashError : 0), {}};
+            journal::JournalFrame written{frame, replica.stateHash() ^ (frame == 10 ? hashError : 0), {}};
             for (int i = 0; i < 2; ++i) {
                 written.steps.push_back(samples::randomStep(replica.stepNumber() + 1, scene.rules, random));
                 replica.apply(written.steps.back());
@@ -118,7 +119,7 @@ TEST_F(Replay, SaysWhereASessionDiffers) {
 
 TEST_F(Replay, VerifiesAllThatAJournalSays) {
     const sand::Replica replica = record();
-    const std::uint64_t session = master::JournalReader(journal()).header().session;
+    const std::uint64_t session = master::openJournal(journal()).header().session;
     const auto keep = [&](const sand::Replica& sand) {
         sand::Replica copy = sand;
         master::writeCheckpoint(
@@ -194,7 +195,7 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
     EXPECT_EQ(ran.status, 0) << ran.output;
     EXPECT_NE(ran.output.find("damaged at byte"), std::string::npos) << ran.output;
     EXPECT_NE(ran.output.find("bytes are lost"), std::string::npos) << ran.output;
-    const master::Journal kept = master::readJournal(file);
+    const journal::Journal kept = master::readJournal(file);
     ASSERT_GT(kept.frames.size(), 5U);
     ASSERT_LT(kept.frames.size(), 20U);
     EXPECT_EQ(kept.scene.encode(), samples::flatScene(40, 30).encode());
@@ -339,12 +340,12 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     base::ByteWriter scene;
     scene.putText("huge");
     base::putMember(scene, rules);
-    master::JournalHeader header;
+    journal::JournalHeader header;
     header.session = 1;
     header.scene = scene.take();
     header.material = scene::Material();
     std::uint64_t chain = 0;
-    const base::Bytes bytes = master::encodeHeader(header, chain);
+    const base::Bytes bytes = journal::encodeHeader(header, host::release(), chain);
     std::ofstream(journal(), std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     for (const auto& [question, gibibytes] :

@@ -14,8 +14,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. base/ has the reader, the writer, and the forms of members.
-FOLDERS = ("bench", "examples", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking",
-           "walls")
+FOLDERS = ("bench", "examples", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene",
+           "tracking", "walls")
 RECORD = "docs/decisions/values_described_once.md"
 MOST = 15
 
@@ -25,7 +25,7 @@ BY_HAND = {
     "haptic_bridge/link/message_forms.hpp": "forms of printed texts and of edits",
     "haptic_bridge/link/protocol.cpp": "length and type around a message",
     "haptic_bridge/loop/tick_track.cpp": "differences between ticks",
-    "master/journal/format.cpp": "length, type, mark and checksum around a record",
+    "journal/format.cpp": "length, type, mark and checksum around a record",
     "sand/grid/snapshot.cpp": "the outflow before compressed cells",
     "sand/model/grid_codec.cpp": "compressed cells",
     "sand/model/step.cpp": "differences between points of a path",

@@ -316,7 +316,7 @@ class Documents(unittest.TestCase):
 
     def test_the_page_of_the_journal_has_the_versions_of_the_code(self):
         said = re.search(r"this is [\d.]+ \(format (\d+), algorithm (\d+)\)", (ROOT / "docs/journal.md").read_text(encoding="utf-8"))
-        self.assertEqual(said.groups(), (constant("master/journal/format.hpp", "kJournalVersion"),
+        self.assertEqual(said.groups(), (constant("journal/format.hpp", "kJournalVersion"),
                                          constant("sand/model/rules.hpp", "kAlgorithmVersion")))
 
     def test_a_link_to_nothing_is_named(self):

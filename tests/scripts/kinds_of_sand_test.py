@@ -18,7 +18,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
-FOLDERS = ("base", "haptic_bridge", "host", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls")
+FOLDERS = ("base", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls")
 
 # The four places that may ask for the kind.
 PLACES = {

@@ -132,9 +132,17 @@ class Layers(unittest.TestCase):
 
     def test_neither_the_journal_nor_the_master_links_the_force_loop(self):
         self.assertIn("haptic_loop", linked("sandwall-replay"))
-        for name in ("journal", "sandwall-master"):
+        for name in ("journal_files", "sandwall-master"):
             self.assertIn("scene_load", linked(name))
             self.assertNotIn("haptic_loop", linked(name), name)
+
+    def test_a_replica_with_its_journal_and_its_hand_links_neither_files_nor_threads_nor_sockets(self):
+        pure = {"base", "sand", "sand_force", "sand_grid", "sand_model", "sand_tin", "scene_model", "journal", "haptic_hand",
+                "PkgConfig::XXHASH", "PkgConfig::ZSTD"}
+        for name in ("journal", "haptic_hand"):
+            self.assertIn("scene_model", linked(name))
+            self.assertEqual(linked(name) - pure, set(), name)
+        self.assertIn("host", linked("journal_files"))
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()

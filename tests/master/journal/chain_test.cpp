@@ -6,6 +6,8 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
+#include "host/version.hpp"
+#include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
 
@@ -33,11 +35,11 @@ protected:
         }
     }
     [[nodiscard]] fs::path second() const { return master::partOf(journal(), 2); }
-    [[nodiscard]] master::JournalHeader headerOf(const fs::path& part) const {
+    [[nodiscard]] journal::JournalHeader headerOf(const fs::path& part) const {
         const base::Bytes bytes = contentOf(part);
         base::ByteReader reader(bytes);
         std::uint64_t chain = 0;
-        return master::decodeHeader(reader, chain);
+        return journal::decodeHeader(reader, host::release(), chain);
     }
     /// Returns the complaint about the journal, or "none".
     [[nodiscard]] std::string complaint() const {
@@ -78,7 +80,7 @@ TEST_F(Chain, APartOfAnotherPastOfTheSameSessionIsRefused) {
     const base::Bytes own = past(2);
     ASSERT_EQ(complaint(), "none");
     put(second(), other);
-    ASSERT_EQ(headerOf(second()).session, master::JournalReader(journal()).header().session);
+    ASSERT_EQ(headerOf(second()).session, master::openJournal(journal()).header().session);
     ASSERT_EQ(headerOf(second()).part, 2U);
     EXPECT_EQ(complaint(), otherPart());
     put(second(), own);
@@ -89,14 +91,14 @@ TEST_F(Chain, SessionNumberAndChecksumOfTheNextPartAreEachChecked) {
     begin({.checkpointSeconds = 0, .partBytes = kPart});
     goOnUntil(2);
     keeper_.reset();
-    const master::JournalHeader right = headerOf(second());
-    const auto with = [&](const master::JournalHeader& header) {
+    const journal::JournalHeader right = headerOf(second());
+    const auto with = [&](const journal::JournalHeader& header) {
         std::uint64_t chain = 0;
-        put(second(), master::encodeHeader(header, chain));
+        put(second(), journal::encodeHeader(header, host::release(), chain));
         return complaint();
     };
     EXPECT_EQ(with(right), "none");
-    master::JournalHeader wrong = right;
+    journal::JournalHeader wrong = right;
     wrong.session ^= 1;
     EXPECT_EQ(with(wrong), otherPart());
     wrong = right;

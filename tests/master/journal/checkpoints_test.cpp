@@ -47,11 +47,11 @@ protected:
     }
     void keepCheckpoint(sand::Replica& replica) const {
         master::writeCheckpoint(journal(),
-                                {master::JournalReader(journal()).header().session, "test", scene_.rules.digest(),
+                                {master::openJournal(journal()).header().session, "test", scene_.rules.digest(),
                                  replica.stepNumber(), frame_, 1, replica.stateHash(), replica.encodeState()},
                                 3);
     }
-    [[nodiscard]] master::JournalEnd here() { return {replica_.stepNumber(), replica_.stateHash()}; }
+    [[nodiscard]] journal::JournalEnd here() { return {replica_.stepNumber(), replica_.stateHash()}; }
 };
 
 // The newest two may be damaged.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ protected:
         std::uint32_t first;  // the first format with an origin
         std::string name;
     };
-    const std::vector<Kind> kinds_{{kJournal, master::kJournalVersion, 6, "journal"},
+    const std::vector<Kind> kinds_{{kJournal, journal::kJournalVersion, 6, "journal"},
                                    {kCheckpoint, 2, 2, "checkpoint"},
                                    {kSand, 2, 2, "saved sand"}};
     const std::string here_{host::release()};
@@ -112,14 +112,14 @@ TEST_F(OriginOfFiles, StandsAtTheirBeginningAndIsReadBack) {
         EXPECT_TRUE(std::ranges::equal(std::span(bytes).first(expected.bytes().size()), expected.bytes())) << kind.name;
         EXPECT_EQ(refusal(kind.magic), "");
         base::ByteReader reader(bytes);
-        const master::FileKind same{kind.name, kind.magic, kind.format, kind.format};
-        const master::FileOrigin origin = master::readOrigin(same, reader);
+        const journal::FileKind same{kind.name, kind.magic, kind.format, kind.format};
+        const journal::FileOrigin origin = journal::readOrigin(same, host::release(), reader);
         EXPECT_EQ(origin.format, kind.format);
         EXPECT_EQ(origin.algorithm, kAlgorithm);
         EXPECT_EQ(origin.release, here_);
         EXPECT_EQ(reader.rest().size(), bytes.size() - expected.bytes().size());
     }
-    EXPECT_EQ(master::JournalReader(nameOf(kJournal)).header().origin.release, here_);
+    EXPECT_EQ(master::openJournal(nameOf(kJournal)).header().origin.release, here_);
 }
 
 TEST_F(OriginOfFiles, NamesTheReleaseThatReadsThem) {
@@ -136,7 +136,7 @@ TEST_F(OriginOfFiles, NamesTheReleaseThatReadsThem) {
 }
 
 TEST_F(OriginOfFiles, OfAnotherBuildOfThisReleaseIsNotSentBackToIt) {
-    begin(kJournal, master::kJournalVersion, kAlgorithm + 1, here_);
+    begin(kJournal, journal::kJournalVersion, kAlgorithm + 1, here_);
     EXPECT_TRUE(refusal(kJournal).ends_with(fmt::format(": another build of {} wrote it, or it is damaged", here_)))
         << refusal(kJournal);
 }
@@ -166,9 +166,9 @@ TEST_F(OriginOfFiles, ForeignJournalsEndEveryQuestionWithOneLineAndStatusTwo) {
     const std::string another = fmt::format(
         "written by sandwall 9.8.7 (journal format {}, algorithm {}); this is {} (format {}, algorithm "
         "{}): use sandwall 9.8.7",
-        master::kJournalVersion, kAlgorithm + 1, here_, master::kJournalVersion, kAlgorithm);
+        journal::kJournalVersion, kAlgorithm + 1, here_, journal::kJournalVersion, kAlgorithm);
     for (const bool old : {true, false}) {
-        begin(kJournal, old ? 5 : master::kJournalVersion, kAlgorithm + 1, "9.8.7");
+        begin(kJournal, old ? 5 : journal::kJournalVersion, kAlgorithm + 1, "9.8.7");
         for (const std::string& question :
              {std::string(), std::string("--hash"), std::string("--verify"), "--export " + made, "--recover " + made}) {
             const support::Ran ran = support::runProgram("sandwall-replay", fmt::format("{} {}", file, question));

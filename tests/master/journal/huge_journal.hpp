@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "master/journal/format.hpp"
+#include "host/version.hpp"
+#include "journal/format.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 
@@ -18,12 +19,12 @@ class HugeJournal : public FolderTest {
 protected:
     /// Writes a journal that has only a header. `scene` becomes the scene in it.
     std::filesystem::path journalOf(const base::Bytes& scene) {
-        master::JournalHeader header;
+        journal::JournalHeader header;
         header.session = 1;
         header.scene = scene;
         header.material = scene::Material();
         std::uint64_t chain = 0;
-        const base::Bytes bytes = master::encodeHeader(header, chain);
+        const base::Bytes bytes = journal::encodeHeader(header, host::release(), chain);
         std::ofstream(journal_, std::ios::binary)
             .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
         return journal_;

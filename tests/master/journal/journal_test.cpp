@@ -21,13 +21,13 @@ namespace {
 class JournalFile : public test::FolderTest {
 protected:
     /// Records ten frames of a random hand, with three steps each.
-    std::vector<master::JournalFrame> writeSession(bool finished) {
+    std::vector<journal::JournalFrame> writeSession(bool finished) {
         const scene::Scene scene = samples::flatScene(20, 10);
         std::mt19937 random(47);
         master::JournalWriter writer(file_, scene, "0123456789abcdef");
-        std::vector<master::JournalFrame> frames;
+        std::vector<journal::JournalFrame> frames;
         for (std::uint64_t frame = 0; frame < 10; ++frame) {
-            master::JournalFrame& written = frames.emplace_back();
+            journal::JournalFrame& written = frames.emplace_back();
             written.frame = frame + 1;
             written.hashBefore = random();
             for (std::uint64_t i = 1; i <= 3; ++i) {
@@ -40,8 +40,8 @@ protected:
         }
         return frames;
     }
-    static void expectFrames(const std::vector<master::JournalFrame>& got,
-                             const std::vector<master::JournalFrame>& expected, std::size_t count) {
+    static void expectFrames(const std::vector<journal::JournalFrame>& got,
+                             const std::vector<journal::JournalFrame>& expected, std::size_t count) {
         ASSERT_EQ(got.size(), count);
         for (std::size_t i = 0; i < count; ++i) {
             EXPECT_EQ(got[i].frame, expected[i].frame);
@@ -54,7 +54,7 @@ protected:
 
 TEST_F(JournalFile, GivesBackWhatWasWritten) {
     const auto frames = writeSession(true);
-    const master::Journal journal = master::readJournal(file_);
+    const journal::Journal journal = master::readJournal(file_);
     expectFrames(journal.frames, frames, 10);
     EXPECT_EQ(journal.buildId, "0123456789abcdef");
     ASSERT_TRUE(journal.end.has_value());
@@ -65,7 +65,7 @@ TEST_F(JournalFile, GivesBackWhatWasWritten) {
 
 TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
     const scene::Scene scene = samples::flatScene(20, 10);
-    master::JournalFrame frame{1, 5, {}};
+    journal::JournalFrame frame{1, 5, {}};
     for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, {.radius = 17}}),
                                    sand::Edit::loaded(base::Bytes(200'000, 9)), sand::Edit(sand::Edit::undo)}) {
         frame.steps.push_back({1, frame.steps.size() + 1, false, {}, edit});
@@ -74,7 +74,7 @@ TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
         master::JournalWriter writer(file_, scene, "0123456789abcdef");
         writer.append(frame);
     }
-    const master::Journal journal = master::readJournal(file_);
+    const journal::Journal journal = master::readJournal(file_);
     ASSERT_EQ(journal.frames.size(), 1U);
     EXPECT_EQ(journal.frames[0].steps, frame.steps);
 }
@@ -96,7 +96,7 @@ TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {
     EXPECT_THROW(append(2), base::InputError);
     setrlimit(RLIMIT_FSIZE, &before);
     std::signal(SIGXFSZ, handler);
-    const master::Journal journal = master::readJournal(file_);
+    const journal::Journal journal = master::readJournal(file_);
     EXPECT_EQ(journal.frames.size(), 1U);
     EXPECT_EQ(journal.tornBytes, 0);
 }
@@ -106,7 +106,7 @@ TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
     std::vector<std::uintmax_t> ends;  // ends of the header and of every frame
     const scene::Scene scene = samples::flatScene(20, 10);
     std::mt19937 random(48);
-    std::vector<master::JournalFrame> frames;
+    std::vector<journal::JournalFrame> frames;
     {
         master::JournalWriter writer(file_, scene, "0123456789abcdef");
         ends.push_back(std::filesystem::file_size(file_));
@@ -123,7 +123,7 @@ TEST_F(JournalFile, CutAnywhereItKeepsEveryRecordBeforeTheCut) {
             continue;
         }
         const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), cut) - ends.begin()) - 1;
-        const master::Journal journal = master::readJournal(file_);
+        const journal::Journal journal = master::readJournal(file_);
         expectFrames(journal.frames, frames, whole);
         EXPECT_EQ(journal.tornBytes, static_cast<std::int64_t>(cut - ends[whole])) << cut;
     }
@@ -161,7 +161,7 @@ TEST_F(JournalFile, RefusesAFlippedBitOfAnyByteBeforeItsLastRecord) {
     }
     for (std::streamoff at = last; at < size; ++at) {
         const Flipped flipped(file_, at, static_cast<int>(at % 8));
-        const master::Journal journal = master::readJournal(file_);
+        const journal::Journal journal = master::readJournal(file_);
         EXPECT_EQ(journal.frames.size(), 10U) << "byte " << at << " of " << size;
         EXPECT_FALSE(journal.end.has_value());
         EXPECT_EQ(journal.tornBytes, 37);

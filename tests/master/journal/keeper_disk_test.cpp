@@ -100,7 +100,7 @@ TEST_F(KeeperDisk, ALittleRoomDoesNotEndTheStop) {
         while (showFrame(large)) {
             ASSERT_LT(++frames, 1000);
         }
-        const auto place = [this] { return master::JournalEnd{replica_.stepNumber(), replica_.stateHash()}; };
+        const auto place = [this] { return journal::JournalEnd{replica_.stepNumber(), replica_.stateHash()}; };
         EXPECT_FALSE(keeper_->hasRoomFor(0, place())) << "a command right after the stop";
         const auto filled = std::filesystem::file_size(folder_ / "filler");
         std::filesystem::resize_file(folder_ / "filler", filled - (256 << 10));  // more than the steps of a frame need

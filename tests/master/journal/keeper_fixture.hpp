@@ -37,7 +37,7 @@ protected:
     void expectWhole(std::uint64_t steps) {
         master::RestoredSand restored = master::restoreSand(journal(), steps);
         EXPECT_EQ(restored.replica.stateHash(), replica_.stateHash());
-        const master::Journal journal = master::readJournal(this->journal());
+        const journal::Journal journal = master::readJournal(this->journal());
         EXPECT_EQ(journal.frames.size(), steps);
         EXPECT_EQ(journal.tornBytes, 0);
     }

@@ -13,7 +13,9 @@
 #include <thread>
 
 #include "base/input_error.hpp"
+#include "host/version.hpp"
 #include "master/journal/checkpoint.hpp"
+#include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
 #include "tests/support/blocked_child.hpp"
@@ -59,7 +61,7 @@ TEST_F(Keeper, ANewSessionWaitsForTheOneThatStillWritesItsJournal) {
     second.emplace(folder_, master::JournalOptions{}, scene_, nullptr, "", "test");
     first.join();
     EXPECT_FALSE(moved);
-    const master::Journal previous = master::readJournal(folder_ / "session.journal.previous");
+    const journal::Journal previous = master::readJournal(folder_ / "session.journal.previous");
     EXPECT_TRUE(previous.end.has_value()) << "the first session has an orderly end";
     EXPECT_EQ(previous.frames.size(), 1U);
 }
@@ -248,7 +250,7 @@ TEST_F(Keeper, APartThatWasOnlyMadeIsNoHarm) {
     std::ifstream stream(master::partOf(journal(), 2), std::ios::binary);
     const base::Bytes bytes{std::istreambuf_iterator<char>(stream), {}};
     base::ByteReader reader(bytes);
-    (void)master::decodeHeader(reader, chain);
+    (void)journal::decodeHeader(reader, host::release(), chain);
     ASSERT_GT(reader.rest().size(), 0U) << "the step is cut off";
     std::filesystem::resize_file(master::partOf(journal(), 2), bytes.size() - reader.rest().size());
     EXPECT_EQ(master::readJournal(journal()).frames.size(), steps);
@@ -311,7 +313,7 @@ TEST_F(Keeper, KilledInTheMiddleOfWritesNothingThatWasOnDiskIsLost) {
         // The sand from the checkpoints must equal the sand from the scene. restoreSand() compares the hashes on the
         // way.
         sand::Replica undisturbed(scene_);
-        for (const master::JournalFrame& frame : master::readJournal(journal()).frames) {
+        for (const journal::JournalFrame& frame : master::readJournal(journal()).frames) {
             ASSERT_EQ(frame.hashBefore, undisturbed.stateHash());
             undisturbed.apply(frame.steps.front());
         }

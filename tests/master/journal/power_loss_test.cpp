@@ -11,6 +11,7 @@
 #include <random>
 
 #include "base/input_error.hpp"
+#include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "master/journal/keeper.hpp"
 #include "tests/support/folder_test.hpp"
@@ -65,7 +66,7 @@ protected:
         showFrame();
         keeper_->finish({replica_.stepNumber(), replica_.stateHash()});
         keeper_.reset();
-        const master::Journal whole = master::readJournal(journal());
+        const journal::Journal whole = master::readJournal(journal());
         EXPECT_EQ(whole.frames.size(), resumed->step + 1);
         ASSERT_TRUE(whole.end.has_value());
         EXPECT_EQ(whole.tornBytes, 0);

@@ -30,7 +30,7 @@ protected:
 
     void record(master::JournalWriter& writer, int frames, std::uint32_t epoch = 1) {
         for (int i = 0; i < frames; ++i) {
-            master::JournalFrame written{++frame_, replica_.stateHash(), {}};
+            journal::JournalFrame written{++frame_, replica_.stateHash(), {}};
             for (int k = 0; k < 2; ++k) {
                 hashes_.push_back(replica_.stateHash());
                 written.steps.push_back(samples::wildStep(replica_.stepNumber() + 1, scene_.rules, random_));
@@ -109,7 +109,7 @@ TEST_F(Resume, LeavesOutACheckpointThatIsDamagedAnywhere) {
 
 // The checkpoint is whole, has the right checksum and belongs to the session. But its sand differs from the journal's.
 TEST_F(Resume, LeavesOutACheckpointOfOtherSand) {
-    const std::uint64_t session = master::JournalReader(journal()).header().session;
+    const std::uint64_t session = master::openJournal(journal()).header().session;
     replica_ = master::restoreSand(journal(), 39).replica;
     replica_.apply({.epoch = 1, .number = 40, .engaged = true, .path = {{999, 999, -99}, {5000, 5000, -99}}});
     ASSERT_NE(replica_.stateHash(), hashes_[40]);
@@ -158,7 +158,7 @@ TEST_F(Resume, GoesOnWithTheNextStepInTheSameJournal) {
         writer.finish(replica_.stepNumber(), replica_.stateHash());
     }
     hashes_.push_back(replica_.stateHash());
-    const master::Journal journal = master::readJournal(this->journal());
+    const journal::Journal journal = master::readJournal(this->journal());
     EXPECT_EQ(journal.frames.size(), 25U);
     EXPECT_EQ(journal.tornBytes, 0);
     ASSERT_EQ(journal.resumes.size(), 1U);
@@ -205,8 +205,8 @@ TEST_F(Resume, KnowsTheShareOfTheForceThatAnOperatorHasSetLast) {
     const std::uint64_t before = master::readSession(journal(), "")->hash;
     {
         master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
-        writer.keep(master::JournalForce{0.5});
-        writer.keep(master::JournalForce{0});
+        writer.keep(journal::JournalForce{0.5});
+        writer.keep(journal::JournalForce{0});
         writer.sync();
     }
     const auto session = master::readSession(journal(), "");
@@ -324,7 +324,7 @@ TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
     const auto append = [this](std::uint64_t number, std::uint32_t epoch) {
         const auto session = master::readSession(journal(), "");
         master::JournalWriter writer(session->place, "test");
-        master::JournalFrame frame{++frame_, replica_.stateHash(), {}};
+        journal::JournalFrame frame{++frame_, replica_.stateHash(), {}};
         frame.steps.push_back(samples::randomStep(replica_.stepNumber() + 1, scene_.rules, random_));
         frame.steps.back().epoch = epoch;
         frame.steps.back().edit = samples::withNumber(number, sand::Edit::settle);

@@ -32,7 +32,7 @@ protected:
         return lines;
     }
     void expectFrames(std::size_t count) const {
-        const master::Journal journal = master::readJournal(folder_ / "session.journal");
+        const journal::Journal journal = master::readJournal(folder_ / "session.journal");
         EXPECT_EQ(journal.frames.size(), count);
         EXPECT_EQ(journal.tornBytes, 0);
     }

@@ -13,8 +13,8 @@ namespace {
 using haptic_bridge::TimedStep;
 
 /// Records a session of `steps` steps, 60 per second, one per frame, with the hashes of its sand.
-master::Journal sessionWithHashes(std::uint64_t steps) {
-    master::Journal journal;
+journal::Journal sessionWithHashes(std::uint64_t steps) {
+    journal::Journal journal;
     journal.scene = samples::flatScene(24, 24);
     sand::Replica sand(journal.scene);
     std::mt19937 random(7);
@@ -27,8 +27,8 @@ master::Journal sessionWithHashes(std::uint64_t steps) {
     return journal;
 }
 
-std::shared_ptr<const master::Recording> recordingOf(master::Journal journal, int framesPerSecond = 60) {
-    return std::make_shared<const master::Recording>(std::move(journal), "FILE", framesPerSecond);
+std::shared_ptr<const journal::Recording> recordingOf(journal::Journal journal, int framesPerSecond = 60) {
+    return std::make_shared<const journal::Recording>(std::move(journal), "FILE", framesPerSecond);
 }
 
 /// Shows a frame of the recording on a wall without ranks. Returns the number of its steps.
@@ -56,7 +56,7 @@ TEST(RecordedSteps, ShowEachFrameTheStepsOfItsTimeAndEndWhereAsked) {
 }
 
 TEST(RecordedSteps, SayOnceWhenTheSandDiffersFromTheRecordings) {
-    master::Journal journal = sessionWithHashes(10);
+    journal::Journal journal = sessionWithHashes(10);
     journal.frames[4].hashBefore ^= 1;  // after step 4
     const auto recording = recordingOf(std::move(journal));
     master::RecordedSteps steps(recording, 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/format.hpp"
+#include "journal/format.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -7,7 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace master {
+namespace journal {
 namespace {
 
 constexpr std::uint32_t kJournalMagic = 0x4c4a5753;  // "SWJL"
@@ -26,20 +26,20 @@ constexpr std::array<std::string_view, std::variant_size_v<JournalRecord>> kReco
 
 }  // namespace
 
-base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain) {
+base::Bytes encodeHeader(const JournalHeader& header, std::string_view release, std::uint64_t& chain) {
     base::ByteWriter writer;
-    writeOrigin(kJournalKind, writer);
+    writeOrigin(kJournalKind, release, writer);
     base::putMember(writer, header);
     chain = chainedSum(writer.bytes(), header.continues);
     writer.put(chain);
     return writer.take();
 }
 
-JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain) {
+JournalHeader decodeHeader(base::ByteReader& reader, std::string_view release, std::uint64_t& chain) {
     const std::span<const std::uint8_t> all = reader.rest();
     JournalHeader header;
     try {
-        header.origin = readOrigin(kJournalKind, reader);
+        header.origin = readOrigin(kJournalKind, release, reader);
         base::getMember(reader, header);
         const std::size_t checked = all.size() - reader.rest().size();
         chain = base::read<std::uint64_t>(reader);
@@ -137,4 +137,4 @@ bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
     return false;
 }
 
-}  // namespace master
+}  // namespace journal

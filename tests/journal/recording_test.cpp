@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/recording.hpp"
+#include "journal/recording.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@ namespace {
 
 /// Returns a session of `steps` steps, 60 per second, with three steps per frame. Its hash after each step is 100 +
 /// step.
-master::Journal sessionOf(std::uint64_t steps) {
-    master::Journal journal;
+journal::Journal sessionOf(std::uint64_t steps) {
+    journal::Journal journal;
     journal.scene = samples::flatScene(8, 8);
     journal.scene.rules.stepsPerSecond = 60;
     for (std::uint64_t number = 1; number <= steps; ++number) {
@@ -24,9 +24,9 @@ master::Journal sessionOf(std::uint64_t steps) {
     return journal;
 }
 
-std::string refusal(master::Journal journal) {
+std::string refusal(journal::Journal journal) {
     try {
-        const master::Recording recording(std::move(journal), "FILE", 30);
+        const journal::Recording recording(std::move(journal), "FILE", 30);
     } catch (const base::InputError& error) {
         return error.what();
     }
@@ -35,7 +35,7 @@ std::string refusal(master::Journal journal) {
 
 TEST(Recording, EachFrameShowsTheStepsOfItsTime) {
     for (const int rate : {1, 7, 24, 25, 30, 60, 144, 240}) {
-        const master::Recording recording(sessionOf(601), "FILE", rate);
+        const journal::Recording recording(sessionOf(601), "FILE", rate);
         const auto perSecond = static_cast<std::uint64_t>(rate);
         ASSERT_EQ(recording.frames(), (601 * perSecond + 59) / 60);
         std::uint64_t shown = 0;
@@ -50,7 +50,7 @@ TEST(Recording, EachFrameShowsTheStepsOfItsTime) {
 }
 
 TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
-    const master::Recording recording(sessionOf(10), "FILE", 30);
+    const journal::Recording recording(sessionOf(10), "FILE", 30);
     for (const std::uint64_t step : {0U, 3U, 6U, 9U, 10U}) {
         EXPECT_EQ(recording.hashAfter(step), 100 + step);
     }
@@ -60,18 +60,18 @@ TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
 }
 
 TEST(Recording, SaysWhereACutOffSessionEnds) {
-    EXPECT_EQ(master::Recording(sessionOf(9), "FILE", 30).shortcoming(), "");
-    master::Journal journal = sessionOf(9);
+    EXPECT_EQ(journal::Recording(sessionOf(9), "FILE", 30).shortcoming(), "");
+    journal::Journal journal = sessionOf(9);
     journal.end.reset();
-    EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
+    EXPECT_EQ(journal::Recording(journal, "FILE", 30).shortcoming(),
               "FILE: has no orderly end, the session was cut off; it ends at step 9");
     journal.tornBytes = 5;
-    EXPECT_EQ(master::Recording(journal, "FILE", 30).shortcoming(),
+    EXPECT_EQ(journal::Recording(journal, "FILE", 30).shortcoming(),
               "FILE: the last 5 bytes are an incomplete write and were left out; it ends at step 9");
 }
 
 TEST(Recording, RefusesASessionWithAHole) {
-    master::Journal journal = sessionOf(12);
+    journal::Journal journal = sessionOf(12);
     journal.frames.erase(journal.frames.begin() + 1);
     EXPECT_EQ(refusal(journal), "FILE: step 7 follows step 3; a part of the session is missing");
     journal = sessionOf(12);
@@ -80,7 +80,7 @@ TEST(Recording, RefusesASessionWithAHole) {
 }
 
 TEST(Recording, RefusesASessionWithoutSteps) {
-    master::Journal journal = sessionOf(3);
+    journal::Journal journal = sessionOf(3);
     journal.frames.clear();
     journal.end.reset();
     EXPECT_EQ(refusal(journal), "FILE: the journal holds no steps, so it cannot be replayed");

@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to this folder.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
+#include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
 
-#include "master/journal/format.hpp"
+#include "journal/format.hpp"
+#include "journal/journal_parts.hpp"
 
-namespace master {
-
-/// Returns the name of a part: FILE, FILE.2, FILE.3 …
-[[nodiscard]] std::filesystem::path partOf(const std::filesystem::path& journal, std::uint32_t part);
+namespace journal {
 
 /// Place behind a whole record, at which a session can continue.
 struct JournalPlace {
-    std::filesystem::path journal;  // first part of the journal
+    std::string journal;  // name of the journal's first part
     std::uint64_t session = 0;
     std::uint32_t part = 1;
     std::int64_t offset = 0;  // in that part [byte]
@@ -27,9 +25,9 @@ struct JournalPlace {
 /// Reads a session record by record, from part to part. Holds one record at a time. Used by one thread.
 class JournalReader {
 public:
-    /// Throws base::InputError if the file is missing, is not a journal, is a later part, has another format or
-    /// algorithm, or has a damaged header.
-    explicit JournalReader(std::filesystem::path journal);
+    /// Throws base::InputError if the first part is missing, is not a journal, is a later part, has another format or
+    /// algorithm, or has a damaged header. `release` is that of this program.
+    JournalReader(std::unique_ptr<JournalParts> parts, std::string_view release);
 
     [[nodiscard]] const JournalHeader& header() const { return header_; }
     /// Returns the next record; nullopt behind the last whole one. At the end of a part it continues with the next part
@@ -46,23 +44,26 @@ public:
     [[nodiscard]] std::uint32_t parts() const { return place_.part; }
     /// Returns the length of all parts so far up to place(), with headers [byte].
     [[nodiscard]] std::int64_t wholeBytes() const { return earlierBytes_ + place_.offset; }
-    /// Returns the length of all parts that exist [byte].
-    [[nodiscard]] std::int64_t allBytes() const;
 
 private:
     void open(std::uint32_t part);
     void openNext(std::uint32_t part);
+    [[nodiscard]] JournalHeader readHeader(std::uint32_t part, std::int64_t size, std::uint64_t& chain,
+                                           std::int64_t& length);
     [[nodiscard]] bool readRecord(base::Bytes& body);
     [[noreturn]] void fail(const std::string& why) const;
     void endHere(const std::string& why);
     /// Sets JournalFrame::doubted of a record that has been read.
     void followDoubt(JournalRecord& record);
     /// Returns whether there is a next part of this session with a record.
-    [[nodiscard]] bool continues() const;
+    [[nodiscard]] bool continues();
+    /// Returns the name of a part without the folder before it.
+    [[nodiscard]] std::string shortName(std::uint32_t part) const;
 
+    std::unique_ptr<JournalParts> parts_;
+    std::string release_;
     JournalHeader header_;
     JournalPlace place_;
-    std::ifstream stream_;
     std::int64_t size_ = 0;  // [byte], length of the part
     std::int64_t earlierBytes_ = 0;
     std::int64_t tornBytes_ = 0;
@@ -70,4 +71,4 @@ private:
     bool doubted_ = false;  // the hashes of the next frames do not count
 };
 
-}  // namespace master
+}  // namespace journal

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "master/journal/journal.hpp"
+#include "journal/journal.hpp"
 #include "scene/model/scene.hpp"
 
-namespace master {
+namespace journal {
 
 /// A recorded session, cut into frames of another rate. Frame n shows all steps up to floor(n * steps per second /
 /// frames per second). The last frame shows all steps that are left. Immutable, so any thread may use it.
@@ -43,4 +43,4 @@ private:
     std::string shortcoming_;
 };
 
-}  // namespace master
+}  // namespace journal

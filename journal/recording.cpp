@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/recording.hpp"
+#include "journal/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "base/input_error.hpp"
 
-namespace master {
+namespace journal {
 namespace {
 
 std::string shortcomingOf(const Journal& journal, const std::string& file, std::uint64_t lastStep) {
@@ -69,4 +69,4 @@ std::optional<std::uint64_t> Recording::hashAfter(std::uint64_t step) const {
     return found == hashes_.end() ? std::nullopt : std::optional(found->second);
 }
 
-}  // namespace master
+}  // namespace journal

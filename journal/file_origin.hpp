@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to this folder.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +8,7 @@
 
 #include "base/field_forms.hpp"
 
-namespace master {
+namespace journal {
 
 inline constexpr std::size_t kLongestBuild = 256;  // [byte] of a build id
 
@@ -43,11 +42,12 @@ public:
     using base::FormatError::FormatError;
 };
 
-/// Writes the magic number and this program's origin.
-void writeOrigin(const FileKind& kind, base::ByteWriter& writer);
-/// Reads the magic number and the origin. Throws ForeignFile if this program cannot read such a file, and another
-/// base::FormatError if the origin is cut short or damaged. The caller puts the file's name before the text.
-[[nodiscard]] FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader);
+/// Writes the magic number and the origin of a program of the release `release`.
+void writeOrigin(const FileKind& kind, std::string_view release, base::ByteWriter& writer);
+/// Reads the magic number and the origin. `release` is that of this program, for the text of an error. Throws
+/// ForeignFile if this program cannot read such a file, and another base::FormatError if the origin is cut short or
+/// damaged. The caller puts the file's name before the text.
+[[nodiscard]] FileOrigin readOrigin(const FileKind& kind, std::string_view release, base::ByteReader& reader);
 
 /// Returns the checksum of the bytes of a checkpoint or of saved sand.
 [[nodiscard]] std::uint64_t fileSum(std::span<const std::uint8_t> bytes);
@@ -58,9 +58,9 @@ void writeOrigin(const FileKind& kind, base::ByteWriter& writer);
 
 /// Returns a file with its origin, a described value and a checksum of both.
 template <base::Described T>
-[[nodiscard]] base::Bytes encodeFile(const FileKind& kind, const T& value) {
+[[nodiscard]] base::Bytes encodeFile(const FileKind& kind, std::string_view release, const T& value) {
     base::ByteWriter writer;
-    writeOrigin(kind, writer);
+    writeOrigin(kind, release, writer);
     base::putMember(writer, value);
     base::putMember(writer, fileSum(writer.bytes()));
     return writer.take();
@@ -68,10 +68,10 @@ template <base::Described T>
 
 /// Returns the value in a file of encodeFile(). Throws as readOrigin() and contentOf() do, and if the value is invalid.
 template <base::Described T>
-[[nodiscard]] T decodeFile(const FileKind& kind, std::span<const std::uint8_t> file) {
+[[nodiscard]] T decodeFile(const FileKind& kind, std::string_view release, std::span<const std::uint8_t> file) {
     base::ByteReader reader(file);
-    (void)readOrigin(kind, reader);
+    (void)readOrigin(kind, release, reader);
     return base::decoded<T>(contentOf(file, reader));
 }
 
-}  // namespace master
+}  // namespace journal

@@ -5,17 +5,18 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
 #include "base/field_forms.hpp"
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 #include "sand/model/step.hpp"
 #include "scene/model/material.hpp"
 #include "scene/model/scene.hpp"
 
 /// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
-namespace master {
+namespace journal {
 
 inline constexpr std::uint32_t kJournalVersion = 9;
 
@@ -118,7 +119,7 @@ using JournalRecord = std::variant<JournalFrame, JournalEnd, JournalTicks, Journ
 
 /// Header of a journal's file.
 struct JournalHeader {
-    FileOrigin origin;          // only when read; encodeHeader() writes this program's origin
+    FileOrigin origin;          // only when read; encodeHeader() writes another
     std::uint64_t session = 0;  // random number of the session
     std::uint32_t part = 1;
     std::uint64_t continues = 0;  // checksum of the last record of the part before; 0 in the first part
@@ -145,12 +146,12 @@ public:
     using base::FormatError::FormatError;
 };
 
-/// Returns the bytes of a header with its checksum. Sets `chain` to the checksum, with which the chain of the records
-/// begins.
-[[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::uint64_t& chain);
-/// Reads a header and sets `chain` to its checksum. Does not decode the scene. Throws HeaderLost or ForeignFile. The
-/// caller puts the file's name before the text.
-[[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::uint64_t& chain);
+/// Returns the bytes of a header with its checksum, written by a program of the release `release`. Sets `chain` to the
+/// checksum, with which the chain of the records begins.
+[[nodiscard]] base::Bytes encodeHeader(const JournalHeader& header, std::string_view release, std::uint64_t& chain);
+/// Reads a header and sets `chain` to its checksum. `release` is that of this program. Does not decode the scene.
+/// Throws HeaderLost or ForeignFile. The caller puts the file's name before the text.
+[[nodiscard]] JournalHeader decodeHeader(base::ByteReader& reader, std::string_view release, std::uint64_t& chain);
 
 /// Returns the bytes of a whole record. `chain` is the checksum of the record before, and is set to the checksum of
 /// this record. The first record of a write has a mark, `synced`: the length of the part before it, which is on disk
@@ -172,4 +173,4 @@ public:
 
 inline constexpr std::size_t kAroundPayload = sizeof(std::uint32_t) + 1 + sizeof(std::uint64_t);  // [byte]
 
-}  // namespace master
+}  // namespace journal

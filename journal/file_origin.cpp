@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/journal/file_origin.hpp"
+#include "journal/file_origin.hpp"
 
 #include <fmt/format.h>
 #include <xxhash.h>
@@ -7,10 +7,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "host/version.hpp"
 #include "sand/model/rules.hpp"
 
-namespace master {
+namespace journal {
 namespace {
 
 constexpr std::size_t kLongestRelease = 32;  // [byte]
@@ -23,13 +22,13 @@ bool isReleaseName(std::string_view text) {
     });
 }
 
-std::string refusalOf(const FileKind& kind, const FileOrigin& origin) {
+std::string refusalOf(const FileKind& kind, std::string_view release, const FileOrigin& origin) {
     // A development build has the number of the next release, and may write other formats than that release.
-    const std::string advice = origin.release == host::release()
+    const std::string advice = origin.release == release
                                    ? fmt::format("another build of {} wrote it, or it is damaged", origin.release)
                                    : fmt::format("use sandwall {}", origin.release);
     return fmt::format("written by sandwall {} ({} format {}, algorithm {}); this is {} (format {}, algorithm {}): {}",
-                       origin.release, kind.name, origin.format, origin.algorithm, host::release(), kind.format,
+                       origin.release, kind.name, origin.format, origin.algorithm, release, kind.format,
                        sand::kAlgorithmVersion, advice);
 }
 
@@ -37,12 +36,12 @@ std::string refusalOf(const FileKind& kind, const FileOrigin& origin) {
 
 std::string FileOrigin::refusal() const { return isReleaseName(release) ? "" : "its origin names no release"; }
 
-void writeOrigin(const FileKind& kind, base::ByteWriter& writer) {
+void writeOrigin(const FileKind& kind, std::string_view release, base::ByteWriter& writer) {
     base::putMember(writer, kind.magic);
-    base::putMember(writer, FileOrigin{kind.format, sand::kAlgorithmVersion, std::string(host::release())});
+    base::putMember(writer, FileOrigin{kind.format, sand::kAlgorithmVersion, std::string(release)});
 }
 
-FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader) {
+FileOrigin readOrigin(const FileKind& kind, std::string_view release, base::ByteReader& reader) {
     if (base::read<std::uint32_t>(reader) != kind.magic) {
         throw ForeignFile(fmt::format("not a Sandwall {} file", kind.name));
     }
@@ -52,7 +51,7 @@ FileOrigin readOrigin(const FileKind& kind, base::ByteReader& reader) {
     }
     auto origin = base::read<FileOrigin>(reader);
     if (origin.format != kind.format || origin.algorithm != sand::kAlgorithmVersion) {
-        throw ForeignFile(refusalOf(kind, origin));
+        throw ForeignFile(refusalOf(kind, release, origin));
     }
     return origin;
 }
@@ -72,4 +71,4 @@ std::span<const std::uint8_t> contentOf(std::span<const std::uint8_t> file, cons
     return rest.first(rest.size() - sizeof sum);
 }
 
-}  // namespace master
+}  // namespace journal

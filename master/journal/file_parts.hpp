@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to this folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+
+#include "journal/journal_parts.hpp"
+
+namespace master {
+
+/// Returns the name of a part: FILE, FILE.2, FILE.3 …
+[[nodiscard]] std::filesystem::path partOf(const std::filesystem::path& journal, std::uint32_t part);
+
+/// The parts of a journal in files. Keeps the file open that it has read last.
+class FileParts : public journal::JournalParts {
+public:
+    explicit FileParts(std::filesystem::path journal) : journal_(std::move(journal)) {}
+
+    [[nodiscard]] std::string name(std::uint32_t part) const override { return partOf(journal_, part).string(); }
+    [[nodiscard]] bool has(std::uint32_t part) const override;
+    [[nodiscard]] std::int64_t length(std::uint32_t part) override;
+    void read(std::uint32_t part, std::int64_t offset, std::int64_t size, base::Bytes& bytes) override;
+
+private:
+    void open(std::uint32_t part);
+
+    std::filesystem::path journal_;  // the first part
+    std::ifstream stream_;
+    std::uint32_t opened_ = 0;    // the part of stream_; 0: none
+    std::int64_t position_ = -1;  // of stream_ [byte]; -1: unknown
+};
+
+}  // namespace master

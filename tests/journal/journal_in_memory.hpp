@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "journal/reader.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace test {
+
+/// The parts of a journal in memory: JOURNAL, JOURNAL.2 and so on.
+class MemoryParts : public journal::JournalParts {
+public:
+    explicit MemoryParts(std::vector<base::Bytes> parts) : parts_(std::move(parts)) {}
+    [[nodiscard]] std::string name(std::uint32_t part) const override {
+        return part == 1 ? "folder/JOURNAL" : "folder/JOURNAL." + std::to_string(part);
+    }
+    [[nodiscard]] bool has(std::uint32_t part) const override { return part >= 1 && part <= parts_.size(); }
+    [[nodiscard]] std::int64_t length(std::uint32_t part) override {
+        return static_cast<std::int64_t>(parts_.at(part - 1).size());
+    }
+    void read(std::uint32_t part, std::int64_t offset, std::int64_t size, base::Bytes& bytes) override {
+        const base::Bytes& all = parts_.at(part - 1);
+        const auto from = all.begin() + std::min(offset, length(part));
+        bytes.assign(from, from + std::min(size, all.end() - from));
+    }
+
+private:
+    std::vector<base::Bytes> parts_;
+};
+
+/// Makes the bytes of a journal, of which each record is a write.
+class JournalInMemory {
+public:
+    explicit JournalInMemory(const scene::Scene& scene) {
+        header_.session = 1;
+        header_.buildId = "build";
+        header_.scene = scene.encode();
+        header_.material = scene.material;
+        parts_.push_back(journal::encodeHeader(header_, "1.2.3", chain_));
+    }
+    void add(const journal::JournalRecord& record) {
+        const base::Bytes bytes = journal::encodeRecord(record, chain_, parts_.back().size());
+        parts_.back().insert(parts_.back().end(), bytes.begin(), bytes.end());
+    }
+    void beginPart(const journal::JournalEnd& sand) {
+        header_.part = static_cast<std::uint32_t>(parts_.size() + 1);
+        add(journal::JournalContinued{header_.part});
+        header_.continues = chain_;
+        header_.sand = sand;
+        header_.scene.clear();
+        header_.material.reset();
+        parts_.push_back(journal::encodeHeader(header_, "1.2.3", chain_));
+    }
+    [[nodiscard]] std::vector<base::Bytes>& parts() { return parts_; }
+    [[nodiscard]] journal::JournalReader reader(std::string_view release = "1.2.3") const {
+        return {std::make_unique<MemoryParts>(parts_), release};
+    }
+
+private:
+    journal::JournalHeader header_;
+    std::uint64_t chain_ = 0;
+    std::vector<base::Bytes> parts_;
+};
+
+}  // namespace test
