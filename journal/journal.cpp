@@ -18,13 +18,22 @@ struct Gather {
     void operator()(JournalTicks& ticks) const { journal.ticks.push_back(std::move(ticks.piece)); }
     void operator()(JournalResumed& resumed) const {
         journal.end.reset();
+        dropUnusedMaterial();
         journal.resumes.push_back(std::move(resumed));
     }
-    void operator()(const scene::Material&) const {}
+    void operator()(const scene::Material& material) const {
+        journal.materials.push_back({journal.frames.size(), material});
+    }
     void operator()(const JournalContinued&) const {}
     void operator()(const JournalDoubt&) const {}
     void operator()(const JournalChecked&) const {}
     void operator()(const JournalForce&) const {}
+    /// A crash may have cut off the steps that set the last material.
+    void dropUnusedMaterial() const {
+        if (!journal.materials.empty() && journal.materials.back().frame == journal.frames.size()) {
+            journal.materials.pop_back();
+        }
+    }
 };
 
 /// Returns the result of `decode` for the scene in the header. Errors name the journal.
@@ -46,10 +55,12 @@ sand::Rules rulesOf(const JournalReader& reader) { return decoded(reader, scene:
 Journal readAll(JournalReader& reader) {
     Journal journal;
     journal.scene = sceneOf(reader);
+    journal.scene.material = reader.header().material.value_or(scene::Material());
     journal.buildId = reader.header().buildId;
     while (auto record = reader.next()) {
         std::visit(Gather{journal}, *record);
     }
+    Gather{journal}.dropUnusedMaterial();
     journal.tornBytes = reader.tornBytes();
     return journal;
 }

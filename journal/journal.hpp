@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -12,11 +13,18 @@
 
 namespace journal {
 
+/// A material that an operator has set.
+struct JournalMaterial {
+    std::size_t frame = 0;  // index in Journal::frames of the frame whose steps set it
+    scene::Material material;
+};
+
 /// A whole session, read from its journal. Takes about 400 bytes per step and 65 bytes per tick of the tick track.
 struct Journal {
-    scene::Scene scene;
+    scene::Scene scene;  // with its material, if the journal has it
     std::string buildId;
     std::vector<JournalFrame> frames;
+    std::vector<JournalMaterial> materials;
     std::vector<base::Bytes> ticks;  // pieces of the haptic server's tick track, if it recorded one
     std::vector<JournalResumed> resumes;
     std::optional<JournalEnd> end;  // nullopt if the session was cut off

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -26,7 +27,13 @@ std::string shortcomingOf(const Journal& journal, const std::string& file, std::
 
 Recording::Recording(Journal journal, std::string file, int framesPerSecond)
     : scene_(std::move(journal.scene)), framesPerSecond_(framesPerSecond) {
-    for (JournalFrame& frame : journal.frames) {
+    humidity_.emplace(0, scene_.material.humidity);
+    auto material = journal.materials.begin();
+    for (std::size_t i = 0; i < journal.frames.size(); ++i) {
+        for (; material != journal.materials.end() && material->frame == i; ++material) {
+            humidity_.insert_or_assign(steps_.size() + 1, material->material.humidity);
+        }
+        JournalFrame& frame = journal.frames[i];
         if (!frame.doubted) {
             hashes_.emplace(steps_.size(), frame.hashBefore);
         }
@@ -62,6 +69,10 @@ std::uint64_t Recording::stepsUntil(std::uint64_t frame) const {
 std::span<const sand::Step> Recording::stepsOf(std::uint64_t frame) const {
     const std::uint64_t from = stepsUntil(frame - 1);
     return std::span(steps_).subspan(from, stepsUntil(frame) - from);
+}
+
+double Recording::humidityOf(std::uint64_t frame) const {
+    return std::prev(humidity_.upper_bound(stepsUntil(frame)))->second;
 }
 
 std::optional<std::uint64_t> Recording::hashAfter(std::uint64_t step) const {

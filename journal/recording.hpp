@@ -26,6 +26,8 @@ public:
     [[nodiscard]] std::uint64_t frames() const { return frames_; }
     /// Returns the steps that frame `frame` shows and the frame before did not. Frames count from 1.
     [[nodiscard]] std::span<const sand::Step> stepsOf(std::uint64_t frame) const;
+    /// Returns the humidity of the sand in frame `frame`, 0 to 1, as the session's operators had set it.
+    [[nodiscard]] double humidityOf(std::uint64_t frame) const;
     /// Returns the session's state hash after step `step`; 0 is its start. Returns nullopt if the journal has no hash
     /// for this step. It has one for every frame with steps, and one at its end.
     [[nodiscard]] std::optional<std::uint64_t> hashAfter(std::uint64_t step) const;
@@ -38,6 +40,7 @@ private:
     scene::Scene scene_;
     int framesPerSecond_;
     std::vector<sand::Step> steps_;                  // number n at n - 1
+    std::map<std::uint64_t, double> humidity_;       // by the first step that has it
     std::map<std::uint64_t, std::uint64_t> hashes_;  // by the step after which they were written
     std::uint64_t frames_;
     std::string shortcoming_;

@@ -26,6 +26,7 @@ struct ViewState {
     std::uint8_t pattern = 0;  // lockstep::Pattern that is shown instead of the sand; 0: the sand
     Overlays layers{};         // overlays that are shown with the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
+    double humidity = 0;       // scene::Material::humidity, 0 to 1; wet sand is drawn darker
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -36,6 +37,7 @@ struct ViewState {
         visit("pattern", it.pattern);
         visit("layers", it.layers);
         visit("stereo", it.stereo);
+        visit("humidity", base::limited(it.humidity, 0, 1));
     }
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };

@@ -25,6 +25,7 @@
 #include "master/session.hpp"
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
+#include "walls/desk_windows.hpp"
 #include "walls/wall.hpp"
 
 namespace {
@@ -33,6 +34,7 @@ struct Options {
     std::string scene, replay, wall, haptic = "none", out;
     int framesPerSecond = 30;   // of a replay
     std::string stereo, track;  // empty: as in the wall file
+    std::string desk;           // empty: the wall is not shown on a desktop
     std::string pattern = "none";
     std::vector<std::string> layers;
     std::vector<std::string> injections;
@@ -132,6 +134,9 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     cluster.mayTakeLong(true);  // until broadcastSession()
     master::requireFolder(options.out);
     World world{loadScene(cluster, options), walls::loadWallAs(options.wall, options.stereo), {}};
+    if (!options.desk.empty()) {
+        world.wall = walls::placedOnDesk(world.wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
+    }
     master::requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
     if (world.wall.ranks() != cluster.renderRanks()) {
         throw base::InputError(fmt::format(
@@ -299,6 +304,11 @@ void describeView(host::CommandLine& line, Options& options) {
     line.option("--stereo", options.stereo, "stereo mode, in place of the wall file's; docs/wall_files.md")
         .metavar("MODE")
         .offeredBy({"run", "film"});
+    line.option("--desk", options.desk,
+                "area of this desktop on which the whole wall is shown with one eye, in windows; docs/pointer.md")
+        .metavar("WIDTHxHEIGHT+X+Y")
+        .excludes(line.named("--stereo"))
+        .offeredBy({"run"});
     line.option("--track", options.track,
                 "tracker of the head: trace:FILE.csv, opentrack:PORT, dtrack:PORT or none; docs/head_tracking.md")
         .metavar("SOURCE")

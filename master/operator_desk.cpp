@@ -52,6 +52,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
     }
     views_.show(options.pattern);
     views_.show(options.layers);
+    views_.setHumidity(material_.humidity);
     if (const int port = views_.viewer().port(); port != 0) {
         fmt::print("head tracking listens on port {}\n", port);
         std::fflush(stdout);
@@ -195,6 +196,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
 void OperatorDesk::askMaterial(const scene::Material& material, std::optional<Client> client) {
     askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
     material_ = material;
+    views_.setHumidity(material_.humidity);
 }
 
 /// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.

@@ -106,6 +106,9 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     lockstep::FrameMessage frame;
     const std::int64_t now = monotonicNs();
     frame.frame = ++frame_;
+    if (options_.recording) {
+        desk_.views().setHumidity(options_.recording->humidityOf(frame_));
+    }
     frame.view = desk_.views().at(clock_.timeOf(frame_, now));
     frame.steps = untimed(steps);
     if (frame.view.layers.shows(lockstep::Overlay::statistics)) {

@@ -30,6 +30,8 @@ public:
     void show(lockstep::Overlays layers) { state_.layers = layers; }
     void show(lockstep::Overlay layer, bool shown) { state_.layers.set(layer, shown); }
     [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }
+    /// Shows the sand at this humidity, 0 to 1.
+    void setHumidity(double humidity) { state_.humidity = humidity; }
     /// Turns the sand by a drag of the view [side of the window], right and down. Ignored unless the wall is a desktop.
     void turn(double right, double down);
     /// Turns the sand back to where the wall file has it.

@@ -38,8 +38,12 @@ int probe(const Options& options) {
         context = makeContext(options.backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
     }
     if (options.json) {
-        const nlohmann::ordered_json found{
+        nlohmann::ordered_json found{
             {"backend", context->name()}, {"renderer", context->renderer()}, {"shortcomings", context->shortcomings()}};
+        if (const auto area = context->workArea()) {
+            const glm::ivec2 size = area->high - area->low;
+            found["work_area"] = {{"x", area->low.x}, {"y", area->low.y}, {"width", size.x}, {"height", size.y}};
+        }
         fmt::print("{}\n", found.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
         return 0;
     }
@@ -59,7 +63,8 @@ int probeMain(int argc, char** argv) {
     Options options;
     line.option("--probe", options.rank, "rank of the wall; 0: off screen, without a wall").range(0, walls::kMaxTiles);
     line.choice("--gl", options.backend, "backend; docs/backends.md");
-    line.flag("--json", options.json, "print an object with backend, renderer and a list of shortcomings");
+    line.flag("--json", options.json,
+              "print an object with backend, renderer, a list of shortcomings, and the desktop's area for windows");
     return host::runMain(line, argc, argv, [&] { return probe(options); });
 }
 

@@ -49,7 +49,7 @@ std::vector<PixelRect> Redraw::pixels(const Camera& camera, const ShownScene& sc
     const glm::dmat4 sceneToClip = camera.roomToClip * scene.sceneToRoom;
     const ShownScene& before = memory.scene;
     if (!memory.drawn || memory.camera != camera || before.sceneToRoom != scene.sceneToRoom ||
-        before.layers != scene.layers) {
+        before.layers != scene.layers || before.humidity != scene.humidity) {
         memory.levels = surface_.levelsWithin(sceneToClip, rule);
         return {whole};
     }

@@ -29,6 +29,7 @@ struct ShownScene {
     std::optional<DrawnTool> tool;  // nullopt before the tool has a place
     std::optional<ForceArrow> force;
     lockstep::Overlays layers;  // only the layers that change every pixel of the sand
+    double humidity = 0;        // of the sand, 0 to 1
 };
 
 /// Record of the picture that one view has last drawn into one target. The caller keeps one for each eye.

@@ -23,6 +23,15 @@ float encoded(float linear) {
     return std::round(255 * level) / 255;
 }
 
+/// Returns the albedo of wet sand. Water between the grains sends a share of the light that they scatter back to them
+/// (Ångström 1925). A darker colour loses more of its light, so that wet sand is also more saturated. Most of the
+/// change comes with the first water. Dry sand keeps its albedo, bit for bit.
+glm::vec3 wetAlbedo(const glm::vec3& dry, double humidity) {
+    constexpr double kMostSentBack = 0.68;  // sand of the default colour is then about half as bright
+    const auto share = static_cast<float>(kMostSentBack * humidity * (2 - humidity));
+    return dry * (1 - share) / (1.0F - share * glm::clamp(dry, 0.0F, 1.0F));
+}
+
 }  // namespace
 
 ScenePainter::ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom)
@@ -33,7 +42,12 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
       cellSize_(scene.terrain.cellSize()),
       tool_(scene.rules.tuning.tool),
-      shown_{.sceneToRoom = sceneToRoom, .toolRadius = toolRadius(), .tool = {}, .force = {}, .layers = {}},
+      shown_{.sceneToRoom = sceneToRoom,
+             .toolRadius = toolRadius(),
+             .tool = {},
+             .force = {},
+             .layers = {},
+             .humidity = scene.material.humidity},
       surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
       programs_(look_.flatShading),
       grain_(glm::vec2(sun_)),
@@ -77,6 +91,12 @@ void ScenePainter::setLayers(lockstep::Overlays layers) {
     }
 }
 
+SandLight ScenePainter::sandLight() const {
+    return shown_.layers.shows(lockstep::Overlay::hillShade) ? SandLight::hillShade
+           : shown_.humidity > 0                             ? SandLight::wet
+                                                             : SandLight::sunlit;
+}
+
 void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
     const glm::dmat4& sceneToRoom = shown_.sceneToRoom;
     program.use();
@@ -86,7 +106,8 @@ void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
     program.set("uSceneToClip", glm::mat4(pass.camera.roomToClip * sceneToRoom));
     program.set("uHalfPicture", glm::vec2(pass.size) / 2.0F);
     program.set("uSun", sun_);
-    program.set("uSand", toVector(look_.sandColour));
+    program.set("uSand", wetAlbedo(toVector(look_.sandColour), shown_.humidity));
+    program.set("uWet", static_cast<float>(shown_.humidity));
     prepareTool(program);
     program.set("uGrain", 0);
     const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom[0]));
@@ -174,7 +195,7 @@ void ScenePainter::drawForce(const Pass& pass) {
 }
 
 void ScenePainter::drawSand(const Pass& pass) {
-    const SandPrograms& programs = programs_.sand(hasBall(), shown_.layers.shows(lockstep::Overlay::hillShade));
+    const SandPrograms& programs = programs_.sand(hasBall(), sandLight());
     prepareSurface(programs.near, pass);
     prepareSurface(programs.far, pass);
     // The program `near` draws a shadow that is finer than the mesh. It costs a software renderer time at every pixel,

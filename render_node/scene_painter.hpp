@@ -62,6 +62,9 @@ public:
     /// Shows or hides hill-shade and wireframe; ignores all other layers. The next draw() makes the programs of a layer
     /// that is shown for the first time. It then throws std::runtime_error if a shader does not compile.
     void setLayers(lockstep::Overlays layers);
+    /// Draws wet sand from now on: darker and with a sheen, by its humidity from 0 (dry) to 1. At first the humidity is
+    /// that of the scene's material. The first drawing of wet sand makes its programs, as setLayers() says.
+    void setHumidity(double humidity) { shown_.humidity = humidity; }
     /// Shows this arrow from now on, or no arrow, as at first. The first draw() with an arrow throws std::runtime_error
     /// if a shader does not compile.
     void setForce(const std::optional<ForceArrow>& force) { shown_.force = force; }
@@ -108,6 +111,8 @@ private:
     [[nodiscard]] bool hasBall() const { return !shown_.tool || shown_.tool->isBall(); }
     /// Returns whether the tool is drawn.
     [[nodiscard]] bool showsTool() const { return shown_.tool && shown_.tool->radius > 0; }
+    /// Returns the light in which the sand is drawn.
+    [[nodiscard]] SandLight sandLight() const;
     [[nodiscard]] LevelRule ruleFor(const Camera& camera, glm::ivec2 size) const;
     [[nodiscard]] float toolRadius() const;  // [scene unit], of the current tool
 

@@ -2,20 +2,32 @@
 #include "render_node/scene_programs.hpp"
 
 namespace render_node {
+namespace {
+
+ProgramFiles filesOf(SandLight light, std::string_view vertex, std::string_view fragment, std::string_view geometry,
+                     std::string_view tool = "ball.glsl") {
+    return {vertex,   fragment, light == SandLight::hillShade ? "hill_shade.glsl" : "sunlit.glsl",
+            geometry, tool,     light == SandLight::wet ? "sheen.glsl" : std::string_view()};
+}
+
+}  // namespace
+
+SandPrograms::SandPrograms(const SurfaceShaders& surface, SandLight light, std::string_view tool)
+    : far(filesOf(light, surface.vertex, "sand.frag.glsl", surface.geometry)),
+      near(filesOf(light, surface.vertex, "near.frag.glsl", surface.geometry, tool)),
+      sides(filesOf(light, "side.vert.glsl", "near.frag.glsl", {}, tool)) {}
 
 ScenePrograms::ScenePrograms(bool flatShading)
     : surface_(flatShading ? SurfaceShaders{"facet.vert.glsl", "facet.geom.glsl"} : SurfaceShaders{"sand.vert.glsl"}),
-      sunlit_(surface_, "sunlit.glsl", "ball.glsl"),
       wood_("solid.vert.glsl", "wood.frag.glsl"),
-      tool_("solid.vert.glsl", "tool.frag.glsl") {}
+      tool_("solid.vert.glsl", "tool.frag.glsl") {
+    (void)sand(true, SandLight::sunlit);
+}
 
-const SandPrograms& ScenePrograms::sand(bool ball, bool hillShade) {
-    if (ball && !hillShade) {
-        return sunlit_;
-    }
-    std::optional<SandPrograms>& programs = ball ? hillShaded_ : hillShade ? stampHillShaded_ : stampSunlit_;
+const SandPrograms& ScenePrograms::sand(bool ball, SandLight light) {
+    std::optional<SandPrograms>& programs = sand_.at(static_cast<std::size_t>(light)).at(ball ? 0 : 1);
     if (!programs) {
-        programs.emplace(surface_, hillShade ? "hill_shade.glsl" : "sunlit.glsl", ball ? "ball.glsl" : "stamp.glsl");
+        programs.emplace(surface_, light, ball ? "ball.glsl" : "stamp.glsl");
     }
     return *programs;
 }

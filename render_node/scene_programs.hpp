@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 
@@ -14,13 +16,13 @@ struct SurfaceShaders {
     std::string_view geometry{};
 };
 
+/// Light in which the sand is drawn.
+enum class SandLight : std::uint8_t { sunlit, wet, hillShade };
+
 /// Programs that draw the sand in one light.
 struct SandPrograms {
-    /// `light` and `tool` are names of files in shaders/.
-    SandPrograms(const SurfaceShaders& surface, std::string_view light, std::string_view tool)
-        : far({surface.vertex, "sand.frag.glsl", light, surface.geometry}),
-          near({surface.vertex, "near.frag.glsl", light, surface.geometry, tool}),
-          sides({"side.vert.glsl", "near.frag.glsl", light, {}, tool}) {}
+    /// `tool` is the name of a file in shaders/.
+    SandPrograms(const SurfaceShaders& surface, SandLight light, std::string_view tool);
     GlProgram far, near;  // the surface, outside and inside the tool's reach
     GlProgram sides;
 };
@@ -34,7 +36,7 @@ public:
     explicit ScenePrograms(bool flatShading);
 
     /// Returns the programs for the sand. `ball` says that no tool takes light away, or one with the shape of a ball.
-    [[nodiscard]] const SandPrograms& sand(bool ball, bool hillShade);
+    [[nodiscard]] const SandPrograms& sand(bool ball, SandLight light);
     /// Returns the program for the boards of the box.
     [[nodiscard]] const GlProgram& wood(bool ball);
     /// Returns the program for the tool.
@@ -44,9 +46,8 @@ public:
 
 private:
     SurfaceShaders surface_;
-    SandPrograms sunlit_;
-    std::optional<SandPrograms> hillShaded_;                     // made when the layer is first drawn
-    std::optional<SandPrograms> stampSunlit_, stampHillShaded_;  // made for the first tool that is not a ball
+    // For each light, with a ball and with another tool. Made when they are first drawn, except those of most sessions.
+    std::array<std::array<std::optional<SandPrograms>, 2>, 3> sand_;
     GlProgram wood_, tool_;
     std::optional<GlProgram> stampWood_, wires_;
 };

@@ -65,6 +65,7 @@ void TilePainter::drawAgain() {
 void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
                         const TileFigures& figures) {
     scenePainter_.setLayers(view.layers);
+    scenePainter_.setHumidity(view.humidity);
     scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
     const std::vector<Camera> cameras = camerasOf(view);
     scenePainter_.update(replica.surface().data(), replica.takeChange(), cameras);

@@ -8,6 +8,7 @@
 #include "host/version.hpp"
 #include "host/whole_file.hpp"
 #include "walls/check_scene.hpp"
+#include "walls/desk_windows.hpp"
 #include "walls/wall.hpp"
 #include "walls/wall_report.hpp"
 #include "walls/wall_svg.hpp"
@@ -15,7 +16,7 @@
 namespace {
 
 struct Options {
-    std::string wall, scene, stereo, svg;
+    std::string wall, scene, stereo, svg, desk;
     bool mono = false, ranks = false, hosts = false, outputs = false;
 };
 
@@ -29,7 +30,10 @@ int check(const Options& options) {
     if (options.wall.empty()) {
         throw base::InputError("name a WALL, or a scene with --scene");
     }
-    const walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
+    walls::Wall wall = walls::loadWallAs(options.wall, options.mono ? "mono" : options.stereo);
+    if (!options.desk.empty()) {
+        wall = walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
+    }
     if (!options.svg.empty()) {
         host::WholeFile file(options.svg);
         file.stream() << walls::drawingOf(wall);
@@ -57,6 +61,10 @@ int main(int argc, char** argv) {
     line.option("--scene", options.scene, "check this scene file, too, and print units and no data of its terrain");
     const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
     line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
+    line.option("--desk", options.desk,
+                "check it as shown in windows on this area of a desktop, in place of its places")
+        .metavar("WIDTHxHEIGHT+X+Y")
+        .excludes(stereo);
     line.option("--svg", options.svg, "draw front view and plan into this file");
     const host::Option ranks = line.flag("--ranks", options.ranks, "print only the number of render ranks");
     const host::Option hosts = line.flag("--hosts", options.hosts, "print only the host of each rank from 1, or '-'");

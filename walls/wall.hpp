@@ -246,6 +246,7 @@ struct Wall {
     Stage stage;
     std::optional<Grid> grid;  // grid of the tiles with a row; nullopt: all screens are explicit
     std::vector<Tile> tiles;
+    bool onDesk = false;  // the windows are placed for one desktop, and not by a wall file (desk_windows.hpp)
 
     /// Returns the number of render ranks. The master does not count.
     [[nodiscard]] int ranks() const { return static_cast<int>(tiles.size()); }
@@ -256,7 +257,7 @@ struct Wall {
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        visit("encoding", base::constant(std::uint8_t{2}, "encoding 2, the only one that this program knows"));
+        visit("encoding", base::constant(std::uint8_t{3}, "encoding 3, the only one that this program knows"));
         visit("name", base::text(it.name, kLongestWord));
         visit("viewer", it.viewer);
         visit("stereo", it.stereo);
@@ -266,6 +267,7 @@ struct Wall {
         visit("stage", it.stage);
         visit("grid", it.grid);
         visit("tiles", base::upTo<std::uint32_t>(it.tiles, kMaxTiles));
+        visit("on_desk", it.onDesk);
     }
     /// Returns which of its parts do not fit together, or an empty text.
     [[nodiscard]] std::string refusal() const;

@@ -18,8 +18,6 @@ namespace {
 
 constexpr int kWidestMap = 12;  // [tile]; so many columns fit into a hundred letters
 
-using Cell = std::pair<int, int>;  // row from the top, column
-
 /// Returns how far a screen is turned in its own plane, as a viewer who faces it sees it [degree]: counter-clockwise,
 /// from -180 to 180. A viewer does not turn to face a floor or a ceiling.
 double turnOf(const Wall& wall, const Screen& screen) {
@@ -63,10 +61,10 @@ std::string gridMap(const Wall& wall) {
     const int columns = std::min(allColumns, kWidestMap);
     // The rank of the box in this row and column of the map.
     const auto rankAt = [&](int row, int column) {
-        const std::array<Cell, 4> turned{Cell{row, column}, Cell{column, grid.columns - 1 - row},
-                                         Cell{grid.rows - 1 - row, grid.columns - 1 - column},
-                                         Cell{grid.rows - 1 - column, row}};
-        const Cell cell = turned.at(static_cast<std::size_t>(quarters));
+        const std::array<MapCell, 4> turned{MapCell{row, column}, MapCell{column, grid.columns - 1 - row},
+                                            MapCell{grid.rows - 1 - row, grid.columns - 1 - column},
+                                            MapCell{grid.rows - 1 - column, row}};
+        const MapCell cell = turned.at(static_cast<std::size_t>(quarters));
         return cell.first * grid.columns + cell.second + 1;
     };
     std::string rule = "  ";
@@ -85,7 +83,7 @@ std::string gridMap(const Wall& wall) {
     return map + turnLine(turn, "the grid");
 }
 
-Cell beyond(Cell cell, Edge edge) {
+MapCell beyond(MapCell cell, Edge edge) {
     switch (edge) {
         case Edge::left:
             return {cell.first, cell.second - 1};
@@ -116,7 +114,7 @@ int quartersTowards(Edge edge, Edge other) { return (numberOf(other) + 2 - numbe
 
 /// Returns the index of the explicit screen without a place that the viewer faces most, or the number of tiles if all
 /// have one.
-std::size_t frontOf(const Wall& wall, const std::map<std::size_t, Cell>& placed) {
+std::size_t frontOf(const Wall& wall, const std::map<std::size_t, MapCell>& placed) {
     const glm::dvec3 forward = glm::cross(glm::dvec3(0, 1, 0), wall.viewer.right);
     std::size_t best = wall.tiles.size();
     for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
@@ -128,43 +126,6 @@ std::size_t frontOf(const Wall& wall, const std::map<std::size_t, Cell>& placed)
         }
     }
     return best;
-}
-
-/// Returns the cell of each explicit screen. Joined screens are beside each other. A screen that joins no placed screen
-/// starts another row.
-std::map<std::size_t, Cell> unfolded(const Wall& wall) {
-    const std::vector<Seam> seams = seamsOf(wall);
-    std::map<std::size_t, Cell> placed;
-    std::map<Cell, std::size_t> taken;
-    std::map<std::size_t, int> quarters;  // turns of the placed screens in the map
-    const auto place = [&](std::size_t tile, Cell cell, int turns) {
-        placed[tile] = cell;
-        taken[cell] = tile;
-        quarters[tile] = turns;
-    };
-    for (std::size_t front = frontOf(wall, placed); front < wall.tiles.size(); front = frontOf(wall, placed)) {
-        // Starts a row below all others. Leaves one row free for a screen that joins above.
-        place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0},
-              quartersOf(turnOf(wall, wall.tiles[front].screen)));
-        std::queue<std::size_t> next({front});
-        for (; !next.empty(); next.pop()) {
-            for (const Seam& seam : seams) {
-                const bool forth = seam.first == next.front();
-                if (!forth && seam.second != next.front()) {
-                    continue;
-                }
-                const std::size_t other = forth ? seam.second : seam.first;
-                const Edge edge =
-                    turned(forth ? seam.edgeOfFirst : seam.edgeOfSecond, quarters[next.front()]);  // in the map
-                const Cell cell = beyond(placed[next.front()], edge);
-                if (wall.tiles[other].row == 0 && !placed.contains(other) && !taken.contains(cell)) {
-                    place(other, cell, quartersTowards(forth ? seam.edgeOfSecond : seam.edgeOfFirst, edge));
-                    next.push(other);
-                }
-            }
-        }
-    }
-    return placed;
 }
 
 std::string screenMap(const Wall& wall) {
@@ -195,6 +156,42 @@ std::string screenMap(const Wall& wall) {
 }
 
 }  // namespace
+
+/// Joined screens are beside each other. A screen that joins no placed screen starts another row.
+std::map<std::size_t, MapCell> unfolded(const Wall& wall) {
+    const std::vector<Seam> seams = seamsOf(wall);
+    std::map<std::size_t, MapCell> placed;
+    std::map<MapCell, std::size_t> taken;
+    std::map<std::size_t, int> quarters;  // turns of the placed screens in the map
+    const auto place = [&](std::size_t tile, MapCell cell, int turns) {
+        placed[tile] = cell;
+        taken[cell] = tile;
+        quarters[tile] = turns;
+    };
+    for (std::size_t front = frontOf(wall, placed); front < wall.tiles.size(); front = frontOf(wall, placed)) {
+        // Starts a row below all others. Leaves one row free for a screen that joins above.
+        place(front, {taken.empty() ? 0 : taken.rbegin()->first.first + 2, 0},
+              quartersOf(turnOf(wall, wall.tiles[front].screen)));
+        std::queue<std::size_t> next({front});
+        for (; !next.empty(); next.pop()) {
+            for (const Seam& seam : seams) {
+                const bool forth = seam.first == next.front();
+                if (!forth && seam.second != next.front()) {
+                    continue;
+                }
+                const std::size_t other = forth ? seam.second : seam.first;
+                const Edge edge =
+                    turned(forth ? seam.edgeOfFirst : seam.edgeOfSecond, quarters[next.front()]);  // in the map
+                const MapCell cell = beyond(placed[next.front()], edge);
+                if (wall.tiles[other].row == 0 && !placed.contains(other) && !taken.contains(cell)) {
+                    place(other, cell, quartersTowards(forth ? seam.edgeOfSecond : seam.edgeOfFirst, edge));
+                    next.push(other);
+                }
+            }
+        }
+    }
+    return placed;
+}
 
 std::string textMap(const Wall& wall) { return (wall.grid ? gridMap(wall) : "") + screenMap(wall); }
 

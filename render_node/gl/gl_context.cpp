@@ -29,6 +29,7 @@ public:
         finishFrame();
     }
     [[nodiscard]] std::string name() const override { return std::string(base::nameOf(backend_)); }
+    [[nodiscard]] std::optional<ScreenRect> workArea() const override { return platform_->workArea(); }
 
 private:
     Backend backend_;
@@ -101,6 +102,7 @@ PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const 
     request.software = isSoftware(backend, tile);
     request.eyesInTurn = wall.stereo == walls::Stereo::active;
     request.refreshHz = wall.refreshHz;
+    request.onDesk = wall.onDesk;
     if (backendFor(backend, tile) == Backend::glfw) {
         for (const walls::Output& output : tile.outputs) {
             request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels)});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,6 +89,8 @@ public:
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     /// Returns the number of frames after the start in which a hardware barrier settles. The skew leaves them out.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
+    /// Calls GlPlatform::workArea().
+    [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
     /// Returns a lower bound of the memory of the windows' back buffers [byte].
     [[nodiscard]] virtual std::int64_t frameBufferBytes() const { return 0; }
 

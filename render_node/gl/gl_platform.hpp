@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "render_node/gl/pixel_rect.hpp"
+#include "render_node/gl/screen_cover.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -49,6 +51,7 @@ struct PlatformRequest {
     bool software = false;                     // the driver chooses EGL's software device
     bool eyesInTurn = false;                   // active stereo; without quad buffers, one eye per frame in turn
     double refreshHz = 60;
+    bool onDesk = false;   // a user who closes a window ends the session
     bool pointer = false;  // the pointer is shown, and takePointer() returns its events
     std::vector<WindowRequest> windows;
 };
@@ -89,10 +92,12 @@ public:
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
+    /// Returns the part of the first monitor that the desktop leaves to windows; nullopt without a display.
+    [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform4";
+extern "C" GlPlatform* sandwallGlPlatform5(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform5";
 
 }  // namespace render_node

@@ -66,8 +66,10 @@ GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, cons
 
 GlProgram::GlProgram(const ProgramFiles& files) {
     std::vector<const ShaderSource*> parts{&shaderSource("light.glsl"), &shaderSource(files.tool)};
-    if (!files.look.empty()) {
-        parts.push_back(&shaderSource(files.look));
+    for (const std::string_view file : {files.sheen, files.look}) {
+        if (!file.empty()) {
+            parts.push_back(&shaderSource(file));
+        }
     }
     const auto compile = [&](GLenum kind, std::string_view file) {
         std::vector<const ShaderSource*> all = parts;

@@ -29,6 +29,7 @@ struct ProgramFiles {
     std::string_view geometry{};  // geometry shader; empty: none
     // Put before the other files, after light.glsl: the light that the tool takes away.
     std::string_view tool = "ball.glsl";
+    std::string_view sheen{};  // put before `look`: the sheen of wet sand; empty: none
 };
 
 /// Linked shaders and their uniforms.

@@ -28,7 +28,7 @@ public:
     explicit Glfw(const PlatformRequest& request)
         : watch_(request.display, request.processName, request.pointer),
           eyesInTurn_(request.eyesInTurn),
-          pointer_(request.pointer) {
+          mayClose_(request.pointer || request.onDesk) {
         if (request.windows.empty()) {
             windows_.emplace_back(library_, watch_.name());
         }
@@ -64,8 +64,7 @@ public:
         }
         glfwPollEvents();
         for (const GlfwWindow& window : windows_) {
-            if (glfwWindowShouldClose(window.handle()) != 0 && pointer_) {
-                // A person at a desktop ends a session so.
+            if (glfwWindowShouldClose(window.handle()) != 0 && mayClose_) {
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
                 input_->keys.push_back(kQuitKey);
             } else if (glfwWindowShouldClose(window.handle()) != 0) {
@@ -111,6 +110,7 @@ public:
         }
         return lines;
     }
+    [[nodiscard]] std::optional<ScreenRect> workArea() const override { return render_node::workArea(); }
     [[nodiscard]] std::string swapLock() const override { return group_ ? group_->state() : "none"; }
     [[nodiscard]] int framesToIgnore() const override { return group_ ? group_->framesToIgnore() : 0; }
 
@@ -151,7 +151,7 @@ private:
     std::vector<GlfwWindow> windows_;
     std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
     bool eyesInTurn_;
-    bool pointer_;
+    bool mayClose_;  // whether a user who closes a window ends the session
     std::optional<SwapGroup> group_;
     std::vector<std::optional<EyesByRetrace>> eyes_;
     std::vector<std::optional<PartCopy>> parts_;
@@ -159,6 +159,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform5(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

@@ -248,6 +248,18 @@ void GlfwWindow::addShortcomings(std::vector<std::string>& lines) const {
     }
 }
 
+ScreenRect workArea() {
+    GLFWmonitor* first = glfwGetPrimaryMonitor();
+    if (first == nullptr) {
+        return lightedAreas().front();
+    }
+    ScreenRect area;
+    glm::ivec2 size;
+    glfwGetMonitorWorkarea(first, &area.low.x, &area.low.y, &size.x, &size.y);
+    area.high = area.low + size;
+    return area;
+}
+
 int displayScreen() { return DefaultScreen(glfwGetX11Display()); }
 
 }  // namespace render_node

@@ -79,6 +79,10 @@ private:
     std::unique_ptr<GLFWcursor, Destroy> cursor_;
 };
 
+/// Returns the part of the first monitor that the desktop leaves to windows. Without a monitor, returns the whole
+/// screen.
+[[nodiscard]] ScreenRect workArea();
+
 /// Returns the number of the X screen that the windows are on, such as 1 for display ":0.1".
 [[nodiscard]] int displayScreen();
 

@@ -89,6 +89,7 @@ public:
     [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
     [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
     [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }
+    [[nodiscard]] std::optional<ScreenRect> workArea() const override { return platform_->workArea(); }
     [[nodiscard]] std::int64_t frameBufferBytes() const override {
         std::int64_t bytes = 0;
         for (std::size_t i = 0; i < windows_.size(); ++i) {

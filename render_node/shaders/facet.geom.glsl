@@ -15,7 +15,8 @@ out vec3 vNormal;
 void main() {
     vec3 normal = normalize(cross(vCorner[1] - vCorner[0], vCorner[2] - vCorner[0]));
     vec2 mean = (vShade[0] + vShade[1] + vShade[2]) / 3.0;
-    Shade shade = shadeOf(normal, mean.x, mean.y);
+    vec3 middle = (vCorner[0] + vCorner[1] + vCorner[2]) / 3.0;
+    Shade shade = shadeOf(middle, normal, mean.x, mean.y);
     for (int i = 0; i < 3; ++i) {
         vColour = shade.colour;
         vInShadow = shade.inShadow;

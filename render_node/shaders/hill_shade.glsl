@@ -8,7 +8,7 @@ struct Shade {
     vec3 inShadow;
 };
 
-Shade shadeOf(vec3 normal, float open, float mottling) {
+Shade shadeOf(vec3 place, vec3 normal, float open, float mottling) {
     float light = max(dot(normal, vec3(-0.5, 0.5, 0.70710678)), 0.0);
     // Level ground has the value sin 45° and the middle colour, between the shade's colour and the light's.
     vec3 colour = light < 0.70710678 ? mix(vec3(0.19, 0.20, 0.27), vec3(0.80, 0.78, 0.72), light / 0.70710678)

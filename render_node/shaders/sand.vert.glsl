@@ -26,7 +26,7 @@ void main() {
     vec2 ground = clamp(aGrid - uFirst, vec2(0.0), uCells) * uCell;
     vScene = vec3(ground, aHeight);
     vNormal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
-    Shade shade = shadeOf(vNormal, aShade.x, aShade.y);
+    Shade shade = shadeOf(vScene, vNormal, aShade.x, aShade.y);
     vColour = shade.colour;
     vInShadow = shade.inShadow;
     vGrainAt = grainAt(vScene);

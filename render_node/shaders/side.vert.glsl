@@ -16,7 +16,7 @@ out vec3 vNormal;
 void main() {
     vScene = aPosition;
     vNormal = aNormal;
-    Shade shade = shadeOf(aNormal, 0.9, 0.5);
+    Shade shade = shadeOf(aPosition, aNormal, 0.9, 0.5);
     vColour = shade.colour;
     vInShadow = shade.inShadow;
     vGrainLevel = grainLevel(aPosition, vec3(0.0, 0.0, 1.0));

@@ -10,10 +10,13 @@ END_SECONDS = 30
 
 
 class XServer:
-    """An X server on a free display with one screen of `size`, such as "640x480". It ends with its `with` block, or by end()."""
+    """An X server on a free display with one screen of `size`, such as "640x480". It ends with its `with` block, or by end().
 
-    def __init__(self, size):
-        self.process = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-screen", "0", f"{size}x24"],
+    `words` are more words for its command line.
+    """
+
+    def __init__(self, size, *words):
+        self.process = subprocess.Popen(["Xvfb", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-screen", "0", f"{size}x24", *map(str, words)],
                                         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, preexec_fn=die_with_parent)
         self.display = ":" + self.process.stdout.readline().strip()
         self.environment = {**os.environ, "DISPLAY": self.display}

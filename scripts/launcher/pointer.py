@@ -6,6 +6,7 @@ import pathlib
 import shlex
 import subprocess
 
+import desk
 import layout
 import screens
 from console import print_line
@@ -24,17 +25,19 @@ def choose_backend(args):
         args.gl = "glfw"
 
 
-def require_windows(wall, render_node):
-    """Throws BadInput in one line if this desktop cannot show the windows of the wall's first rank."""
+def windows_of(wall, render_node, check):
+    """Returns the options of `run` for the wall's windows on this desktop. Throws BadInput in one line if it cannot show them."""
     if not os.environ.get("DISPLAY"):
         raise BadInput(f"try: no X display (DISPLAY is not set); {ELSEWHERE}")
     if not screens.present():
         raise BadInput(f"try: no X server accepts connections at DISPLAY={os.environ['DISPLAY']}; {ELSEWHERE}")
-    with open(wall, "rb") as text:
-        probed = subprocess.run([render_node, "--probe", "1", "--gl", "glfw"], stdin=text, capture_output=True, text=True, errors="replace")
-    if probed.returncode != 0:
-        lines = probed.stderr.strip().splitlines() or [f"the probe of the window ended with status {probed.returncode}"]
-        raise BadInput(f"try: {lines[-1].removeprefix('sandwall-render-node: ')}; {ELSEWHERE}")
+    words = desk.words_for(wall, render_node, check)
+    if "--desk" not in words:
+        with open(wall, "rb") as text:
+            probed = subprocess.run([render_node, "--probe", "1", "--gl", "glfw"], stdin=text, capture_output=True, text=True, errors="replace")
+        if probed.returncode != 0:
+            raise BadInput(f"try: {desk.complaint_of(probed)}; {ELSEWHERE}")
+    return words
 
 
 def session_of(args):

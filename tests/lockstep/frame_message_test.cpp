@@ -40,7 +40,8 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
                              .sceneToRoom = {},
                              .pattern = 8,
                              .layers = lockstep::Overlays(9),
-                             .stereo = 10};
+                             .stereo = 10,
+                             .humidity = 0.25};
     for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
         view.sceneToRoom.at(i) = 11 + static_cast<double>(i);
     }

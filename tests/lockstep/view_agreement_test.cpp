@@ -44,6 +44,9 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
     other = seen();
     other.stereo = 1;
     EXPECT_NE(proof.hash(other), hash);
+    other = seen();
+    other.humidity = 0.1;
+    EXPECT_NE(proof.hash(other), hash);
 }
 
 TEST(ViewAgreement, AnotherWallIsAnotherView) {

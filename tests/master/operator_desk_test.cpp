@@ -79,7 +79,7 @@ protected:
         desk_->answer(steps);
     }
 
-    const scene::Scene scene_ = samples::flatScene(32, 24);
+    scene::Scene scene_ = samples::flatScene(32, 24);
     const walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
     master::MasterSand sand_{scene_, {}, {}};
     test::NoSteps source_;
@@ -221,6 +221,20 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_EQ(requests_.shares, std::vector<double>{0.25});
     EXPECT_EQ(kept_, std::vector<double>{0.25}) << "in the journal, too";
     EXPECT_EQ(ask("status")["force_share"], 0.25);
+}
+
+TEST_F(Desk, ShowsTheSandAsWetAsAnOperatorMakesIt) {
+    EXPECT_EQ(desk_->views().at(0).humidity, 0);
+    const std::future<json> answer = send("material humidity 0.3");
+    obeyUntil([&] { return !requests_.edits.empty(); });
+    EXPECT_EQ(desk_->views().at(0).humidity, 0.3);
+    desk_->close();  // the client would wait for the step
+}
+
+TEST_F(Desk, ShowsTheSandAsWetAsTheSceneHasIt) {
+    scene_.material.humidity = 0.6;
+    open(&requests_);
+    EXPECT_EQ(desk_->views().at(0).humidity, 0.6);
 }
 
 TEST_F(Desk, KnowsTheShareOfTheForceFromBeforeARestart) {

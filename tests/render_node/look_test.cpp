@@ -11,6 +11,7 @@
 #include "render_node/gl/gl_context.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/sample_scene.hpp"
+#include "tests/support/sample_tin.hpp"
 #include "walls/projection.hpp"
 
 namespace {
@@ -136,6 +137,65 @@ TEST_F(Look, SlidSandIsDarkerAndWarmerThanLevelSand) {
     EXPECT_LT(slid.g, level.g - 4);
     EXPECT_GT(slid.g, 0.8 * level.g) << "too dark for slid sand";
     EXPECT_GT(slid.r / slid.b, 1.05 * level.r / level.b);
+}
+
+/// Returns the mean colour of level sand in linear light, at a humidity. The camera is in the middle above it.
+glm::dvec3 levelSand(double humidity, const render_node::Camera& camera, const EyeTarget& target, bool tin) {
+    const scene::Scene scene = sample::flatScene(128, 128);
+    const sample::Tin triangles(scene.terrain);
+    ScenePainter view =
+        tin ? ScenePainter(scene, sand::TinData{triangles.view()}, glm::dmat4(1)) : ScenePainter(scene, glm::dmat4(1));
+    view.setHumidity(humidity);
+    const Pixels pixels = sample::draw(view, camera, target);
+    glm::dvec3 sum(0);
+    for (int y = 130; y < 170; ++y) {
+        for (int x = 150; x < 250; ++x) {
+            const glm::dvec3 level = glm::dvec3(sample::pixel(pixels, kLookWidth, x, y)) / 255.0;
+            sum += glm::pow((level + 0.055) / 1.055, glm::dvec3(2.4));  // all levels are above the linear part of sRGB
+        }
+    }
+    return sum / 4000.0;
+}
+
+// Real wet sand reflects about half as much light as dry sand, and its colour is more saturated.
+TEST_F(Look, WetSandIsDarkerAndMoreSaturatedTheWetterItIs) {
+    for (const bool tin : {false, true}) {
+        const glm::dvec3 dry = levelSand(0, above_, target_, tin);
+        glm::dvec3 before = dry;
+        for (const double humidity : {0.1, 0.2, 0.5, 1.0}) {
+            const glm::dvec3 wet = levelSand(humidity, above_, target_, tin);
+            std::printf("humidity %.1f: %.3f %.3f %.3f\n", humidity, wet.r, wet.g, wet.b);
+            EXPECT_LT(wet.g, before.g - 0.01) << "humidity " << humidity;
+            EXPECT_GT(wet.r / wet.b, before.r / before.b + 0.01) << "humidity " << humidity;
+            before = wet;
+        }
+        EXPECT_NEAR(before.g / dry.g, 0.55, 0.1);
+    }
+}
+
+// The sun is 30 degrees above the south. Its mirror image in level sand is seen from the north at 30 degrees. Dry sand
+// has the same colour from both sides.
+TEST_F(Look, WetSandReflectsTheSunTowardsTheEye) {
+    scene::Scene scene = sample::flatScene(128, 128);
+    scene.look.sunDirection = {0, -std::cos(glm::radians(30.0)), 0.5};
+    ScenePainter view(scene, glm::dmat4(1));
+    const auto brightness = [&](double north) {
+        const auto camera = sample::camera({1, 1 + north * std::cos(glm::radians(30.0)), 0.5}, {1, 1, 0});
+        return mean(sample::draw(view, camera, target_), 150, 140, 250, 160);
+    };
+    EXPECT_NEAR(brightness(1), brightness(-1), 1);
+    view.setHumidity(1);
+    EXPECT_GT(brightness(1), brightness(-1) + 10);
+}
+
+TEST_F(Look, SandThatHasDriedIsDrawnAsIfItHadNeverBeenWet) {
+    const scene::Scene scene = sample::duneScene(100);
+    ScenePainter never(scene, glm::dmat4(1)), dried(scene, glm::dmat4(1));
+    const Pixels want = sample::draw(never, above_, target_);
+    dried.setHumidity(0.7);
+    EXPECT_NE(sample::draw(dried, above_, target_), want);
+    dried.setHumidity(0);
+    EXPECT_EQ(sample::draw(dried, above_, target_), want);
 }
 
 /// Darkening of the ground under the tool.

@@ -10,14 +10,17 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / room) for room in ("figures", "launcher")]
+import desk  # noqa: E402
 import events  # noqa: E402
 import session_control  # noqa: E402
 import x_server  # noqa: E402
@@ -265,7 +268,76 @@ class PointerSession(unittest.TestCase):
         self.assertTrue(any(step["engaged"] == "1" for step in self.steps()))
 
 
+    def test_a_whole_wall_is_placed_on_the_desktop(self):
+        """The map of the FLEX is 2560 x 1536 pixels large, so that a desktop of 640 x 400 shows it at a quarter of its size."""
+        self.server.end()
+        frames = self.folder / "frames"
+        frames.mkdir()
+        self.server = Display("640x400", "-fbdir", frames)
+        self.addCleanup(self.server.end)
+        session = self.start("try", "--wall", "flex_cave", "--scene", self.scene, "--out", self.out)
+        windows = {"left": (0, 8, 192, 192), "front": (192, 8, 256, 192), "right": (448, 8, 192, 192), "floor": (192, 200, 256, 192)}
+        self.drag([(320, 130), (320, 160), (320, 190), (320, 205), (320, 230), (320, 260)])
+        self.assertEqual(self.status()["stereo"], "mono")
+        picture = screen_of(frames / "Xvfb_screen0")
+        self.keep_picture("wall_on_a_desk.png")
+        for name, (x, y, width, height) in windows.items():
+            for place in ((x, y), (x + width - 1, y), (x, y + height - 1), (x + width - 1, y + height - 1)):
+                self.assertNotEqual(picture(*place), (0, 0, 0), f"{place} of {name}")
+        for place in ((0, 7), (639, 7), (320, 7), (191, 200), (448, 200), (320, 392), (0, 399)):
+            self.assertEqual(picture(*place), (0, 0, 0), f"{place} is beside all windows")
+        self.quit(session)
+        summary = json.loads((self.out / "summary.json").read_text())
+        self.assertEqual(summary["ranks"], 4)
+        self.assertEqual(self.replay("--hash"), summary["state_hash"])
+        # One furrow runs south, from the sand behind the front screen to that above the floor.
+        dug = [any(value < -0.005 for value in row) for row in self.heights_changed()]
+        first, last = dug.index(True), 127 - dug[::-1].index(True)
+        self.assertTrue(all(dug[first:last + 1]), dug)
+        self.assertGreater(last - first, 20)
+
+
+def screen_of(file):
+    """Returns a function that returns the colour of a pixel of the screen that Xvfb keeps in `file`, in the format of xwd."""
+    content = file.read_bytes()
+    header = struct.unpack(">25I", content[:100])
+    begin, line, bytes_per_pixel = header[0] + 12 * header[19], header[12], header[11] // 8
+    order = "little" if header[7] == 0 else "big"
+
+    def colour(x, y):
+        at = begin + y * line + x * bytes_per_pixel
+        value = int.from_bytes(content[at:at + bytes_per_pixel], order)
+        return value >> 16 & 255, value >> 8 & 255, value & 255
+    return colour
+
+
+class WallOnADesk(unittest.TestCase):
+    """Which windows a wall gets."""
+
+    def words(self, answers):
+        with unittest.mock.patch.object(desk, "work_area", return_value="800x600+0+0"):
+            return desk.words_for("WALL", "NODE", lambda wall, *question: answers[" ".join(question)])
+
+    def test_one_output_is_one_window(self):
+        self.assertEqual(self.words({"--outputs": "1 0"}), [])
+
+    def test_windows_of_the_wall_file_stay_where_they_are(self):
+        self.assertEqual(self.words({"--outputs": "24 24"}), [])
+
+    def test_one_tile_for_both_eyes_is_one_window(self):
+        self.assertEqual(self.words({"--outputs": "2 0", "--ranks": "1\n"}), ["--stereo", "mono"])
+
+    def test_tiles_are_placed_on_the_desktop(self):
+        self.assertEqual(self.words({"--outputs": "24 0", "--ranks": "12\n", "--desk 800x600+0+0 --ranks": "12\n"}),
+                         ["--desk", "800x600+0+0"])
+
+
 class Refused(unittest.TestCase):
+    def test_a_wall_with_more_tiles_than_the_desktop_has_pixels_is_refused_in_one_line(self):
+        server = Display("3x200")
+        self.addCleanup(server.end)
+        self.assertIn("12 tiles do not fit on a desktop of 3x200 pixels", self.tried("--wall", "tiled_3x4", DISPLAY=server.display))
+
     def test_a_session_without_a_display_is_not_told_to_draw_in_memory(self):
         with tempfile.TemporaryDirectory() as folder:
             ran = subprocess.run([str(ROOT / "scripts" / "sandwall"), "run", "--wall", "desktop", "--scene", "writing", "--device", "pointer",

@@ -26,6 +26,7 @@ Wall fullWall() {
     Wall wall = config("tiled_3x4.toml");
     wall.refreshHz = 119.88;
     wall.tracking = "dtrack:5000:2";
+    wall.onDesk = true;
     wall.tiles[0].place = {"node1", ":0.1", 3};
     wall.tiles[0].outputs[0].monitor = "DP-1";
     wall.tiles[0].outputs[1].monitor = "DP-2";

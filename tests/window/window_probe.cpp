@@ -26,7 +26,7 @@ using render_node::EyeTarget;
 struct Options {
     std::string gl = "glfw", pictures;
     int width = 320, height = 240, device = -1, cells = 200;
-    bool active = false;
+    bool active = false, onDesk = false;
     double refresh = 60;  // [Hz], refresh rate of the wall
     std::string display;
     std::vector<std::string> places;  // "40,30" or the name of a monitor, one for each window
@@ -121,6 +121,7 @@ int show(const Options& options) {
     wall.stereo = options.active ? walls::Stereo::active : walls::Stereo::mono;
     wall.refreshHz = options.refresh;
     wall.tiles = {tileOf(options)};
+    wall.onDesk = options.onDesk;
     const auto context =
         render_node::makeContext(base::valueNamed<render_node::Backend>(options.gl).value(), wall, wall.tiles[0]);
     std::cout << "context " << context->name() << "\nrenderer " << context->renderer() << "\n";
@@ -167,6 +168,7 @@ int main(int argc, char** argv) {
     line.option("--pictures", options.pictures, "folder for left.png and right.png, with a slash");
     line.option("--at", options.places, "a window: x,y or a monitor");
     line.flag("--active", options.active);
+    line.flag("--on-desk", options.onDesk);
     line.option("--refresh", options.refresh, "frames per second of the wall");
     return host::runMain(line, argc, argv, [&] { return show(options); });
 }

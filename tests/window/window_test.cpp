@@ -242,6 +242,19 @@ TEST_F(Window, EndsTheRankWhenItIsClosed) {
               "window_probe: failed: output out1: its window on " + server_->display() + " was closed\n");
 }
 
+// A recorded hand needs no pointer. A person may close its windows on a desktop nevertheless.
+TEST_F(Window, OfAWallOnADeskEndsTheSessionWhenItIsClosed) {
+    startAndShow({"--display", server_->display(), "--on-desk", "--at", "0,0", "--at", "400,100"});
+    {
+        const XScreen screen(server_->display());
+        screen.askToClose(screen.windows().back());
+    }
+    const std::string output = ask("keys", "keys taken");
+    EXPECT_EQ(linesOf(output, "key"), std::vector<std::string>{std::to_string(render_node::kQuitKey)});
+    probe_->type("end");
+    EXPECT_EQ(probe_->wait(kLong), 0);
+}
+
 TEST_F(Window, EndsTheRankWhenTheServerGoes) {
     const std::string before = show({"0,0"});
     const std::string display = server_->display();

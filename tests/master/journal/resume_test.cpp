@@ -198,6 +198,11 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
         record(writer, 1);
     }
     EXPECT_EQ(master::readSession(journal(), "")->material, wetter);
+    const master::Journal whole = master::readJournal(journal());
+    EXPECT_EQ(whole.scene.material, scene_.material);
+    ASSERT_EQ(whole.materials.size(), 1U);
+    EXPECT_EQ(whole.materials[0].material, wetter);
+    EXPECT_EQ(whole.materials[0].frame, whole.frames.size() - 1);
 }
 
 TEST_F(Resume, KnowsTheShareOfTheForceThatAnOperatorHasSetLast) {
@@ -352,6 +357,7 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOff) {
         writer.sync();
     }
     EXPECT_EQ(master::readSession(journal(), "")->material.humidity, before.humidity);
+    EXPECT_TRUE(master::readJournal(journal()).materials.empty());
 }
 
 // The resumed session may take a frame without a material as its first. A material that the crash left without its step
@@ -379,6 +385,7 @@ TEST_F(Resume, KnowsNoMaterialWhoseStepWasTornOffAlsoAfterASecondResume) {
     const auto again = master::readSession(journal(), "");
     EXPECT_EQ(again->step, 42U);
     EXPECT_EQ(again->material, before);
+    EXPECT_TRUE(master::readJournal(journal()).materials.empty());
 }
 
 TEST_F(Resume, WithoutAJournalThereIsNothingToGoOnWith) {

@@ -66,6 +66,7 @@ struct Twice {
 struct Shown {
     lockstep::Overlays layers;
     std::optional<render_node::ForceArrow> force;
+    double humidity = 0;
 };
 
 using LayersAt = lockstep::Overlays (*)(int step);
@@ -76,6 +77,9 @@ lockstep::Overlays always(int) {
     (shown.set(layers, true), ...);
     return shown;
 }
+
+using HumidityAt = double (*)(int step);
+double dry(int) { return 0; }
 
 struct Tally {
     int skipped = 0, inPart = 0, whole = 0;
@@ -106,13 +110,14 @@ void checkAgainstFreshView(const scene::Scene& scene, const sand::Replica& repli
     fresh.setTool(replica.probe(), replica.engaged());
     fresh.setLayers(shown.layers);
     fresh.setForce(shown.force);
+    fresh.setHumidity(shown.humidity);
     ASSERT_TRUE(sample::draw(fresh, camera, twice.whole) == twice.before);
 }
 
 /// Runs the whole session on these tiles of a wall, counted from 0. With `headMoves` the viewer moves every 23
 /// steps.
 Tally play(const std::string& name, int smaller, const std::vector<std::size_t>& tiles, sand::Rim rim, bool headMoves,
-           walls::Stereo stereo, LayersAt layersAt = noLayers) {
+           walls::Stereo stereo, LayersAt layersAt = noLayers, HumidityAt humidityAt = dry) {
     walls::Wall wall = sample::reduced(walls::loadWall(sample::wallFolder() / (name + ".toml")), smaller);
     const scene::Scene scene = sessionScene(rim);
     sand::Replica replica(scene);
@@ -133,10 +138,11 @@ Tally play(const std::string& name, int smaller, const std::vector<std::size_t>&
         replica.apply(stepOf(scene, i));
         view.update(replica.surface().data(), replica.takeChange());
         view.setTool(replica.probe(), replica.engaged());
-        Shown shown{layersAt(i), force.arrow(replica)};
+        Shown shown{layersAt(i), force.arrow(replica), humidityAt(i)};
         shown.force = shown.layers.shows(Overlay::force) ? shown.force : std::nullopt;
         view.setLayers(shown.layers);
         view.setForce(shown.force);
+        view.setHumidity(shown.humidity);
         if (headMoves && i % 23 == 22) {
             viewer.eye += glm::dvec3(0.03, -0.02, 0.01);
         }
@@ -214,6 +220,16 @@ TEST_F(Redraw, WhileLayersAreSwitchedIsEqualToTheWhole) {
     EXPECT_GE(tally.whole, 1 + 7);
     EXPECT_GT(tally.inPart, kSteps / 3);
     EXPECT_GT(tally.skipped, 0);
+}
+
+// The fresh view is compared in steps 39, 79, 119 and 159: dry again, wet, wetter and dry.
+TEST_F(Redraw, WhileSandBecomesWetAndDryIsEqualToTheWhole) {
+    const HumidityAt humidity = [](int step) {
+        return step < 10 ? 0 : step < 30 ? 0.1 : step < 60 ? 0 : step < 100 ? 0.5 : step < 140 ? 1 : 0;
+    };
+    const Tally tally = play("desktop", 8, {0}, sand::Rim::closed, false, walls::Stereo::mono, noLayers, humidity);
+    EXPECT_EQ(tally.whole, 1 + 5);
+    EXPECT_GT(tally.inPart, kSteps / 3);
 }
 
 }  // namespace

@@ -64,6 +64,9 @@ void edit(Tin& tin, std::mt19937& random, std::vector<Tin::Vertex>& added) {
     }
 }
 
+/// Returns the humidity of the sand in a step. It changes in the middle of the ten steps that end with a fresh view.
+double humidityAt(int step) { return step < 15 ? 0 : step < 35 ? 0.5 : step < 55 ? 1 : 0; }
+
 class TinRedraw : public testing::Test {
 protected:
     /// Draws a TIN after random edits, with a tool that hovers and rests. `layers` are shown in every third ten steps.
@@ -88,6 +91,7 @@ protected:
                 view.setTool(sample::probeAt(scene, {0.03 * i, 0.9, 0.1 + 0.005 * i}), i % 2 == 0);
             }
             view.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Overlays{});
+            view.setHumidity(humidityAt(i));
             const PixelRect drawn = view.drawIfChanged(camera, inParts, memory);
             parts += !drawn.empty() && drawn.area() < kRedrawWidth * kRedrawHeight ? 1 : 0;
             skipped += drawn.empty() ? 1 : 0;
@@ -101,6 +105,7 @@ protected:
                 fresh.update(sand::TinData{other.view()}, {});
                 fresh.setTool(sample::probeAt(scene, {0.03 * (i - 2), 0.9, 0.1 + 0.005 * (i - 2)}), (i - 2) % 2 == 0);
                 fresh.setLayers(i / 10 % 3 == 1 ? layers : lockstep::Overlays{});
+                fresh.setHumidity(humidityAt(i));
                 ASSERT_TRUE(inParts.read() == sample::draw(fresh, camera, whole)) << "seed " << seed << ", step " << i;
             }
         }
