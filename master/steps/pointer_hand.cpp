@@ -44,7 +44,7 @@ void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false})
 
 void PointerHand::take(std::span<const lockstep::PointerReport> reports, const sand::Replica& sand) {
     for (const lockstep::PointerReport& report : reports) {
-        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.wheel), 0.0, kDeepest);
+        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.depth), 0.0, kDeepest);
     }
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
     if (!hand) {
