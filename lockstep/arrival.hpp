@@ -26,7 +26,7 @@ inline constexpr char kQuitKey = 27;  // Arrival::key of Escape, which ends the 
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so
 /// that the master can tell a message that is too long.
-inline constexpr std::size_t kArrivalRoom = 256;
+inline constexpr std::size_t kArrivalRoom = 512;
 /// Length that is reported for a message longer than the buffer.
 inline constexpr int kCutShort = -1;
 

@@ -53,6 +53,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
     views_.show(options.pattern);
     views_.show(options.layers);
     views_.setHumidity(material_.humidity);
+    frameView();
     if (const int port = views_.viewer().port(); port != 0) {
         fmt::print("head tracking listens on port {}\n", port);
         std::fflush(stdout);
@@ -83,8 +84,12 @@ void OperatorDesk::obeyKey(char key) {
         views_.show(lockstep::nextPattern(views_.pattern()));
     } else if (key == lockstep::kQuitKey) {
         input_.stop();
-    } else if (pointer_ && key == kTurnBackKey) {
-        views_.turnBack();
+    } else if (pointer_ && key == kFrameKey) {
+        if (views_.moves()) {
+            frameView();
+        } else {
+            refuse(kFixedView, {std::nullopt});
+        }
     } else if (pointer_) {
         if (const std::string command = commandOf(key, material_, views_.layers()); !command.empty()) {
             obeyLine(command, std::nullopt);
@@ -92,10 +97,20 @@ void OperatorDesk::obeyKey(char key) {
     }
 }
 
-void OperatorDesk::turnView(std::span<const haptic_bridge::PointerReport> pointers) {
-    for (const haptic_bridge::PointerReport& pointer : pointers) {
-        views_.turn(static_cast<double>(pointer.turnX), static_cast<double>(pointer.turnY));
+std::optional<int> OperatorDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
+    std::optional<int> refused;
+    for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
+        haptic_bridge::PointerReport& pointer = pointers[rank];
+        if (views_.moves()) {
+            views_.move(pointer);
+            continue;
+        }
+        pointer.depth += std::exchange(pointer.wheel, 0.0F);
+        if (pointer.movesView()) {
+            refused = static_cast<int>(rank);
+        }
     }
+    return refused;
 }
 
 void OperatorDesk::obeyLine(const std::string& text, std::optional<Client> client) {

@@ -57,8 +57,10 @@ public:
     /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
     /// windows. Answers the clients of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
-    /// Turns the view as the right button has dragged it in the ranks' windows.
-    void turnView(std::span<const haptic_bridge::PointerReport> pointers);
+    /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. Where the view
+    /// is fixed, the wheels count as PointerReport::depth instead. Returns the rank in whose window a person has tried
+    /// to move a fixed view; the answer to it is kFixedView.
+    std::optional<int> moveView(std::span<haptic_bridge::PointerReport> pointers);
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -82,6 +84,7 @@ private:
     using Client = ControlSocket::Client;
 
     void obeyKey(char key);
+    void frameView() { views_.frame(session_.sand.replica().surface().heights()); }
     void obeyLine(const std::string& line, std::optional<Client> client);
     /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
     /// or has been sent.

@@ -155,8 +155,9 @@ bool Session::showFrame(bool& more) {
     waitForFrame();
     desk_.obey(barrier_.arrivals());
     if (options_.pointer) {
-        desk_.turnView(barrier_.pointers());
-        steps_->pointed(barrier_.pointers(), sand_.replica(), clock_.lastSwap());
+        std::vector<haptic_bridge::PointerReport> pointers = barrier_.pointers();
+        desk_.moveView(pointers);
+        steps_->pointed(pointers, sand_.replica(), clock_.lastSwap());
     }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
     const Steps steps = takeSteps();

@@ -13,28 +13,37 @@ namespace master {
 
 ViewSource::ViewSource(const walls::Wall& wall, const scene::Scene& scene, const tracking::Source& source)
     : viewer_(wall, source, [](const std::string& line) { host::printLine("{}", line); }),
-      stage_(wall.stage),
-      field_(scene.rules.columns * scene.terrain.cellSize(), scene.rules.rows * scene.terrain.cellSize(),
-             scene.referenceHeight() * scene.terrain.unit()),
-      turns_(walls::isDesktop(wall) && !viewer_.tracked()) {
+      field_{scene.rules.columns * scene.terrain.cellSize(), scene.rules.rows * scene.terrain.cellSize(),
+             scene.referenceHeight() * scene.terrain.unit()},
+      unit_(scene.terrain.unit()) {
     show(wall.stereo);
-    place({});
+    if (walls::isDesktop(wall) && !viewer_.tracked()) {
+        desk_.emplace(wall, field_);
+    }
+    place(walls::stageToRoom(wall.stage, field_.width, field_.height, field_.referenceZ));
 }
 
-void ViewSource::place(const walls::Orbit& orbit) {
-    orbit_ = orbit;
-    const glm::dmat4 toRoom = orbit == walls::Orbit{} ? walls::stageToRoom(stage_, field_.x, field_.y, field_.z)
-                                                      : walls::stageToRoom(stage_, field_.x, field_.y, field_.z, orbit);
-    std::copy_n(glm::value_ptr(toRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
+void ViewSource::place(const glm::dmat4& sceneToRoom) {
+    std::copy_n(glm::value_ptr(sceneToRoom), state_.sceneToRoom.size(), state_.sceneToRoom.begin());
 }
 
-void ViewSource::turn(double right, double down) {
-    if (turns_ && (right != 0 || down != 0)) {
-        place(orbit_.dragged(stage_, right, down));
+void ViewSource::move(const haptic_bridge::PointerReport& report) {
+    if (!report.movesView()) {
+        return;
+    }
+    const auto vector = [](const std::array<float, 3>& from) { return glm::dvec3(from[0], from[1], from[2]); };
+    desk_->turn(static_cast<double>(report.turnX), static_cast<double>(report.turnY));
+    desk_->pan(vector(report.pan));
+    desk_->zoom(static_cast<double>(report.wheel), vector(report.wheelAt));
+    place(desk_->sceneToRoom());
+}
+
+void ViewSource::frame(const sand::HeightSpan& sand) {
+    if (desk_) {
+        desk_->frame({{0, 0, sand.lowest * unit_}, {field_.width, field_.height, sand.highest * unit_}});
+        place(desk_->sceneToRoom());
     }
 }
-
-void ViewSource::turnBack() { place({}); }
 
 lockstep::ViewState ViewSource::at(double seconds) {
     const walls::Viewer viewer = viewer_.at(seconds);

@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string_view>
 
 #include "lockstep/frame_message.hpp"
+#include "haptic_bridge/hand/pointer.hpp"
 #include "lockstep/test_pattern.hpp"
+#include "sand/model/surface.hpp"
 #include "scene/model/scene.hpp"
 #include "tracking/tracked_viewer.hpp"
-#include "walls/orbit.hpp"
+#include "walls/desk_view.hpp"
 #include "walls/wall.hpp"
 
 namespace master {
@@ -32,24 +35,25 @@ public:
     [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }
     /// Shows the sand at this humidity, 0 to 1.
     void setHumidity(double humidity) { state_.humidity = humidity; }
-    /// Turns the sand by a drag of the view [side of the window], right and down. Ignored unless the wall is a desktop.
-    void turn(double right, double down);
-    /// Turns the sand back to where the wall file has it.
-    void turnBack();
+    /// Returns whether people may move the view: the wall is a desktop, and no tracker moves the viewer.
+    [[nodiscard]] bool moves() const { return desk_.has_value(); }
+    /// Moves the view as the pointer of `report` has dragged it, and zooms by its wheel. Requires moves().
+    void move(const haptic_bridge::PointerReport& report);
+    /// Frames the terrain, whose sand has the heights `sand` (walls::DeskView::frame). Ignored unless moves().
+    void frame(const sand::HeightSpan& sand);
     /// Calls TrackedViewer::separateEyes().
     void separateEyes(double metres) { viewer_.separateEyes(metres); }
     [[nodiscard]] double eyeSeparation() const { return state_.eyeSeparation; }  // [m], in the last view of at()
     [[nodiscard]] const tracking::TrackedViewer& viewer() const { return viewer_; }
 
 private:
-    void place(const walls::Orbit& orbit);
+    void place(const glm::dmat4& sceneToRoom);
 
     tracking::TrackedViewer viewer_;
     lockstep::ViewState state_;
-    walls::Stage stage_;
-    glm::dvec3 field_;  // [scene unit], width and height of the field, and its reference height
-    bool turns_;        // whether viewers may turn the sand
-    walls::Orbit orbit_;
+    walls::StagedField field_;
+    double unit_;                          // [scene unit], size of a height unit
+    std::optional<walls::DeskView> desk_;  // nullopt unless people may move the view
 };
 
 }  // namespace master

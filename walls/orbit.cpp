@@ -12,7 +12,7 @@ namespace walls {
 
 Orbit Orbit::dragged(const Stage& stage, double right, double down) const {
     constexpr double kTurn = 180, kTilt = 90;  // [deg] for a drag over the whole window
-    Orbit result;
+    Orbit result = *this;
     result.turnDegrees = std::remainder(turnDegrees + kTurn * right, 360);
     const double now = stage.tiltDegrees + tiltDegrees;
     const double lowest = std::min(now, kLowest), highest = std::max(now, kHighest);
@@ -28,7 +28,8 @@ glm::dmat4 stageToRoom(const Stage& stage, double fieldWidth, double fieldHeight
     glm::dmat4 result = stageToRoom(tilted, fieldWidth, fieldHeight, referenceZ);
     result = glm::translate(result, centre);
     result = glm::rotate(result, glm::radians(orbit.turnDegrees), glm::dvec3(0, 0, 1));
-    return glm::translate(result, -centre);
+    result = glm::scale(result, glm::dvec3(orbit.zoom));
+    return glm::translate(result, -centre - orbit.aim);
 }
 
 bool isDesktop(const Wall& wall) {

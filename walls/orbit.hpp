@@ -7,12 +7,16 @@
 
 namespace walls {
 
-/// Turn of the sand in front of a viewer who looks at it from another side.
+/// Place of the sand in front of a viewer who looks at it from another side, from nearer, or at another part of it.
 struct Orbit {
     static constexpr double kLowest = 5, kHighest = 85;  // [deg], limits of the tilt of the stage
 
     double turnDegrees = 0;  // about the sand's vertical, counter-clockwise seen from above
     double tiltDegrees = 0;  // added to the tilt of the stage
+    double zoom = 1;         // factor on the size of the sand in the room
+    // [scene unit] from the centre of the field at its reference height to the place at stage.centre. All turns are
+    // about this place.
+    glm::dvec3 aim{0};
 
     /// Returns this orbit after a drag of the view [side of the window], right and down. The sum of both tilts stays
     /// within its limits, or where it was if the wall file's own tilt is outside of them.
@@ -20,8 +24,7 @@ struct Orbit {
     friend bool operator==(const Orbit&, const Orbit&) = default;
 };
 
-/// Returns stageToRoom() with the sand turned by `orbit`. The centre of the field stays at stage.centre. Throws as
-/// stageToRoom() does.
+/// Returns stageToRoom() with the sand placed by `orbit`. Throws as stageToRoom() does.
 [[nodiscard]] glm::dmat4 stageToRoom(const Stage& stage, double fieldWidth, double fieldHeight, double referenceZ,
                                      const Orbit& orbit);
 

@@ -42,9 +42,9 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
 
 void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
-void PointerHand::take(std::span<const PointerReport> reports, const sand::Replica& sand) {
-    for (const PointerReport& report : reports) {
-        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.wheel), 0.0, kDeepest);
+void PointerHand::take(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand) {
+    for (const haptic_bridge::PointerReport& report : reports) {
+        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.depth), 0.0, kDeepest);
     }
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
     if (!hand) {

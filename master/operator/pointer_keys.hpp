@@ -8,7 +8,8 @@
 
 namespace master {
 
-inline constexpr char kTurnBackKey = 'v';  // turns the sand back to where the wall file has it
+inline constexpr char kFrameKey = 'v';  // frames the terrain; the key Home arrives as this one, too
+inline constexpr const char* kFixedView = "this wall's view is fixed";  // answer to who tries to move it
 
 /// Returns the operator's command for a key that a person at a desktop has pressed (docs/pointer.md), or an empty text
 /// if the key has none. The command starts from the present material and from the layers that are shown.

@@ -22,7 +22,8 @@ struct WindowRequest {
     glm::ivec2 pixels{1, 1};
 };
 
-inline constexpr char kQuitKey = 27;  // Escape
+inline constexpr char kQuitKey = 27;    // Escape
+inline constexpr char kFrameKey = 'v';  // of Home, which is no character
 
 /// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
 /// reports it.
@@ -32,7 +33,8 @@ struct PointerEvent {
         press,        // the left button goes down, or a finger touches
         release,      // the left button goes up
         turnPress,    // the right button goes down
-        turnRelease,  // the right button goes up
+        panPress,     // the middle button goes down, or the right one with Shift
+        viewRelease,  // the right or the middle button goes up
         wheel         // the wheel has turned by `notches`
     };
     Kind kind = Kind::move;
@@ -40,6 +42,7 @@ struct PointerEvent {
     glm::dvec2 at{0};        // [pixel] from the window's top left corner; outside of it while a button is held
     std::int64_t ns = 0;     // [ns], monotonic clock
     double notches = 0;      // of the wheel, positive towards the user
+    bool shift = false;      // a Shift key is down
 };
 
 /// Request for a backend. Without windows the backend draws off screen.

@@ -179,8 +179,9 @@ void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::siz
         }
     });
     glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
-        if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuitKey);
+        if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_HOME)) {
+            static_cast<Listener*>(glfwGetWindowUserPointer(window))
+                ->input->keys.push_back(key == GLFW_KEY_HOME ? kFrameKey : kQuitKey);
         }
     });
     glfwSetWindowRefreshCallback(
@@ -196,7 +197,9 @@ bool GlfwWindow::takeExposed() { return std::exchange(listener_->exposed, false)
 /// a later place.
 void GlfwWindow::addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches) {
     const auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
-    listener->input->pointer.push_back({kind, listener->window, listener->at, host::monotonicNs(), notches});
+    const auto isDown = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
+    const bool shift = isDown(GLFW_KEY_LEFT_SHIFT) || isDown(GLFW_KEY_RIGHT_SHIFT);
+    listener->input->pointer.push_back({kind, listener->window, listener->at, host::monotonicNs(), notches, shift});
 }
 
 void GlfwWindow::followPointer() {
@@ -204,12 +207,13 @@ void GlfwWindow::followPointer() {
     glfwSetInputMode(handle(), GLFW_CURSOR, GLFW_CURSOR_NORMAL);
     cursor_.reset(glfwCreateStandardCursor(GLFW_CROSSHAIR_CURSOR));
     glfwSetCursor(handle(), cursor_.get());  // without a crosshair, the arrow stays
-    glfwSetMouseButtonCallback(handle(), [](GLFWwindow* window, int button, int action, int /* shifts */) {
+    glfwSetMouseButtonCallback(handle(), [](GLFWwindow* window, int button, int action, int modifiers) {
         const bool down = action == GLFW_PRESS;
+        const bool pans = button == GLFW_MOUSE_BUTTON_MIDDLE || (modifiers & GLFW_MOD_SHIFT) != 0;
         if (button == GLFW_MOUSE_BUTTON_LEFT) {
             addPointer(window, down ? Kind::press : Kind::release);
-        } else if (button == GLFW_MOUSE_BUTTON_RIGHT) {
-            addPointer(window, down ? Kind::turnPress : Kind::turnRelease);
+        } else if (button == GLFW_MOUSE_BUTTON_RIGHT || button == GLFW_MOUSE_BUTTON_MIDDLE) {
+            addPointer(window, !down ? Kind::viewRelease : pans ? Kind::panPress : Kind::turnPress);
         }
     });
     glfwSetScrollCallback(

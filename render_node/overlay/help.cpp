@@ -9,10 +9,12 @@
 namespace render_node {
 namespace {
 
-constexpr std::array<HelpEntry, 11> kPointer{{{"LEFT BUTTON", "DIG"},
-                                              {"WHEEL", "DEPTH"},
+constexpr std::array<HelpEntry, 13> kPointer{{{"LEFT BUTTON", "DIG"},
+                                              {"WHEEL", "ZOOM"},
+                                              {"SHIFT WHEEL", "DEPTH"},
                                               {"RIGHT BUTTON", "TURN THE SAND"},
-                                              {"V", "TURN BACK"},
+                                              {"MIDDLE BUTTON", "MOVE IT"},
+                                              {"HOME", "ALL IN VIEW"},
                                               {"1 - 6", "TOOL"},
                                               {"+ -", "SIZE"},
                                               {"W D", "WETTER, DRIER"},

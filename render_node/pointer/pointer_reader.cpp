@@ -2,7 +2,9 @@
 #include "render_node/pointer/pointer_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <glm/gtc/type_ptr.hpp>
+#include <utility>
 
 #include "render_node/pointer/sand_ray.hpp"
 #include "sand/model/mean_height.hpp"
@@ -67,14 +69,27 @@ void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
     last_ = {event.window, event.at};
     switch (event.kind) {
         case Kind::wheel:
-            report.wheel += static_cast<float>(event.notches);
+            (event.shift ? report.depth : report.wheel) += static_cast<float>(event.notches);
+            wheeled_ = last_;
             break;  // the tool goes to its new depth at once
         case Kind::turnPress:
-        case Kind::turnRelease:
-            turns_ = event.kind == Kind::turnPress;
+            drag_ = Drag::turn;
+            return;
+        case Kind::panPress:
+            drag_ = Drag::pan;
+            panFrom_ = last_;
+            panTo_.reset();
+            panDepth_.reset();
+            return;
+        case Kind::viewRelease:
+            drag_ = Drag::none;
             return;
         case Kind::move:
-            if (turns_ && !pressed_) {
+            if (drag_ == Drag::pan && !pressed_) {
+                panTo_ = last_;
+                return;
+            }
+            if (drag_ == Drag::turn && !pressed_) {
                 const glm::dvec2 share =
                     (event.at - before) / glm::dvec2(walls::outputPixels(wall_.stereo, tile().pixels));
                 report.turnX += static_cast<float>(share.x);
@@ -94,6 +109,21 @@ void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
     readings_.push_back({event.ns, last_, pressed_});
 }
 
+/// Computes the places in the room at which the view is dragged and zoomed.
+void PointerReader::followView(const Shown& shown, PointerReport& report) {
+    const auto floats = [](glm::dvec3 place) { return std::array{float(place.x), float(place.y), float(place.z)}; };
+    if (const auto place = std::exchange(wheeled_, std::nullopt)) {
+        report.wheelAt = floats(pointAt(*place, depthAt(*place, shown), shown.view));
+    }
+    if (panFrom_ && !panDepth_) {
+        panDepth_ = depthAt(*panFrom_, shown);
+    }
+    if (const auto to = std::exchange(panTo_, std::nullopt)) {
+        report.pan = floats(pointAt(*to, *panDepth_, shown.view) - pointAt(*panFrom_, *panDepth_, shown.view));
+        panFrom_ = to;
+    }
+}
+
 PointerReport PointerReader::read(std::span<const PointerEvent> events, const sand::Replica& replica,
                                   const lockstep::ViewState& view, HeightRange heights, std::int64_t clockAhead) {
     PointerReport report;
@@ -101,6 +131,8 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
     for (const PointerEvent& event : events) {
         follow(event, report);
     }
+    const Shown shown{replica, view, heights};
+    followView(shown, report);
     thin(readings_);
     if (!readings_.empty()) {
         // A pointer that rested began to move just before its first motion was read. The time at which it came to rest
@@ -116,8 +148,7 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         if (reading.pressed && touched_ == nullptr && !replica.surface().readsKept()) {
             touched_ = replica.surface().clone();
         }
-        haptic_bridge::PointerSample& sample = report.samples[report.count++] =
-            this->sample(reading, replica, view, heights);
+        haptic_bridge::PointerSample& sample = report.samples[report.count++] = this->sample(reading, shown);
         sample.readNs = reading.ns - clockAhead;
     }
     report.pressed = pressed_ ? 1 : 0;
@@ -128,35 +159,60 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
     return report;
 }
 
-haptic_bridge::PointerSample PointerReader::sample(const Reading& reading, const sand::Replica& replica,
-                                                   const lockstep::ViewState& view, HeightRange heights) {
+std::optional<glm::dvec2> PointerReader::meet(const WindowPlace& place, bool pressed, const Shown& shown) const {
+    const lockstep::ViewState& view = shown.view;
     const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
-    const Ray units = sightRay(eye, roomPoint(wall_, tile(), reading.place), glm::make_mat4(view.sceneToRoom.data()));
-    const double cell = replica.cellSize();
+    const Ray units = sightRay(eye, roomPoint(wall_, tile(), place), glm::make_mat4(view.sceneToRoom.data()));
+    const double cell = shown.replica.cellSize();
     const Ray cells{units.from / cell, units.along / cell};
-    const sand::Rules& rules = replica.rules();
-    const double margin = 2 * replica.toolRadius() / cell;  // sand that this tile has not drawn yet may be higher
-    const bool pressed = reading.pressed;
+    const sand::Rules& rules = shown.replica.rules();
+    const double margin = 2 * shown.replica.toolRadius() / cell;  // sand that this tile has not drawn may be higher
     constexpr double kProbe = sand::kProbePerCell;
-    const auto heightAt = [&](double x, double y) { return heightOf(replica, pressed, x, y); };
     const SandBody sand{static_cast<double>(rules.columns),
                         static_cast<double>(rules.rows),
-                        heights.lowest / cell - margin,
-                        heights.highest / cell + margin,
+                        shown.heights.lowest / cell - margin,
+                        shown.heights.highest / cell + margin,
                         0.5,
-                        [&](double x, double y) { return heightAt(x * kProbe, y * kProbe) / sand::kUnitsPerCell; }};
+                        [&](double x, double y) {
+                            return heightOf(shown.replica, pressed, x * kProbe, y * kProbe) / sand::kUnitsPerCell;
+                        }};
+    return meetSand(cells, sand);
+}
+
+haptic_bridge::PointerSample PointerReader::sample(const Reading& reading, const Shown& shown) const {
     haptic_bridge::PointerSample sample;
-    sample.pressed = pressed ? 1 : 0;
-    const std::optional<glm::dvec2> place = meetSand(cells, sand);
+    sample.pressed = reading.pressed ? 1 : 0;
+    const std::optional<glm::dvec2> place = meet(reading.place, reading.pressed, shown);
     if (!place) {
         return sample;
     }
+    constexpr double kProbe = sand::kProbePerCell;
     constexpr int kSamples = 5;  // across and along the tool
-    const double height =
-        sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe, rules.tuning.tool.radius, kSamples);
+    const auto heightAt = [&](double x, double y) { return heightOf(shown.replica, reading.pressed, x, y); };
+    const double height = sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe,
+                                           shown.replica.rules().tuning.tool.radius, kSamples);
     sample.probe = sand::probePoint(place->x, place->y, height / sand::kUnitsPerCell);
     sample.meets = 1;
     return sample;
+}
+
+glm::dvec3 PointerReader::pointAt(const WindowPlace& place, double depth, const lockstep::ViewState& view) const {
+    const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
+    const glm::dvec3 along = roomPoint(wall_, tile(), place) - eye;
+    return eye + along * (depth / glm::dot(along, -tile().screen.normal()));
+}
+
+double PointerReader::depthAt(const WindowPlace& place, const Shown& shown) const {
+    const glm::dvec3 eye(shown.view.head[0], shown.view.head[1], shown.view.head[2]);
+    glm::dvec3 point = wall_.stage.centre;
+    if (const std::optional<glm::dvec2> sand = meet(place, false, shown)) {
+        constexpr double kProbe = sand::kProbePerCell;
+        const double height = heightOf(shown.replica, false, sand->x * kProbe, sand->y * kProbe);
+        const glm::dvec3 cells(*sand, height / sand::kUnitsPerCell);
+        const glm::dmat4 toRoom = glm::make_mat4(shown.view.sceneToRoom.data());
+        point = glm::dvec3(toRoom * glm::dvec4(cells * shown.replica.cellSize(), 1));
+    }
+    return glm::dot(point - eye, -tile().screen.normal());
 }
 
 double PointerReader::heightOf(const sand::Replica& replica, bool pressed, double x, double y) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,10 +43,25 @@ private:
         WindowPlace place{};
         bool pressed = false;
     };
+    /// The sand and the view of a read().
+    struct Shown {
+        const sand::Replica& replica;
+        const lockstep::ViewState& view;
+        HeightRange heights;
+    };
+    enum class Drag : std::uint8_t { none, turn, pan };
+
     void follow(const PointerEvent& event, haptic_bridge::PointerReport& report);
+    void followView(const Shown& shown, haptic_bridge::PointerReport& report);
     [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
-    [[nodiscard]] haptic_bridge::PointerSample sample(const Reading& reading, const sand::Replica& replica,
-                                                      const lockstep::ViewState& view, HeightRange heights);
+    [[nodiscard]] haptic_bridge::PointerSample sample(const Reading& reading, const Shown& shown) const;
+    /// Returns the place of the sand that a place in a window shows [cell], from the field's south-west corner.
+    [[nodiscard]] std::optional<glm::dvec2> meet(const WindowPlace& place, bool pressed, const Shown& shown) const;
+    /// Returns the point of the room [m] that a place in a window shows at `depth` [m] from the eye.
+    [[nodiscard]] glm::dvec3 pointAt(const WindowPlace& place, double depth, const lockstep::ViewState& view) const;
+    /// Returns the distance from the eye, across the screen, of the sand at a place in a window [m]. Beside the sand,
+    /// returns that of the middle of the stage.
+    [[nodiscard]] double depthAt(const WindowPlace& place, const Shown& shown) const;
     /// Returns a height [unit] of the current sand, or of the sand from before the stroke if `pressed`.
     [[nodiscard]] double heightOf(const sand::Replica& replica, bool pressed, double x,
                                   double y /* [probe unit] */) const;
@@ -55,7 +71,11 @@ private:
     std::vector<Reading> readings_;  // since the report before
     Reading before_;                 // the last one of that report
     WindowPlace last_;
-    bool pressed_ = false, turns_ = false;
+    bool pressed_ = false;
+    Drag drag_ = Drag::none;                      // of the view
+    std::optional<WindowPlace> wheeled_;          // of the wheel's last turn since the report before
+    std::optional<WindowPlace> panFrom_, panTo_;  // part of a pan that no report has
+    std::optional<double> panDepth_;              // [m], of the point that is dragged; nullopt: not computed yet
     std::uint32_t touches_ = 0;
     std::unique_ptr<sand::Surface> touched_;  // sand at the touch, if the replica itself cannot return its heights
 };

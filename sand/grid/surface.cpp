@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "sand/grid/settle.hpp"
 #include "sand/model/grid_codec.hpp"
@@ -175,6 +176,17 @@ std::int32_t heightAt(const HeightField& field, double x, double y) {
 }  // namespace
 
 double GridSurface::height(double x, double y) const { return heightAt(field_, x, y); }
+
+HeightSpan GridSurface::heights() const {
+    std::int32_t lowest = field_.height(0, 0), highest = lowest;
+    for (int row = 0; row < field_.rows(); ++row) {
+        for (const std::int32_t height : std::span(field_.row(row), static_cast<std::size_t>(field_.columns()))) {
+            lowest = std::min(lowest, height);
+            highest = std::max(highest, height);
+        }
+    }
+    return {static_cast<double>(lowest), static_cast<double>(highest)};
+}
 
 std::optional<double> GridSurface::keptHeight(double x, double y) const {
     const Snapshot* const kept = beforeStroke_.kept();

@@ -56,6 +56,7 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
+    [[nodiscard]] HeightSpan heights() const override;
     [[nodiscard]] bool readsKept() const override { return true; }
     [[nodiscard]] std::optional<double> keptHeight(double x, double y) const override;
     [[nodiscard]] SurfaceData data() const override { return GridData{field_, ground_.get()}; }

@@ -53,6 +53,12 @@ public:
 /// destroyed.
 using SurfaceReader = std::function<std::shared_ptr<const SurfaceCopy>(std::span<const std::uint8_t>)>;
 
+/// Lowest and highest height of some sand [unit].
+struct HeightSpan {
+    double lowest = 0, highest = 0;
+    friend bool operator==(const HeightSpan&, const HeightSpan&) = default;
+};
+
 /// The sand of one replica: a height field or a TIN. Only Replica changes it: with steps, or as a whole when it loads a
 /// state. Not thread-safe.
 class Surface {
@@ -128,6 +134,8 @@ public:
     /// Returns the height of the sand at (x, y) [unit]. A height field returns the height of the cell there; a TIN
     /// interpolates within the triangle there. Outside the field, returns the height of the nearest place in it.
     [[nodiscard]] virtual double height(double x, double y /* [probe unit] */) const = 0;
+    /// Returns the lowest and the highest height of all sand, except in a TIN's holes. Reads every cell or vertex.
+    [[nodiscard]] virtual HeightSpan heights() const = 0;
 
     /// Returns whether keptHeight() returns heights. A TIN's kept sand is encoded, so that it returns none.
     [[nodiscard]] virtual bool readsKept() const { return false; }

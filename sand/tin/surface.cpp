@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sand/tin/flow/settle.hpp"
@@ -258,6 +259,19 @@ void TinSurface::corrupt(int column, int row, int bit) {
     const Vertex vertex = layer_.triangles().triangles[static_cast<std::size_t>(found.triangle)].corner[0];
     const std::int64_t volume = layer_.volumes()[static_cast<std::size_t>(vertex)];
     layer_.add(vertex, (volume ^ (std::int64_t{1} << bit)) - volume);
+}
+
+HeightSpan TinSurface::heights() const {
+    HeightSpan span{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+    for (const Triangle& triangle : layer_.triangles().triangles) {
+        if (triangle.isGround()) {
+            for (const Vertex vertex : triangle.corner) {
+                const double height = layer_.heights()[index(vertex)];
+                span = {std::min(span.lowest, height), std::max(span.highest, height)};
+            }
+        }
+    }
+    return span.lowest <= span.highest ? span : HeightSpan{};
 }
 
 double TinSurface::height(double x, double y) const {

@@ -64,6 +64,7 @@ public:
     void corrupt(int column, int row, int bit) override;
 
     [[nodiscard]] double height(double x, double y) const override;
+    [[nodiscard]] HeightSpan heights() const override;
     [[nodiscard]] SurfaceData data() const override { return TinData{*view_}; }
     [[nodiscard]] SurfaceChange takeChange() override;
 

@@ -61,7 +61,7 @@ TEST(Arrival, OfAnotherLengthIsNoneThoughItsFrameIsRight) {
         EXPECT_EQ(faultOf(letterOf(kFrame), length),
                   std::to_string(length) + " bytes instead of " + std::to_string(kLength));
     }
-    EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "longer than 256 bytes");
+    EXPECT_EQ(faultOf(letterOf(kFrame), lockstep::kCutShort), "longer than 512 bytes");
 }
 
 /// Returns the bytes of an arrival with a pointer behind it.
@@ -110,9 +110,20 @@ TEST(Arrival, WithAnImpossiblePointerIsNone) {
         late.samples[0].readNs = time;
         EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
     }
-    haptic_bridge::PointerReport wheel;
-    wheel.wheel = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
+    for (float haptic_bridge::PointerReport::*const number :
+         {&haptic_bridge::PointerReport::wheel, &haptic_bridge::PointerReport::depth, &haptic_bridge::PointerReport::turnX,
+          &haptic_bridge::PointerReport::turnY}) {
+        haptic_bridge::PointerReport endless;
+        endless.*number = std::numeric_limits<float>::infinity();
+        EXPECT_EQ(fault(endless), "a pointer with a number that is not finite");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        haptic_bridge::PointerReport pan, zoom;
+        pan.pan.at(axis) = std::numeric_limits<float>::quiet_NaN();
+        zoom.wheelAt.at(axis) = -std::numeric_limits<float>::infinity();
+        EXPECT_EQ(fault(pan), "a pointer with a number that is not finite");
+        EXPECT_EQ(fault(zoom), "a pointer with a number that is not finite");
+    }
 }
 
 // Frames 30, 31 and 32 are those of the drill in tests/cluster/drills_test.cpp.

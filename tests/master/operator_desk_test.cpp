@@ -33,6 +33,8 @@ public:
 
 class Desk : public test::FolderTest {
 protected:
+    Desk() : Desk(samples::flatScene(32, 24)) {}
+    explicit Desk(scene::Scene scene) : scene_(std::move(scene)) {}
     void SetUp() override { open(&requests_); }
     void open(master::StepRequests* requests, const master::DeskOptions& options = {}) {
         desk_.reset();
@@ -79,8 +81,8 @@ protected:
         desk_->answer(steps);
     }
 
-    scene::Scene scene_ = samples::flatScene(32, 24);
-    const walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
+    scene::Scene scene_;
+    walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
     master::MasterSand sand_{scene_, {}, {}};
     test::NoSteps source_;
     Requests requests_;
@@ -283,19 +285,56 @@ TEST_F(Desk, TakesKeysAsCommandsIfTheHandIsThePointer) {
 }
 
 // The wall of these tests is in stereo, so that it is not a desktop.
-TEST_F(Desk, TurnsTheSandOfADesktopOnly) {
-    std::array<haptic_bridge::PointerReport, 2> pointers{};
-    pointers[1].turnX = 0.25F;
+TEST_F(Desk, KeepsTheViewOfAWallThatIsNoDesktop) {
+    std::array<haptic_bridge::PointerReport, 3> pointers{};
     const auto before = desk_->views().at(0).sceneToRoom;
-    desk_->turnView(pointers);
+    pointers[1].wheel = 3;
+    EXPECT_EQ(desk_->moveView(pointers), std::nullopt);
+    EXPECT_EQ(pointers[1].wheel, 0);
+    EXPECT_EQ(pointers[1].depth, 3) << "the wheel is the depth";
+    pointers[2].turnX = 0.25F;
+    EXPECT_EQ(desk_->moveView(pointers), 2) << "answered in the window of rank 2";
+    pointers[2] = {.pan = {0, 0.1F, 0}};
+    EXPECT_EQ(desk_->moveView(pointers), 2);
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
-    const walls::Wall desktop = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
-    master::ViewSource views(desktop, scene_, {});
-    const auto still = views.at(0).sceneToRoom;
-    views.turn(0.25, 0);
-    EXPECT_NE(views.at(0).sceneToRoom, still);
-    views.turnBack();
-    EXPECT_EQ(views.at(0).sceneToRoom, still);
+}
+
+TEST_F(Desk, MovesTheViewOfADesktopAndFramesItAgain) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&requests_, options);
+    const auto framed = desk_->views().at(0).sceneToRoom;
+    const std::array<haptic_bridge::PointerReport, 3> moves{
+        {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
+    for (const haptic_bridge::PointerReport& move : moves) {
+        std::array<haptic_bridge::PointerReport, 2> pointers{haptic_bridge::PointerReport{}, move};
+        const auto before = desk_->views().at(0).sceneToRoom;
+        EXPECT_EQ(desk_->moveView(pointers), std::nullopt);
+        EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
+        EXPECT_EQ(pointers[1].depth, 0);
+    }
+    desk_->obey({{.key = 'v'}});
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
+}
+
+/// Returns level sand with a high summit in the north-west corner.
+scene::Scene mountain() {
+    scene::Scene scene = samples::flatScene(32, 24);
+    scene.terrain.setHeight(0, 23, scene.terrain.height(0, 23) + 40 * sand::kUnitsPerCell);
+    return scene;
+}
+
+class MountainDesk : public Desk {
+protected:
+    MountainDesk() : Desk(mountain()) {}
+};
+
+TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
+    open(&requests_);
+    EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
 }
 
 TEST_F(Desk, OfAReplayHasNoControlSocket) {

@@ -44,6 +44,14 @@ TEST(Replica, AStrokeLeavesAFurrowWithBanks) {
     EXPECT_EQ(field.volume(), 0);
 }
 
+TEST(Replica, KnowsItsLowestAndItsHighestSand) {
+    scene::Scene scene = samples::flatScene(20, 10);
+    EXPECT_EQ(Replica(scene).surface().heights(), (sand::HeightSpan{0, 0}));
+    scene.terrain.setHeight(19, 9, 300);
+    scene.terrain.setHeight(0, 0, -70);
+    EXPECT_EQ(Replica(scene).surface().heights(), (sand::HeightSpan{-70, 300}));
+}
+
 TEST(Replica, AHeldToolComesToRest) {
     scene::Scene scene = samples::flatScene(64, 64, 8);
     Replica replica(scene);

@@ -30,7 +30,8 @@ PATIENCE = 120  # seconds for work that takes a few seconds on an idle machine
 PROBE_PER_CELL = 256
 
 # Four windows without gaps on one display, of 160 x 120 pixels each. The bezels between the screens are wider than the
-# gaps of the windows, which are 0. The wall is seen from far away, straight from the front.
+# gaps of the windows, which are 0. The wall is seen from far away, straight from the front. It shows the whole field, so
+# that the first view is that of the wall file.
 WALL = """name = "four windows"
 [viewer]
 eye = [0.0, 0.0, 40.0]
@@ -55,7 +56,7 @@ tilt_deg = 90.0
 SCENE = """name = "level"
 [field]
 columns = 128
-rows = 128
+rows = 96
 width = 2.0
 [terrain]
 height = 0.2
@@ -167,7 +168,7 @@ class PointerSession(unittest.TestCase):
         def metres(pixel, tile_pixels, tile_metres, bezel):
             return pixel * tile_metres / tile_pixels + (bezel if pixel >= tile_pixels else 0)
         east = metres(x, 160, 1.6, 0.1)
-        south = metres(y, 120, 1.2, 0.1) + 0.4  # the wall is 2.5 m high and shows the middle of 3.3 m
+        south = metres(y, 120, 1.2, 0.1) - 0.0125  # the wall is 2.5 m high, and the field 2.475 m
         return int(south / 3.3 * 128), int(east / 3.3 * 128)
 
     def test_a_stroke_goes_from_window_to_window_and_the_journal_has_it(self):
@@ -195,7 +196,8 @@ class PointerSession(unittest.TestCase):
         other = Display("320x240")
         self.addCleanup(other.end)
         # Two tiles side by side, each on a display of its own.
-        head = WALL.split("[[place]]")[0].replace("rows = 2", "rows = 1")
+        head = WALL.split("[[place]]")[0].replace("rows = 2", "rows = 1").replace("-1.25, 0.0]", "-0.6, 0.0]")
+        self.scene.write_text(SCENE.replace("rows = 96", "rows = 40"))
         self.wall.write_text(head + "".join(f"[[place]]\ntiles = [\"{tile}\"]\ndisplay = \"{server.display}\"\nwindows = [[0, 0]]\n"
                                             for tile, server in (("r1c1", self.server), ("r1c2", other))))
         session = self.run_session()

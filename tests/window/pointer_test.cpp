@@ -79,7 +79,7 @@ TEST_F(Pointer, ReportsMotionsButtonsAndTheWheelWithTheirPlacesInOrder) {
         kinds.push_back(event.kind);
         EXPECT_EQ(event.at, glm::dvec2(120, 60));
     }
-    EXPECT_EQ(kinds, (std::vector{Kind::press, Kind::release, Kind::turnPress, Kind::turnRelease, Kind::wheel}));
+    EXPECT_EQ(kinds, (std::vector{Kind::press, Kind::release, Kind::turnPress, Kind::viewRelease, Kind::wheel}));
     EXPECT_EQ(seen_.back().notches, 1);
     EXPECT_TRUE(context_->takePointer().empty()) << "they are taken";
 }

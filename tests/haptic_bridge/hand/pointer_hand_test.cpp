@@ -39,7 +39,7 @@ protected:
         hand_.take(reports_, replica_);
         for (PointerReport& report : reports_) {
             report.count = 0;
-            report.wheel = 0;
+            report.depth = 0;
         }
         sand::Step step;
         step.number = replica_.stepNumber() + 1;
@@ -92,14 +92,14 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
 }
 
 TEST_F(PointerHand, TheWheelSetsTheDepthWithinItsLimits) {
-    reports_[1].wheel = 2;
+    reports_[1].depth = 2;
     add(1, 20, 32, true);
     EXPECT_EQ(step().path.at(0).z, std::lround(0.3 * 4 * kPerCell));
     EXPECT_NEAR(hand_.depth(), 0.7, 1e-12);
-    reports_[2].wheel = -100;
+    reports_[2].depth = -100;
     add(1, 22, 32, true);
     EXPECT_EQ(step().path.at(0).z, 4 * kPerCell) << "the underside touches the surface";
-    reports_[2].wheel = 1000;
+    reports_[2].depth = 1000;
     add(1, 24, 32, true);
     EXPECT_EQ(step().path.at(0).z, -4 * kPerCell);
     EXPECT_NEAR(hand_.depth(), haptic_bridge::PointerHand::kDeepest, 1e-12);
@@ -159,7 +159,7 @@ TEST_F(PointerHand, IsLiftedWhenTheNextPointerRests) {
 }
 
 TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
-    reports_[1].wheel = 1000;
+    reports_[1].depth = 1000;
     add(1, 20, 32, true);
     reports_[1].samples[0].probe.z = -sand::kMaxProbe;
     hand_.take(reports_, replica_);

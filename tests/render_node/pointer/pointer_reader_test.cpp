@@ -154,7 +154,7 @@ TEST_F(Reader, TheRightButtonTurnsTheViewAndMovesNoTool) {
     const PointerReport report = read({{Kind::move, 0, {100, 100}, 1, 0},
                                        {Kind::turnPress, 0, {100, 100}, 2, 0},
                                        {Kind::move, 0, {164, 68}, 3, 0},
-                                       {Kind::turnRelease, 0, {164, 68}, 4, 0},
+                                       {Kind::viewRelease, 0, {164, 68}, 4, 0},
                                        {Kind::move, 0, {200, 100}, 5, 0}});
     EXPECT_FLOAT_EQ(report.turnX, 0.1F);
     EXPECT_FLOAT_EQ(report.turnY, -0.05F);
@@ -164,7 +164,56 @@ TEST_F(Reader, TheRightButtonTurnsTheViewAndMovesNoTool) {
 TEST_F(Reader, TheWheelCountsAndReportsThePlaceAgain) {
     const PointerReport report = read({{Kind::move, 0, {200, 480}, 1, 0}, {Kind::wheel, 0, {200, 480}, 2, 1.5}});
     EXPECT_FLOAT_EQ(report.wheel, 1.5F);
+    EXPECT_EQ(report.depth, 0);
     EXPECT_EQ(report.count, 2);
+    const PointerReport shifted = read({{Kind::wheel, 0, {200, 480}, 3, -1, true}});
+    EXPECT_EQ(shifted.wheel, 0);
+    EXPECT_FLOAT_EQ(shifted.depth, -1);
+}
+
+// The scene's coordinates are the room's.
+TEST_F(Reader, TheWheelReportsThePointOfTheRoomUnderThePointer) {
+    dig({at(20, 16, 0)});
+    (void)sand_.takeChange();
+    const PointerReport report = read({{Kind::wheel, 0, {200, 480}, 2, 1}});
+    EXPECT_NEAR(report.wheelAt[0], 20, 0.02);
+    EXPECT_NEAR(report.wheelAt[1], 16, 0.02);
+    const double height = sand_.surface().height(20 * kProbe, 16 * kProbe) / sand::kUnitsPerCell;
+    EXPECT_LT(height, -0.5) << "the tool has dug there";
+    EXPECT_NEAR(report.wheelAt[2], height, 0.2) << "a float of 1e6 m in the line of sight";
+    wall_.stage.centre.z = 7;
+    const PointerReport beside = read({{Kind::wheel, 0, {-200, 480}, 2, 1}});
+    EXPECT_NEAR(beside.wheelAt[0], -20, 0.02);
+    EXPECT_NEAR(beside.wheelAt[2], 7, 0.1) << "beside the sand";
+}
+
+TEST_F(Reader, APanReportsHowFarThePointUnderThePointerMoved) {
+    const PointerReport report = read({{Kind::move, 0, {100, 100}, 1, 0},
+                                       {Kind::panPress, 0, {100, 100}, 2, 0},
+                                       {Kind::move, 0, {130, 90}, 3, 0},
+                                       {Kind::move, 0, {164, 68}, 4, 0}});
+    EXPECT_NEAR(report.pan[0], 6.4, 1e-3);
+    EXPECT_NEAR(report.pan[1], 3.2, 1e-3);
+    EXPECT_NEAR(report.pan[2], 0, 1e-3);
+    EXPECT_EQ(report.turnX, 0);
+    EXPECT_EQ(report.count, 1) << "before";
+    const PointerReport next = read(
+        {{Kind::move, 0, {174, 68}, 5, 0}, {Kind::viewRelease, 0, {174, 68}, 6, 0}, {Kind::move, 0, {300, 68}, 7, 0}});
+    EXPECT_NEAR(next.pan[0], 1, 1e-3) << "from where the last report ended";
+    EXPECT_EQ(next.count, 1) << "after";
+    EXPECT_EQ(read({{Kind::move, 0, {400, 68}, 8, 0}}).pan[0], 0) << "the button is up";
+}
+
+// A screen halfway between the eye and the sand: a pixel is twice as wide at the sand as on the screen.
+TEST_F(Reader, APanIsMeasuredAtTheDepthOfTheSandUnderThePointer) {
+    view_.head = {32, 32, 100};
+    for (walls::Tile& tile : wall_.tiles) {
+        for (glm::dvec3* corner : {&tile.screen.lowerLeft, &tile.screen.lowerRight, &tile.screen.upperLeft}) {
+            corner->z = 50;
+        }
+    }
+    const PointerReport report = read({{Kind::panPress, 0, {320, 320}, 2, 0}, {Kind::move, 0, {330, 320}, 3, 0}});
+    EXPECT_NEAR(report.pan[0], 2, 1e-3);
 }
 
 TEST_F(Reader, AStrokeRefersToTheSandFromBeforeIt) {

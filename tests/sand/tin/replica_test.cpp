@@ -121,6 +121,20 @@ TEST_F(TinReplica, AStartAnswersForItsVerticesAndItsNominalCells) {
     EXPECT_THROW((void)start.data(), std::logic_error);
 }
 
+TEST_F(TinReplica, KnowsItsLowestAndItsHighestSand) {
+    scene::Scene start = scene();
+    auto changed = std::make_shared<sand::tin::TinStart>(*start.tin);
+    const auto [lowest, highest] = std::ranges::minmax(changed->heights);
+    changed->heights.back() = highest + 5 * sand::kUnitsPerCell;
+    changed->heights.at(changed->heights.size() / 2) = lowest - 3 * sand::kUnitsPerCell;
+    start.tin = changed;
+    start.rules.tin = changed->digest();
+    const sand::HeightSpan span = Replica(start).surface().heights();
+    // A vertex gets its height from its volume, which is a whole number.
+    EXPECT_NEAR(span.lowest, lowest - 3 * sand::kUnitsPerCell, 1);
+    EXPECT_NEAR(span.highest, highest + 5 * sand::kUnitsPerCell, 1);
+}
+
 TEST_F(TinReplica, ResetUndoAndLoadPutTheSandBack) {
     const scene::Scene start = scene();
     Replica replica(start);
