@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/keystroke.hpp"
 #include "render_node/gl/pixel_rect.hpp"
 #include "walls/wall.hpp"
 
@@ -19,8 +20,6 @@ struct WindowRequest {
     walls::Output output;
     glm::ivec2 pixels{1, 1};
 };
-
-inline constexpr char kQuitKey = 27;  // Escape
 
 /// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
 /// reports it.
@@ -80,8 +79,8 @@ public:
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn. `changed` has the pixels of each
     /// window's back buffer that have changed since the last swap.
     virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}
-    /// Returns the characters that were pressed in the windows since the last call; kQuitKey for Escape and q.
-    [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
+    [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
     /// Returns the events of the pointer since the last call, in the order of time.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
     /// Waits until the window system has an event, and at most `seconds` [s]. Processes the events.
@@ -92,7 +91,7 @@ public:
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform4";
+extern "C" GlPlatform* sandwallGlPlatform5(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform5";
 
 }  // namespace render_node

@@ -67,7 +67,7 @@ public:
             if (glfwWindowShouldClose(window.handle()) != 0 && pointer_) {
                 // A person at a desktop ends a session so.
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
-                input_->keys.push_back(kQuitKey);
+                input_->keys.push_back({base::Keystroke::kEscape, 0, 0});
             } else if (glfwWindowShouldClose(window.handle()) != 0) {
                 throw std::runtime_error("output " + window.name() + ": its window on " + watch_.name() +
                                          " was closed");
@@ -90,7 +90,7 @@ public:
         }
     }
 
-    [[nodiscard]] std::string takeKeys() override {
+    [[nodiscard]] std::vector<base::Keystroke> takeKeys() override {
         check();
         return std::exchange(input_->keys, {});
     }
@@ -159,6 +159,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform4(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform5(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

@@ -170,24 +170,30 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
 }
 
 void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
-    listener_ = std::make_unique<Listener>(Listener{input, index, {}, true});
+    listener_ = std::make_unique<Listener>(Listener{input, index});
     glfwSetWindowUserPointer(handle(), listener_.get());
-    glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
-        if (character >= ' ' && character < 127) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))
-                ->input->keys.push_back(character == 'q' ? kQuitKey : static_cast<char>(character));
-        }
-    });
-    glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
-        if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))->input->keys.push_back(kQuitKey);
-        }
-    });
+    followKeys();
     glfwSetWindowRefreshCallback(
         handle(), [](GLFWwindow* window) { static_cast<Listener*>(glfwGetWindowUserPointer(window))->exposed = true; });
     if (pointer) {
         followPointer();
     }
+}
+
+/// Each press is a key event. If it types a character, a character event follows.
+void GlfwWindow::followKeys() {
+    glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+        if (action != GLFW_RELEASE) {
+            auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+            const char* name = glfwGetKeyName(key, scancode);
+            listener.key = {key, modifiers, action == GLFW_REPEAT, name == nullptr ? "" : name};
+            listener.add(pressedKey(listener.key));
+        }
+    });
+    glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
+        auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+        listener.add(typedKey(character, listener.key));
+    });
 }
 
 bool GlfwWindow::takeExposed() { return std::exchange(listener_->exposed, false); }
