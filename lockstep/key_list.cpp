@@ -43,7 +43,7 @@ constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
                                           {KeyAction::turnLeft, kTurnLeft, "turns the tool to the left", true},
                                           {KeyAction::turnRight, kTurnRight, "turns the tool to the right", true},
-                                          {KeyAction::sceneTool, kScene, "tool and humidity of the scene"},
+                                          {KeyAction::sceneTool, kScene, "tool, depth and humidity of the scene"},
                                           {KeyAction::wetter, kWetter, "wetter sand", true},
                                           {KeyAction::drier, kDrier, "drier sand", true},
                                           {KeyAction::undo, kUndo, "undoes the last stroke"},
@@ -60,8 +60,10 @@ constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::help, kHelp, "shows or hides the help"},
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
-constexpr std::array<MouseEntry, 3> kMouse{
-    {{"left button, finger", "digs"}, {"wheel", "depth of the tool"}, {"right button", "turns and tilts the sand"}}};
+constexpr std::array<MouseEntry, 4> kMouse{{{"left button, finger", "digs"},
+                                            {"wheel, Shift+wheel", "depth of the tool"},
+                                            {"Ctrl+wheel", "size of the tool"},
+                                            {"right button", "turns and tilts the sand"}}};
 
 }  // namespace
 

@@ -87,6 +87,8 @@ void OperatorDesk::obeyKey(base::Keystroke key) {
     const KeyAction action = found->entry.action;
     if (action == KeyAction::frameView) {
         views_.turnBack();
+    } else if (action == KeyAction::sceneTool) {
+        depth_ = kUsualDepth;
     }
     try {
         KeyState state{material_, sceneMaterial_, toolLimits_, views_.layers(), paused_, {}};
@@ -112,6 +114,26 @@ std::string OperatorDesk::freeSaveName() {
 void OperatorDesk::turnView(std::span<const haptic_bridge::PointerReport> pointers) {
     for (const haptic_bridge::PointerReport& pointer : pointers) {
         views_.turn(static_cast<double>(pointer.turnX), static_cast<double>(pointer.turnY));
+    }
+}
+
+void OperatorDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointers) {
+    for (const haptic_bridge::PointerReport& pointer : pointers) {
+        if (const float notches = pointer.depth + pointer.wheel; notches != 0) {
+            depth_ = deepened(depth_, static_cast<double>(notches));
+        }
+        if (pointer.size != 0) {
+            resizeTool(-static_cast<double>(pointer.size));
+        }
+    }
+}
+
+void OperatorDesk::resizeTool(double notches) {
+    try {
+        (void)carryOut({.verb = Verb::tool, .tool = {.radius = toolLimits_.resized(material_.toolRadius, notches)}},
+                       {});
+    } catch (const base::InputError& error) {
+        refuse(error.what(), {std::nullopt});
     }
 }
 

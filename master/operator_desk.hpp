@@ -61,6 +61,10 @@ public:
     void obey(const std::vector<lockstep::Arrival>& arrivals);
     /// Turns the view as the right button has dragged it in the ranks' windows.
     void turnView(std::span<const haptic_bridge::PointerReport> pointers);
+    /// Changes depth and size of the tool as the wheels have turned.
+    void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
+    /// Returns the depth of the pointer's tool [tool radius].
+    [[nodiscard]] double depth() const { return depth_; }
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -84,6 +88,7 @@ private:
     using Client = ControlSocket::Client;
 
     void obeyKey(base::Keystroke key);
+    void resizeTool(double notches);
     /// Returns a name that no file has, and that no earlier key has got: a thread may still be writing those files.
     [[nodiscard]] std::string freeSaveName();
     void obeyLine(const std::string& line, std::optional<Client> client);
@@ -121,7 +126,8 @@ private:
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool pointer_;
-    int savesByKey_ = 0;  // number of the last file that a key has asked for
+    double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
+    int savesByKey_ = 0;          // number of the last file that a key has asked for
     bool paused_ = false;
 };
 

@@ -152,6 +152,8 @@ bool Session::showFrame(bool& more) {
     desk_.obey(barrier_.arrivals());
     if (options_.pointer) {
         desk_.turnView(barrier_.pointers());
+        desk_.turnWheels(barrier_.pointers());
+        steps_->setPointerDepth(desk_.depth());
         steps_->pointed(barrier_.pointers(), sand_.replica(), clock_.lastSwap());
     }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too

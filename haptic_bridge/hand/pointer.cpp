@@ -19,7 +19,7 @@ void requireValid(const PointerReport& report) {
     if (report.count > PointerReport::kMostSamples) {
         throw base::FormatError(fmt::format("a pointer with {} places", report.count));
     }
-    for (const float number : {report.wheel, report.turnX, report.turnY}) {
+    for (const float number : {report.wheel, report.depth, report.size, report.turnX, report.turnY}) {
         if (!std::isfinite(number)) {
             throw base::FormatError("a pointer with a number that is not finite");
         }

@@ -28,6 +28,8 @@ struct PointerReport {
 
     std::uint32_t touch = 0;             // number of touches in the rank's windows so far
     float wheel = 0;                     // notches of the wheel, positive towards the user
+    float depth = 0;                     // notches of the wheel with Shift
+    float size = 0;                      // notches of the wheel with Ctrl
     float turnX = 0, turnY = 0;          // [side of the window], drag of the view by the right button, right and down
     std::uint8_t count = 0;              // number of samples, in the order of time
     std::uint8_t pressed = 0;            // 1: the left button or a finger is down now
@@ -41,7 +43,7 @@ struct PointerReport {
     friend bool operator==(const PointerReport&, const PointerReport&) = default;
 };
 static_assert(std::is_trivially_copyable_v<PointerReport>);
-static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 24 + 24 * PointerReport::kMostSamples,
+static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 32 + 24 * PointerReport::kMostSamples,
               "no hidden gaps, because the bytes are a message");
 
 /// Throws base::FormatError if `report` has too many samples, a place beyond sand::kMaxProbe, a time that no clock

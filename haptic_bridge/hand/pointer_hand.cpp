@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/hand/pointer_hand.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace haptic_bridge {
@@ -43,9 +42,6 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
 void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
 void PointerHand::take(std::span<const PointerReport> reports, const sand::Replica& sand) {
-    for (const PointerReport& report : reports) {
-        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.wheel), 0.0, kDeepest);
-    }
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
     if (!hand) {
         return;

@@ -25,6 +25,10 @@ double ToolLimits::resized(double radius, double notches) const {
     return std::clamp(radius * std::pow(kWider, notches), std::min(least, radius), std::max(most, radius));
 }
 
+double deepened(double depth, double notches) {
+    return std::clamp(depth + kDepthPerNotch * notches, kShallowest, kDeepest);
+}
+
 double turned(double heading, double degrees) {
     const double sum = std::fmod(heading + degrees, 360);
     return sum < 0 ? sum + 360 : sum;

@@ -19,6 +19,12 @@ struct ToolLimits {
     [[nodiscard]] double resized(double radius, double notches) const;
 };
 
+// Depth of the pointer's tool: how far its underside is below the sand's surface [tool radius].
+inline constexpr double kUsualDepth = 0.5, kDepthPerNotch = 0.1;
+inline constexpr double kShallowest = 0.1, kDeepest = 2;  // at 0 the tool would dig nothing
+/// Returns the depth after `notches` of the wheel, positive towards the user, within its limits.
+[[nodiscard]] double deepened(double depth, double notches);
+
 inline constexpr double kTurnDegrees = 5;     // by which a key turns the tool
 inline constexpr double kMoreHumidity = 0.1;  // by which a key makes sand wetter or drier
 

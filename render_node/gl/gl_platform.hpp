@@ -37,6 +37,8 @@ struct PointerEvent {
     glm::dvec2 at{0};        // [pixel] from the window's top left corner; outside of it while a button is held
     std::int64_t ns = 0;     // [ns], monotonic clock
     double notches = 0;      // of the wheel, positive towards the user
+    bool shift = false;      // a Shift key is down
+    bool control = false;    // a Ctrl key is down
 };
 
 /// Request for a backend. Without windows the backend draws off screen.

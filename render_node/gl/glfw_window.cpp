@@ -202,7 +202,11 @@ bool GlfwWindow::takeExposed() { return std::exchange(listener_->exposed, false)
 /// a later place.
 void GlfwWindow::addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches) {
     const auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
-    listener->input->pointer.push_back({kind, listener->window, listener->at, host::monotonicNs(), notches});
+    const auto isDown = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
+    const bool shift = isDown(GLFW_KEY_LEFT_SHIFT) || isDown(GLFW_KEY_RIGHT_SHIFT);
+    const bool control = isDown(GLFW_KEY_LEFT_CONTROL) || isDown(GLFW_KEY_RIGHT_CONTROL);
+    listener->input->pointer.push_back(
+        {kind, listener->window, listener->at, host::monotonicNs(), notches, shift, control});
 }
 
 void GlfwWindow::followPointer() {

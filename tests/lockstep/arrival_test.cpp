@@ -111,9 +111,13 @@ TEST(Arrival, WithAnImpossiblePointerIsNone) {
         late.samples[0].readNs = time;
         EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
     }
-    haptic_bridge::PointerReport wheel;
-    wheel.wheel = std::numeric_limits<float>::infinity();
-    EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
+    for (float haptic_bridge::PointerReport::*number :
+         {&haptic_bridge::PointerReport::wheel, &haptic_bridge::PointerReport::depth,
+          &haptic_bridge::PointerReport::size}) {
+        haptic_bridge::PointerReport wheel;
+        wheel.*number = std::numeric_limits<float>::infinity();
+        EXPECT_EQ(fault(wheel), "a pointer with a number that is not finite");
+    }
 }
 
 // Frames 30, 31 and 32 are those of the drill in tests/cluster/drills_test.cpp.

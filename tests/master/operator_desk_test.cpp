@@ -357,6 +357,25 @@ TEST_F(Desk, ChangesTheToolByKeysWithinItsLimitsAndBackToTheScene) {
     EXPECT_EQ(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
 }
 
+TEST_F(Desk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
+    openForPointer();
+    std::array<haptic_bridge::PointerReport, 2> pointers{};
+    desk_->turnWheels(pointers);
+    EXPECT_TRUE(requests_.edits.empty()) << "a wheel that rests";
+    pointers[1].depth = 2;
+    desk_->turnWheels(pointers);
+    EXPECT_NEAR(desk_->depth(), 0.7, 1e-12);
+    pointers[1].depth = -100;
+    desk_->turnWheels(pointers);
+    EXPECT_EQ(desk_->depth(), master::kShallowest);
+    press(plain('0'));
+    EXPECT_EQ(desk_->depth(), master::kUsualDepth);
+    pointers[1] = {};
+    pointers[1].size = -100;
+    desk_->turnWheels(pointers);
+    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
+}
+
 // The wall of these tests is in stereo, so that it is not a desktop.
 TEST_F(Desk, TurnsTheSandOfADesktopOnly) {
     std::array<haptic_bridge::PointerReport, 2> pointers{};

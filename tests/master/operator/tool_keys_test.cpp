@@ -50,6 +50,12 @@ TEST(ToolKeys, OfATinyFieldKeepTheSmallestTool) {
     EXPECT_DOUBLE_EQ(limits.least, scene.terrain.cellSize());
 }
 
+TEST(ToolKeys, KeepTheDepthWhereTheToolDigs) {
+    EXPECT_NEAR(master::deepened(0.5, 2), 0.7, 1e-12);
+    EXPECT_EQ(master::deepened(0.5, -100), 0.1) << "at 0 the wheel has switched digging off";
+    EXPECT_EQ(master::deepened(0.5, 1000), 2);
+}
+
 TEST(ToolKeys, TurnAroundTheWholeCircle) {
     EXPECT_EQ(master::turned(358, 5), 3);
     EXPECT_EQ(master::turned(3, -5), 358);
