@@ -6,6 +6,7 @@
 #include <span>
 
 #include "base/byte_stream.hpp"
+#include "base/keystroke.hpp"
 #include "haptic_bridge/hand/pointer.hpp"
 
 namespace lockstep {
@@ -19,10 +20,8 @@ struct Arrival {
     std::int64_t drawn = 0;       // [ns], duration of the drawing; 0 at the master
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() after the steps of this frame
     std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
-    char key = 0;                 // key pressed in a window of this rank; 0 without one
+    base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
 };
-
-inline constexpr char kQuitKey = 27;  // Arrival::key of Escape, which ends the session
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so
 /// that the master can tell a message that is too long.

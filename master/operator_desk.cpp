@@ -10,7 +10,6 @@
 #include "base/input_error.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
-#include "master/operator/pointer_keys.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace master {
@@ -38,6 +37,8 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       shown_(wall),
       place_(SandPlace::of(scene)),
       grid_(scene.grid()),
+      sceneMaterial_(scene.material),
+      toolLimits_(ToolLimits::of(scene)),
       material_(material),
       out_(std::move(out)),
       session_(std::move(session)),
@@ -73,28 +74,47 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
     }
     finishJobs(false);
     for (const lockstep::Arrival& arrival : arrivals) {
-        if (arrival.key != 0) {
+        if (arrival.key.code != 0) {
             obeyKey(arrival.key);
         }
     }
 }
 
-void OperatorDesk::obeyKey(char key) {
-    if (key == 't') {
-        views_.show(lockstep::nextPattern(views_.pattern()));
-    } else if (key == lockstep::kQuitKey) {
-        input_.stop();
-    } else if (pointer_ && key == kFrameKey) {
+void OperatorDesk::obeyKey(base::Keystroke key) {
+    const std::optional<lockstep::KeyFound> found = lockstep::findKey(key);
+    if (!found || !(pointer_ || found->entry.everySession)) {
+        return;
+    }
+    using lockstep::KeyAction;
+    const KeyAction action = found->entry.action;
+    if (action == KeyAction::frameView) {
         if (views_.moves()) {
             frameView();
         } else {
             refuse(kFixedView, {std::nullopt});
         }
-    } else if (pointer_) {
-        if (const std::string command = commandOf(key, material_, views_.layers()); !command.empty()) {
-            obeyLine(command, std::nullopt);
-        }
+    } else if (action == KeyAction::sceneTool) {
+        depth_ = kUsualDepth;
     }
+    try {
+        KeyState state{material_, sceneMaterial_, toolLimits_, views_.layers(), paused_, {}};
+        if (action == KeyAction::save) {
+            state.saveName = freeSaveName();
+        }
+        for (const Command& command : commandsOf(*found, state)) {
+            (void)carryOut(command, std::nullopt);
+        }
+    } catch (const base::InputError& error) {
+        refuse(error.what(), {std::nullopt});
+    }
+}
+
+std::string OperatorDesk::freeSaveName() {
+    std::string name;
+    do {
+        name = fmt::format("save_{:03}", ++savesByKey_);
+    } while (std::filesystem::exists(saveFile(out_, name)));
+    return name;
 }
 
 std::optional<int> OperatorDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
@@ -111,6 +131,26 @@ std::optional<int> OperatorDesk::moveView(std::span<haptic_bridge::PointerReport
         }
     }
     return refused;
+}
+
+void OperatorDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointers) {
+    for (const haptic_bridge::PointerReport& pointer : pointers) {
+        if (pointer.depth != 0) {
+            depth_ = deepened(depth_, static_cast<double>(pointer.depth));
+        }
+        if (pointer.size != 0) {
+            resizeTool(-static_cast<double>(pointer.size));
+        }
+    }
+}
+
+void OperatorDesk::resizeTool(double notches) {
+    try {
+        (void)carryOut({.verb = Verb::tool, .tool = {.radius = toolLimits_.resized(material_.toolRadius, notches)}},
+                       {});
+    } catch (const base::InputError& error) {
+        refuse(error.what(), {std::nullopt});
+    }
 }
 
 void OperatorDesk::obeyLine(const std::string& text, std::optional<Client> client) {

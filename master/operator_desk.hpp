@@ -12,11 +12,13 @@
 #include "lockstep/arrival.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/frame_barrier.hpp"
+#include "lockstep/key_list.hpp"
 #include "master/captures.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "master/master_sand.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/edit_queue.hpp"
+#include "master/operator/key_commands.hpp"
 #include "master/operator/operator_command.hpp"
 #include "master/operator/operator_input.hpp"
 #include "master/view_source.hpp"
@@ -32,7 +34,7 @@ struct DeskOptions {
     tracking::Source tracker;                             // source of the head's pose
     std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
     std::uint64_t lastEdit = 0;   // last number of an edit in the resumed session; 0 in a new one
-    bool pointer = false;  // the hand is the pointer, so that keys in the windows are commands (pointer_keys.hpp)
+    bool pointer = false;         // the hand is the pointer, so that all keys of lockstep::keyList() act
 };
 
 /// Carries out and answers the commands that operators give a running session, on standard input or through its control
@@ -61,6 +63,10 @@ public:
     /// is fixed, the wheels count as PointerReport::depth instead. Returns the rank in whose window a person has tried
     /// to move a fixed view; the answer to it is kFixedView.
     std::optional<int> moveView(std::span<haptic_bridge::PointerReport> pointers);
+    /// Changes depth and size of the tool as the wheels have turned. Call it after moveView().
+    void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
+    /// Returns the depth of the pointer's tool [tool radius].
+    [[nodiscard]] double depth() const { return depth_; }
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -83,8 +89,11 @@ public:
 private:
     using Client = ControlSocket::Client;
 
-    void obeyKey(char key);
+    void obeyKey(base::Keystroke key);
     void frameView() { views_.frame(session_.sand.replica().surface().heights()); }
+    void resizeTool(double notches);
+    /// Returns a name that no file has, and that no earlier key has got: a thread may still be writing those files.
+    [[nodiscard]] std::string freeSaveName();
     void obeyLine(const std::string& line, std::optional<Client> client);
     /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
     /// or has been sent.
@@ -106,6 +115,8 @@ private:
     walls::Wall shown_;
     const SandPlace place_;
     const scene::MaterialGrid grid_;
+    const scene::Material sceneMaterial_;  // as the scene file has it
+    const ToolLimits toolLimits_;
     scene::Material material_;  // with all changes that operators have asked for
     const std::filesystem::path out_;
     const Session session_;
@@ -118,6 +129,8 @@ private:
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool pointer_;
+    double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
+    int savesByKey_ = 0;          // number of the last file that a key has asked for
     bool paused_ = false;
 };
 

@@ -157,6 +157,8 @@ bool Session::showFrame(bool& more) {
     if (options_.pointer) {
         std::vector<haptic_bridge::PointerReport> pointers = barrier_.pointers();
         desk_.moveView(pointers);
+        desk_.turnWheels(pointers);
+        steps_->setPointerDepth(desk_.depth());
         steps_->pointed(pointers, sand_.replica(), clock_.lastSwap());
     }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too

@@ -190,10 +190,10 @@ private:
     }
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
-    [[nodiscard]] char nextKey() {
-        static_assert(kQuitKey == lockstep::kQuitKey);
-        keys_ += context_->takeKeys();
-        return takeNextKey(keys_, kQuitKey);
+    [[nodiscard]] base::Keystroke nextKey() {
+        const std::vector<base::Keystroke> pressed = context_->takeKeys();
+        keys_.insert(keys_.end(), pressed.begin(), pressed.end());
+        return takeNextKey(keys_);
     }
 
     /// The master may take the limit of a frame for each picture of each rank. So a rank may wait longer until all have
@@ -245,7 +245,7 @@ private:
     std::optional<sand::Replica> replica_;
     std::optional<TilePainter> painter_;
     PointerReader pointer_;
-    std::string keys_;  // pressed keys that no arrival has carried yet
+    std::vector<base::Keystroke> keys_;  // pressed keys that no arrival has carried yet
     lockstep::Statistics drawMs_, waitMs_;
 };
 

@@ -23,7 +23,7 @@ void requireValid(const PointerReport& report) {
     if (report.count > PointerReport::kMostSamples) {
         throw base::FormatError(fmt::format("a pointer with {} places", report.count));
     }
-    for (const float number : {report.wheel, report.depth, report.turnX, report.turnY, report.wheelAt[0],
+    for (const float number : {report.wheel, report.depth, report.size, report.turnX, report.turnY, report.wheelAt[0],
                                report.wheelAt[1], report.wheelAt[2], report.pan[0], report.pan[1], report.pan[2]}) {
         if (!std::isfinite(number)) {
             throw base::FormatError("a pointer with a number that is not finite");

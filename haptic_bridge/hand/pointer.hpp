@@ -29,6 +29,7 @@ struct PointerReport {
     std::uint32_t touch = 0;             // number of touches in the rank's windows so far
     float wheel = 0;                     // notches of the wheel, positive towards the user
     float depth = 0;                     // notches of the wheel with Shift
+    float size = 0;                      // notches of the wheel with Ctrl
     float turnX = 0, turnY = 0;          // [side of the window], drag that turns the view, right and down
     std::array<float, 3> wheelAt{};      // [m], place in the room under the pointer when the wheel turned
     std::array<float, 3> pan{};          // [m], drag that moves the sand in the room
@@ -46,7 +47,7 @@ struct PointerReport {
     friend bool operator==(const PointerReport&, const PointerReport&) = default;
 };
 static_assert(std::is_trivially_copyable_v<PointerReport>);
-static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 48 + 24 * PointerReport::kMostSamples,
+static_assert(sizeof(PointerSample) == 24 && sizeof(PointerReport) == 56 + 24 * PointerReport::kMostSamples,
               "no hidden gaps, because the bytes are a message");
 
 /// Throws base::FormatError if `report` has too many samples, a place beyond sand::kMaxProbe, a time that no clock

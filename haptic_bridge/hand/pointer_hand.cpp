@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/hand/pointer_hand.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace haptic_bridge {
@@ -42,10 +41,7 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
 
 void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
-void PointerHand::take(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand) {
-    for (const haptic_bridge::PointerReport& report : reports) {
-        depth_ = std::clamp(depth_ + kDepthPerNotch * static_cast<double>(report.depth), 0.0, kDeepest);
-    }
+void PointerHand::take(std::span<const PointerReport> reports, const sand::Replica& sand) {
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
     if (!hand) {
         return;

@@ -14,14 +14,12 @@ namespace haptic_bridge {
 
 /// Makes the paths of the master's own steps from the pointers of the ranks' windows.
 ///
-/// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is `depth()` below
+/// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is by the depth below
 /// the sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves
 /// nothing. Used by one thread.
 class PointerHand : public Hand {
 public:
-    static constexpr double kHover = 1.3;          // [tool radius] from the surface to the centre of a tool that hovers
-    static constexpr double kDepthPerNotch = 0.1;  // [tool radius]
-    static constexpr double kDeepest = 2;          // [tool radius]
+    static constexpr double kHover = 1.3;  // [tool radius] from the surface to the centre of a tool that hovers
 
     /// Begins on `sand`.
     PointerHand(int stepsPerSecond, const sand::Replica& sand);
@@ -29,7 +27,8 @@ public:
     /// Takes the reports of a frame, in order of rank. `sand` gives the size of the tool.
     void take(std::span<const PointerReport> reports, const sand::Replica& sand);
 
-    [[nodiscard]] double depth() const { return depth_; }  // [tool radius]
+    /// Sets the depth of further places [tool radius].
+    void setDepth(double depth) { depth_ = depth; }
     /// Returns whether a pointer has moved or touched.
     [[nodiscard]] bool pointed() const { return hand_.has_value(); }
 

@@ -39,11 +39,11 @@ enum class Verb : std::uint8_t {
 /// An operator's command to a running session, from standard input or through its control socket (docs/operator.md).
 struct Command {
     Verb verb = Verb::status;
-    std::optional<lockstep::Pattern> pattern;  // for Verb::pattern; nullopt: the next pattern
-    lockstep::Overlay layer{};                 // for Verb::show and Verb::hide
-    double number = 0;                         // for Verb::eyeSeparation [m], Verb::material, Verb::force [share]
-    scene::ToolChange tool{};                  // for Verb::tool
-    std::string word;        // name of the number for Verb::material, of the file for Verb::save and Verb::load
+    std::optional<lockstep::Pattern> pattern{};  // for Verb::pattern; nullopt: the next pattern
+    lockstep::Overlay layer{};                   // for Verb::show and Verb::hide
+    double number = 0;                           // for Verb::eyeSeparation [m], Verb::material, Verb::force [share]
+    scene::ToolChange tool{};                    // for Verb::tool
+    std::string word{};      // name of the number for Verb::material, of the file for Verb::save and Verb::load
     walls::Stereo stereo{};  // for Verb::stereo
 };
 

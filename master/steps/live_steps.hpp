@@ -58,6 +58,7 @@ public:
                  std::int64_t receivedNs) override {
         own_.pointed(reports, sand, receivedNs);
     }
+    void setPointerDepth(double depth) override { own_.setDepth(depth); }
     void drill(const lockstep::Fault& fault) override { link_.drill(fault); }
 
     /// Returns whether the session has just started and still waits for the server.

@@ -48,6 +48,7 @@ void OwnSteps::pointed(std::span<const haptic_bridge::PointerReport> reports, co
     if (!pointer_) {
         pointer_.emplace(stepsPerSecond_, sand);
     }
+    pointer_->setDepth(depth_);
     pointer_->take(reports, sand);
     pointedNs_ = receivedNs;
 }

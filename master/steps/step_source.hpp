@@ -60,6 +60,9 @@ public:
     virtual void pointed(std::span<const haptic_bridge::PointerReport> /* reports */, const sand::Replica& /* sand */,
                          std::int64_t /* receivedNs */) {}
 
+    /// Sets how far the tool's underside is below the sand while a pointer is pressed [tool radius].
+    virtual void setPointerDepth(double /* depth */) {}
+
     /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since
     /// the swap before [ns]. `held` says why the frame took no steps.
     virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */,

@@ -72,8 +72,8 @@ public:
     [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
     /// Shows the presented pictures. Call it after all ranks have agreed.
     virtual void swap() {}
-    /// Returns the keys that were pressed in the windows since the last call, one character each.
-    [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
+    [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
     /// Returns the events of the pointer in the windows since the last call, in the order of time. Returns an empty
     /// list if the context was made without the pointer.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/keystroke.hpp"
 #include "render_node/gl/pixel_rect.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "walls/wall.hpp"
@@ -21,9 +22,6 @@ struct WindowRequest {
     walls::Output output;
     glm::ivec2 pixels{1, 1};
 };
-
-inline constexpr char kQuitKey = 27;    // Escape
-inline constexpr char kFrameKey = 'v';  // of Home, which is no character
 
 /// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
 /// reports it.
@@ -43,6 +41,7 @@ struct PointerEvent {
     std::int64_t ns = 0;     // [ns], monotonic clock
     double notches = 0;      // of the wheel, positive towards the user
     bool shift = false;      // a Shift key is down
+    bool control = false;    // a Ctrl key is down
 };
 
 /// Request for a backend. Without windows the backend draws off screen.
@@ -86,8 +85,8 @@ public:
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn. `changed` has the pixels of each
     /// window's back buffer that have changed since the last swap.
     virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}
-    /// Returns the characters that were pressed in the windows since the last call; kQuitKey for Escape and q.
-    [[nodiscard]] virtual std::string takeKeys() { return {}; }
+    /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
+    [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
     /// Returns the events of the pointer since the last call, in the order of time.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
     /// Waits until the window system has an event, and at most `seconds` [s]. Processes the events.

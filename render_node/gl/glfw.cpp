@@ -66,7 +66,7 @@ public:
         for (const GlfwWindow& window : windows_) {
             if (glfwWindowShouldClose(window.handle()) != 0 && mayClose_) {
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
-                input_->keys.push_back(kQuitKey);
+                input_->keys.push_back({base::Keystroke::kEscape, 0, 0});
             } else if (glfwWindowShouldClose(window.handle()) != 0) {
                 throw std::runtime_error("output " + window.name() + ": its window on " + watch_.name() +
                                          " was closed");
@@ -89,7 +89,7 @@ public:
         }
     }
 
-    [[nodiscard]] std::string takeKeys() override {
+    [[nodiscard]] std::vector<base::Keystroke> takeKeys() override {
         check();
         return std::exchange(input_->keys, {});
     }

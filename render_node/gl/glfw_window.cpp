@@ -170,25 +170,30 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
 }
 
 void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
-    listener_ = std::make_unique<Listener>(Listener{input, index, {}, true});
+    listener_ = std::make_unique<Listener>(Listener{input, index});
     glfwSetWindowUserPointer(handle(), listener_.get());
-    glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
-        if (character >= ' ' && character < 127) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))
-                ->input->keys.push_back(character == 'q' ? kQuitKey : static_cast<char>(character));
-        }
-    });
-    glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int /* scancode */, int action, int /* shifts */) {
-        if (action == GLFW_PRESS && (key == GLFW_KEY_ESCAPE || key == GLFW_KEY_HOME)) {
-            static_cast<Listener*>(glfwGetWindowUserPointer(window))
-                ->input->keys.push_back(key == GLFW_KEY_HOME ? kFrameKey : kQuitKey);
-        }
-    });
+    followKeys();
     glfwSetWindowRefreshCallback(
         handle(), [](GLFWwindow* window) { static_cast<Listener*>(glfwGetWindowUserPointer(window))->exposed = true; });
     if (pointer) {
         followPointer();
     }
+}
+
+/// Each press is a key event. If it types a character, a character event follows.
+void GlfwWindow::followKeys() {
+    glfwSetKeyCallback(handle(), [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+        if (action != GLFW_RELEASE) {
+            auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+            const char* name = glfwGetKeyName(key, scancode);
+            listener.key = {key, modifiers, action == GLFW_REPEAT, name == nullptr ? "" : name};
+            listener.add(pressedKey(listener.key));
+        }
+    });
+    glfwSetCharCallback(handle(), [](GLFWwindow* window, unsigned character) {
+        auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
+        listener.add(typedKey(character, listener.key));
+    });
 }
 
 bool GlfwWindow::takeExposed() { return std::exchange(listener_->exposed, false); }
@@ -199,7 +204,9 @@ void GlfwWindow::addPointer(GLFWwindow* window, PointerEvent::Kind kind, double 
     const auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
     const auto isDown = [&](int key) { return glfwGetKey(window, key) == GLFW_PRESS; };
     const bool shift = isDown(GLFW_KEY_LEFT_SHIFT) || isDown(GLFW_KEY_RIGHT_SHIFT);
-    listener->input->pointer.push_back({kind, listener->window, listener->at, host::monotonicNs(), notches, shift});
+    const bool control = isDown(GLFW_KEY_LEFT_CONTROL) || isDown(GLFW_KEY_RIGHT_CONTROL);
+    listener->input->pointer.push_back(
+        {kind, listener->window, listener->at, host::monotonicNs(), notches, shift, control});
 }
 
 void GlfwWindow::followPointer() {

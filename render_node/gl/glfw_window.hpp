@@ -3,10 +3,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "render_node/gl/gl_platform.hpp"
+#include "render_node/gl/key_event.hpp"
 
 struct GLFWwindow;
 struct GLFWmonitor;
@@ -27,7 +29,7 @@ public:
 
 /// Input of all windows since it was taken last.
 struct WindowInput {
-    std::string keys;  // pressed characters; kQuitKey for Escape and q
+    std::vector<base::Keystroke> keys;
     std::vector<PointerEvent> pointer;
 };
 
@@ -70,7 +72,15 @@ private:
         std::size_t window = 0;
         glm::dvec2 at{0};     // [pixel], of the pointer's last motion
         bool exposed = true;  // the window has lost pixels, or has shown none yet
+        KeyEvent key{};       // the last one, which may type a character
+
+        void add(const std::optional<base::Keystroke>& press) {
+            if (press) {
+                input->keys.push_back(*press);
+            }
+        }
     };
+    void followKeys();
     static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
     void followPointer();
 

@@ -83,7 +83,7 @@ public:
         changed_.assign(windows_.size(), {});
         platform_->check();
     }
-    [[nodiscard]] std::string takeKeys() override { return platform_->takeKeys(); }
+    [[nodiscard]] std::vector<base::Keystroke> takeKeys() override { return platform_->takeKeys(); }
     [[nodiscard]] std::vector<PointerEvent> takePointer() override { return platform_->takePointer(); }
     void awaitEvents(double seconds) override { platform_->awaitEvents(seconds); }
     [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }

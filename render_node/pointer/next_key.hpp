@@ -3,23 +3,26 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <string>
+#include <vector>
+
+#include "lockstep/key_list.hpp"
 
 namespace render_node {
 
 inline constexpr std::size_t kMostKeys = 8;
 
-/// Removes the key that the next arrival carries from `waiting`, and returns it, or 0 if none waits. It is the oldest
-/// key, but `quit` comes before all others: a key that was held down must not delay the end of a slow session. At
-/// most kMostKeys other keys stay, because a held key must not act long after its release.
-[[nodiscard]] inline char takeNextKey(std::string& waiting, char quit) {
+/// Removes the key that the next arrival carries from `waiting`, and returns it, or a key without code if none waits.
+/// It is the oldest key, but one that ends the session comes before all others: a key that was held down must not delay
+/// the end of a slow session. At most kMostKeys other keys stay, because a held key must not act long after its
+/// release.
+[[nodiscard]] inline base::Keystroke takeNextKey(std::vector<base::Keystroke>& waiting) {
     if (waiting.empty()) {
-        return '\0';
+        return {};
     }
-    const std::size_t found = waiting.find(quit);
-    const std::size_t next = found == std::string::npos ? 0 : found;
-    const char key = waiting[next];
-    waiting.erase(next, 1);
+    const auto quits = std::ranges::find_if(waiting, lockstep::isQuitKey);
+    const auto next = quits == waiting.end() ? waiting.begin() : quits;
+    const base::Keystroke key = *next;
+    waiting.erase(next);
     waiting.resize(std::min(waiting.size(), kMostKeys));
     return key;
 }

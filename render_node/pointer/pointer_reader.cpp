@@ -69,7 +69,9 @@ void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
     last_ = {event.window, event.at};
     switch (event.kind) {
         case Kind::wheel:
-            (event.shift ? report.depth : report.wheel) += static_cast<float>(event.notches);
+            (event.control ? report.size
+             : event.shift ? report.depth
+                           : report.wheel) += static_cast<float>(event.notches);
             wheeled_ = last_;
             break;  // the tool goes to its new depth at once
         case Kind::turnPress:

@@ -77,7 +77,7 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
             << "the other tile still shows sand";
         session->type("pattern none");
         EXPECT_TRUE(screen.comesToShow(left, 10, 20)) << "the sand does not come back";
-        screen.type(windows[0], 27);
+        screen.type(windows[0], support::XScreen::kEscape);
     }
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_EQ(left.rgb, tile("r1c1_middle").rgb);

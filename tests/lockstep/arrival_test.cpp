@@ -17,12 +17,13 @@ namespace {
 using lockstep::Arrival;
 
 constexpr std::uint64_t kFrame = 30;
+constexpr base::Keystroke kKey{'q', base::Keystroke::kControl, 1};
 constexpr int kLength = static_cast<int>(sizeof(Arrival));
 using Room = std::array<std::uint8_t, lockstep::kArrivalRoom>;
 
 /// Returns the bytes of an arrival at frame `frame`, as MPI writes them into the buffer.
 Room letterOf(std::uint64_t frame) {
-    const Arrival arrival{frame, 1, 2, 3, 4, 5, 'q'};
+    const Arrival arrival{frame, 1, 2, 3, 4, 5, kKey};
     Room room{};
     std::memcpy(room.data(), &arrival, sizeof arrival);
     return room;
@@ -46,7 +47,7 @@ TEST(Arrival, ComesBackAsItWent) {
     EXPECT_EQ(read.drawn, 3);
     EXPECT_EQ(read.stateHash, 4U);
     EXPECT_EQ(read.viewHash, 5U);
-    EXPECT_EQ(read.key, 'q');
+    EXPECT_EQ(read.key, kKey);
 }
 
 // An arrival of the frame before comes from a slow rank, or from a rank that has sent it twice.
@@ -79,7 +80,7 @@ TEST(Arrival, CarriesAPointerIfTheSessionsHandIsOne) {
     pointer.count = 1;
     pointer.samples[0] = {7, {1, -2, 3}, 1, 1, {}};
     haptic_bridge::PointerReport read;
-    EXPECT_EQ(lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read).key, 'q');
+    EXPECT_EQ(lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame, &read).key, kKey);
     EXPECT_EQ(read, pointer);
     EXPECT_THROW((void)lockstep::readArrival(letterWith(pointer), kLength, kFrame, &read), base::FormatError);
     EXPECT_THROW((void)lockstep::readArrival(letterWith(pointer), kWithPointer, kFrame), base::FormatError)
@@ -111,7 +112,8 @@ TEST(Arrival, WithAnImpossiblePointerIsNone) {
         EXPECT_EQ(fault(late), "a pointer at the time " + std::to_string(time) + " ns");
     }
     for (float haptic_bridge::PointerReport::*const number :
-         {&haptic_bridge::PointerReport::wheel, &haptic_bridge::PointerReport::depth, &haptic_bridge::PointerReport::turnX,
+         {&haptic_bridge::PointerReport::wheel, &haptic_bridge::PointerReport::depth,
+          &haptic_bridge::PointerReport::size, &haptic_bridge::PointerReport::turnX,
           &haptic_bridge::PointerReport::turnY}) {
         haptic_bridge::PointerReport endless;
         endless.*number = std::numeric_limits<float>::infinity();

@@ -6,6 +6,8 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <future>
 #include <nlohmann/json.hpp>
@@ -18,8 +20,13 @@
 
 namespace {
 
+using base::Keystroke;
 using haptic_bridge::TimedStep;
 using nlohmann::json;
+
+constexpr Keystroke plain(char key) { return {static_cast<std::uint16_t>(key), 0, 0}; }
+constexpr Keystroke control(char key) { return {static_cast<std::uint16_t>(key), Keystroke::kControl, 0}; }
+constexpr Keystroke kShiftR{'r', Keystroke::kShift, 0};
 
 /// Records the requests of the desk.
 class Requests : public master::StepRequests {
@@ -48,6 +55,27 @@ protected:
                                                     [] {
                                                         return json{{"frame", 42}};
                                                     }});
+    }
+    void openForPointer() {
+        master::DeskOptions options;
+        options.pointer = true;
+        open(&requests_, options);
+    }
+    /// Presses a key in the window of rank 1.
+    void press(Keystroke key) {
+        std::vector<lockstep::Arrival> arrivals(2);
+        arrivals[1].key = key;
+        desk_->obey(arrivals);
+    }
+    /// Applies two steps with a stroke, so that there is one to undo.
+    void stroke() {
+        std::vector<TimedStep> steps(2);
+        for (TimedStep& timed : steps) {
+            timed.step.number = sand_.replica().stepNumber() + 1 + static_cast<std::uint64_t>(&timed - steps.data());
+            timed.step.engaged = &timed != steps.data();
+            timed.step.path = {sand::probePoint(16, 12, 0)};
+        }
+        sand_.apply(1, steps, 0, source_);
     }
     /// Sends a line from another thread. The future has the answer.
     std::future<json> send(const std::string& line) {
@@ -210,7 +238,7 @@ TEST_F(Desk, SavesTheSandAndLoadsItAgain) {
 TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_EQ(ask("pattern grid")["ok"], true);
     EXPECT_EQ(desk_->views().pattern(), lockstep::Pattern::grid);
-    desk_->obey({{.key = 't'}});
+    desk_->obey({{.key = plain('t')}});
     EXPECT_EQ(desk_->views().pattern(), lockstep::nextPattern(lockstep::Pattern::grid)) << "a key in a window";
     EXPECT_EQ(ask("show hill-shade")["ok"], true);
     EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
@@ -261,27 +289,107 @@ TEST_F(Desk, EndsTheSessionByCommandOrByEscape) {
     EXPECT_TRUE(desk_->stopAsked());
     open(nullptr);
     EXPECT_FALSE(desk_->stopAsked());
-    desk_->obey({{.key = 27}});
+    desk_->obey({{.key = {Keystroke::kEscape, 0, 0}}});
     EXPECT_TRUE(desk_->stopAsked());
 }
 
-TEST_F(Desk, TakesKeysAsCommandsIfTheHandIsThePointer) {
-    desk_->obey({{.key = 'R'}, {.key = 'h'}});
+TEST_F(Desk, TakesKeysIfTheHandIsThePointer) {
+    desk_->obey({{.key = kShiftR}, {.key = plain('h')}});
     EXPECT_TRUE(requests_.edits.empty()) << "another hand";
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
-    master::DeskOptions options;
-    options.pointer = true;
-    open(&requests_, options);
-    desk_->obey({{.key = 'R'}, {.key = 'h'}});
+    openForPointer();
+    press(kShiftR);
+    press(plain('h'));
     ASSERT_EQ(requests_.edits.size(), 1U);
     EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
     EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::help));
-    desk_->obey({{.key = '3'}, {.key = 'h'}});
+    press(plain('3'));
+    press({Keystroke::kF1, 0, 0});
     ASSERT_EQ(requests_.edits.size(), 2U);
     EXPECT_EQ(requests_.edits[1].tuning.tool.kind, sand::ToolKind::rectangle);
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
-    desk_->obey({{.key = 'u'}});
+    press(control('z'));
     EXPECT_EQ(requests_.edits.size(), 2U) << "there is no stroke to undo";
+    press(plain('x'));
+    EXPECT_EQ(requests_.edits.size(), 2U) << "a key without an action";
+}
+
+TEST_F(Desk, UndoesTheLastStrokeByControlZAndByU) {
+    openForPointer();
+    stroke();
+    press(control('z'));
+    ASSERT_EQ(requests_.edits.size(), 1U);
+    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::undo);
+    press(plain('u'));
+    EXPECT_EQ(requests_.edits.size(), 2U) << "asked for before the first one is shown";
+}
+
+TEST_F(Desk, PausesAndResumesBySpace) {
+    openForPointer();
+    press(plain(' '));
+    EXPECT_TRUE(desk_->paused());
+    press(plain(' '));
+    EXPECT_FALSE(desk_->paused());
+}
+
+TEST_F(Desk, SavesByControlSUnderTheNextFreeName) {
+    openForPointer();
+    std::filesystem::create_directory(folder_ / "saves");
+    std::ofstream(folder_ / "saves/save_002.sand") << "of an earlier session";
+    press(control('s'));
+    press(control('s'));
+    desk_->close();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "saves/save_001.sand"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "saves/save_003.sand"));
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "saves/save_002.sand"), 21U) << "that of an earlier session";
+}
+
+TEST_F(Desk, WantsACaptureByF12) {
+    openForPointer();
+    press({Keystroke::kF12, 0, 0});
+    EXPECT_TRUE(desk_->needsCapture());
+}
+
+TEST_F(Desk, ChangesTheToolByKeysWithinItsLimitsAndBackToTheScene) {
+    openForPointer();
+    for (int i = 0; i < 60; ++i) {  // the scene's tool is smaller than both limits
+        press(plain(i < 40 ? '+' : '-'));
+        show(requests_.edits.back());
+        const std::int32_t most = 3 * sand::kProbePerCell;  // a quarter of 24 cells long
+        EXPECT_LE(requests_.edits.back().tuning.tool.radius, most);
+        EXPECT_TRUE(i != 39 || requests_.edits.back().tuning.tool.radius == most);
+    }
+    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, sand::kProbePerCell) << "two cells long";
+    press(plain('4'));
+    show(requests_.edits.back());
+    press(plain(','));
+    show(requests_.edits.back());
+    const sand::Heading left = requests_.edits.back().tuning.tool.heading;
+    EXPECT_EQ(left, sand::headingOf(5).value());
+    press(plain('w'));
+    show(requests_.edits.back());
+    EXPECT_NE(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+    press(plain('0'));
+    EXPECT_EQ(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+}
+
+TEST_F(Desk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
+    openForPointer();
+    std::array<haptic_bridge::PointerReport, 2> pointers{};
+    desk_->turnWheels(pointers);
+    EXPECT_TRUE(requests_.edits.empty()) << "a wheel that rests";
+    pointers[1].depth = 2;
+    desk_->turnWheels(pointers);
+    EXPECT_NEAR(desk_->depth(), 0.7, 1e-12);
+    pointers[1].depth = -100;
+    desk_->turnWheels(pointers);
+    EXPECT_EQ(desk_->depth(), master::kShallowest);
+    press(plain('0'));
+    EXPECT_EQ(desk_->depth(), master::kUsualDepth);
+    pointers[1] = {};
+    pointers[1].size = -100;
+    desk_->turnWheels(pointers);
+    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
 }
 
 // The wall of these tests is in stereo, so that it is not a desktop.

@@ -4,7 +4,6 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
-#include <X11/keysym.h>
 
 #include <chrono>
 #include <cmath>
@@ -143,18 +142,18 @@ void XScreen::askToClose(unsigned long window) const {
     XSync(display_.get(), False);
 }
 
-void XScreen::type(unsigned long window, char key) const {
-    constexpr char kEscape = 27;
-    const KeySym symbol = key == kEscape ? XK_Escape : static_cast<KeySym>(key);  // Latin letters are their own symbols
+void XScreen::type(unsigned long window, unsigned long symbol, unsigned int state) const {
+    static Time time = 0;
     XEvent event{};
     event.xkey.display = display_.get();
     event.xkey.window = window;
     event.xkey.root = root_;
     event.xkey.same_screen = True;
+    event.xkey.state = state;
     event.xkey.keycode = XKeysymToKeycode(display_.get(), symbol);
     for (const int kind : {KeyPress, KeyRelease}) {
         event.xkey.type = kind;
-        event.xkey.time += 10;  // GLFW treats presses with the same time as repeats
+        event.xkey.time = time += 10;  // GLFW drops a press at the time of an earlier one
         XSendEvent(display_.get(), window, False, kind == KeyPress ? KeyPressMask : KeyReleaseMask, &event);
     }
     XSync(display_.get(), False);

@@ -34,8 +34,12 @@ public:
     void hideForAMoment(unsigned long window) const;
     /// Sends the message that a window manager sends when the user presses the close button.
     void askToClose(unsigned long window) const;
-    /// Sends a key press and its release: 't', or 27 for Escape.
-    void type(unsigned long window, char key) const;
+    // Symbols of keys, as X has them. A small letter is its own symbol.
+    static constexpr unsigned long kEscape = 0xff1b, kHome = 0xff50, kPageUp = 0xff55, kF1 = 0xffbe, kF12 = 0xffc9;
+    static constexpr unsigned kShift = 1, kControl = 4;  // states of modifiers
+    /// Sends a key press and its release. `symbol` is the key's symbol without modifiers, such as 't' or kF1, and
+    /// `state` the sum of the modifiers that are held.
+    void type(unsigned long window, unsigned long symbol, unsigned int state = 0) const;
     /// Moves the pointer to a place in the window.
     void point(unsigned long window, int x, int y) const;
     /// Presses or releases a button. 1 is the left button. 4 and 5 are the wheel's notches away from the user and

@@ -16,6 +16,7 @@ namespace {
 
 using render_node::PointerEvent;
 using Kind = PointerEvent::Kind;
+using Keys = std::vector<base::Keystroke>;
 
 /// A tile of 200 x 100 pixels in a window on a screen.
 class Pointer : public test::FolderTest {
@@ -90,23 +91,55 @@ TEST_F(Pointer, OfAnotherSessionIsNotRead) {
     screen_->button(window_, 1, true);
     screen_->type(window_, 'x');
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    std::string keys;
+    Keys keys;
     while (keys.empty() && std::chrono::steady_clock::now() < until) {
         keys = context_->takeKeys();
     }
-    EXPECT_EQ(keys, "x") << "events before this one have come";
+    EXPECT_EQ(keys, (Keys{{'x', 0, 0}})) << "events before this one have come";
     EXPECT_TRUE(context_->takePointer().empty());
+}
+
+TEST_F(Pointer, KeysAreCodesAndModifiers) {
+    open(true);
+    using support::XScreen;
+    screen_->type(window_, 'z', XScreen::kControl);
+    screen_->type(window_, 'r', XScreen::kShift);
+    screen_->type(window_, 'r');
+    screen_->type(window_, '1', XScreen::kShift);  // types an exclamation mark, to which Shift belongs
+    screen_->type(window_, ' ');
+    screen_->type(window_, XScreen::kF1);
+    screen_->type(window_, XScreen::kF12);
+    screen_->type(window_, XScreen::kPageUp);
+    screen_->type(window_, XScreen::kHome, XScreen::kControl);
+    screen_->type(window_, XScreen::kEscape);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    Keys keys;
+    while (keys.size() < 10 && std::chrono::steady_clock::now() < until) {
+        const Keys more = context_->takeKeys();
+        keys.insert(keys.end(), more.begin(), more.end());
+    }
+    using base::Keystroke;
+    EXPECT_EQ(keys, (Keys{{'z', Keystroke::kControl, 0},
+                          {'r', Keystroke::kShift, 0},
+                          {'r', 0, 0},
+                          {'!', 0, 0},
+                          {' ', 0, 0},
+                          {Keystroke::kF1, 0, 0},
+                          {Keystroke::kF12, 0, 0},
+                          {Keystroke::kPageUp, 0, 0},
+                          {Keystroke::kHome, Keystroke::kControl, 0},
+                          {Keystroke::kEscape, 0, 0}}));
 }
 
 TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
     open(true);
     screen_->askToClose(window_);
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-    std::string keys;
+    Keys keys;
     while (keys.empty() && std::chrono::steady_clock::now() < until) {
         keys = context_->takeKeys();
     }
-    EXPECT_EQ(keys, "\x1b");
+    EXPECT_EQ(keys, (Keys{{base::Keystroke::kEscape, 0, 0}}));
 }
 
 TEST_F(Pointer, NeedsAWindow) {

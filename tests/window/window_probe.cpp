@@ -106,8 +106,8 @@ void obey(const Options& options, render_node::GlContext& context, std::vector<r
             context.swap();
             std::cout << "part shown" << std::endl;
         } else if (word == "keys") {
-            for (const char key : context.takeKeys()) {
-                std::cout << "key " << int{key} << "\n";
+            for (const base::Keystroke key : context.takeKeys()) {
+                std::cout << "key " << key.code << "\n";
             }
             std::cout << "keys taken" << std::endl;
         } else if (word == "memory") {

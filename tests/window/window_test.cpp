@@ -181,9 +181,9 @@ TEST_F(Window, HandsOverTheKeysThatArePressed) {
     screen.type(windows[0], 't');
     screen.type(windows[1], 't');
     screen.type(windows[0], 'q');
-    screen.type(windows[1], 27);
+    screen.type(windows[1], XScreen::kEscape);
     const std::string output = ask("keys", "keys taken");
-    EXPECT_EQ(linesOf(output, "key"), (std::vector<std::string>{"116", "116", "27", "27"})) << output;
+    EXPECT_EQ(linesOf(output, "key"), (std::vector<std::string>{"116", "116", "113", "27"})) << output;
 }
 
 TEST_F(Window, NamesTheMonitorsThereAreForOneThatIsNot) {

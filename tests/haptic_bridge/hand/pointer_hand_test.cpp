@@ -39,7 +39,6 @@ protected:
         hand_.take(reports_, replica_);
         for (PointerReport& report : reports_) {
             report.count = 0;
-            report.depth = 0;
         }
         sand::Step step;
         step.number = replica_.stepNumber() + 1;
@@ -91,18 +90,13 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
     }
 }
 
-TEST_F(PointerHand, TheWheelSetsTheDepthWithinItsLimits) {
-    reports_[1].depth = 2;
+TEST_F(PointerHand, DigsAsDeepAsItIsSet) {
+    hand_.setDepth(0.7);
     add(1, 20, 32, true);
     EXPECT_EQ(step().path.at(0).z, std::lround(0.3 * 4 * kPerCell));
-    EXPECT_NEAR(hand_.depth(), 0.7, 1e-12);
-    reports_[2].depth = -100;
-    add(1, 22, 32, true);
-    EXPECT_EQ(step().path.at(0).z, 4 * kPerCell) << "the underside touches the surface";
-    reports_[2].depth = 1000;
+    hand_.setDepth(2);
     add(1, 24, 32, true);
     EXPECT_EQ(step().path.at(0).z, -4 * kPerCell);
-    EXPECT_NEAR(hand_.depth(), haptic_bridge::PointerHand::kDeepest, 1e-12);
 }
 
 TEST_F(PointerHand, BesideTheSandMovesNothing) {
@@ -159,7 +153,7 @@ TEST_F(PointerHand, IsLiftedWhenTheNextPointerRests) {
 }
 
 TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
-    reports_[1].depth = 1000;
+    hand_.setDepth(2);
     add(1, 20, 32, true);
     reports_[1].samples[0].probe.z = -sand::kMaxProbe;
     hand_.take(reports_, replica_);

@@ -5,23 +5,30 @@
 
 namespace {
 
+using base::Keystroke;
+using render_node::takeNextKey;
+using Keys = std::vector<Keystroke>;
+
+constexpr Keystroke kPlus{'+', 0, 0}, kMinus{'-', 0, 0}, kQuit{'q', Keystroke::kControl, 0};
+
 TEST(NextKey, IsTheOldestOne) {
-    std::string waiting = "ab";
-    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), 'a');
-    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), 'b');
-    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), '\0');
+    Keys waiting{kPlus, kMinus};
+    EXPECT_EQ(takeNextKey(waiting), kPlus);
+    EXPECT_EQ(takeNextKey(waiting), kMinus);
+    EXPECT_EQ(takeNextKey(waiting), Keystroke{});
 }
 
 TEST(NextKey, ThatEndsTheSessionDoesNotWaitForOthers) {
-    std::string waiting = "++q+";
-    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), 'q');
-    EXPECT_EQ(waiting, "+++");
+    Keys waiting{kPlus, kPlus, kQuit, kPlus};
+    EXPECT_EQ(takeNextKey(waiting), kQuit);
+    EXPECT_EQ(waiting, Keys(3, kPlus));
 }
 
 TEST(NextKey, OfAHeldKeyIsDroppedBeyondAFew) {
-    std::string waiting = std::string(100, '+') + "q";
-    EXPECT_EQ(render_node::takeNextKey(waiting, 'q'), 'q') << "also behind the others";
-    EXPECT_EQ(waiting, std::string(render_node::kMostKeys, '+'));
+    Keys waiting(100, kPlus);
+    waiting.push_back(kQuit);
+    EXPECT_EQ(takeNextKey(waiting), kQuit) << "also behind the others";
+    EXPECT_EQ(waiting, Keys(render_node::kMostKeys, kPlus));
 }
 
 }  // namespace

@@ -216,6 +216,15 @@ TEST_F(Reader, APanIsMeasuredAtTheDepthOfTheSandUnderThePointer) {
     EXPECT_NEAR(report.pan[0], 2, 1e-3);
 }
 
+TEST_F(Reader, TheWheelWithShiftOrControlIsAnotherOne) {
+    const PointerReport report = read({{Kind::wheel, 0, {200, 480}, 1, 1, true, false},
+                                       {Kind::wheel, 0, {200, 480}, 2, -2, false, true},
+                                       {Kind::wheel, 0, {200, 480}, 3, 4, true, false}});
+    EXPECT_EQ(report.wheel, 0);
+    EXPECT_EQ(report.depth, 5);
+    EXPECT_EQ(report.size, -2);
+}
+
 TEST_F(Reader, AStrokeRefersToTheSandFromBeforeIt) {
     EXPECT_EQ(read({{Kind::press, 0, {320, 320}, 1, 0}}).samples[0].probe.z, 0);
     dig({at(30, 32, 1), at(32, 32, 1), at(34, 32, 1)});

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lockstep/key_list.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "sand/model/tool.hpp"
+
+namespace lockstep {
+namespace {
+
+using base::Keystroke;
+
+constexpr Keystroke control(char letter) { return {static_cast<std::uint16_t>(letter), Keystroke::kControl, 0}; }
+constexpr Keystroke shift(char letter) { return {static_cast<std::uint16_t>(letter), Keystroke::kShift, 0}; }
+constexpr Keystroke plain(char character) { return {static_cast<std::uint16_t>(character), 0, 0}; }
+constexpr Keystroke named(std::uint16_t code) { return {code, 0, 0}; }
+
+// No key needs AltGr, neither on a German nor on a French keyboard.
+constexpr std::array kTools{plain('1'), plain('2'), plain('3'), plain('4'), plain('5'), plain('6')};
+static_assert(kTools.size() == sand::kToolKinds);
+constexpr std::array kLarger{plain('+'), plain('='),
+                             named(Keystroke::kPageUp)};  // = is + without Shift on many keyboards
+constexpr std::array kSmaller{plain('-'), named(Keystroke::kPageDown)};
+constexpr std::array kTurnLeft{plain(',')}, kTurnRight{plain('.')};
+constexpr std::array kScene{plain('0')};
+constexpr std::array kWetter{plain('w')}, kDrier{plain('d')};
+constexpr std::array kUndo{control('z'), plain('u')};
+constexpr std::array kReset{shift('r')};
+constexpr std::array kFrame{named(Keystroke::kHome), plain('v')};
+constexpr std::array kPause{plain(' ')};
+constexpr std::array kSave{control('s')};
+constexpr std::array kCapture{named(Keystroke::kF12)};
+constexpr std::array kWireframe{plain('g')}, kHillShade{plain('m')}, kForce{plain('f')}, kStatistics{plain('s')};
+constexpr std::array kPattern{plain('t')};
+constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
+constexpr std::array kQuit{named(Keystroke::kEscape), plain('q'), control('q')};
+
+constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+                                          {KeyAction::larger, kLarger, "larger tool", true},
+                                          {KeyAction::smaller, kSmaller, "smaller tool", true},
+                                          {KeyAction::turnLeft, kTurnLeft, "turns the tool to the left", true},
+                                          {KeyAction::turnRight, kTurnRight, "turns the tool to the right", true},
+                                          {KeyAction::sceneTool, kScene, "tool, depth and humidity of the scene"},
+                                          {KeyAction::wetter, kWetter, "wetter sand", true},
+                                          {KeyAction::drier, kDrier, "drier sand", true},
+                                          {KeyAction::undo, kUndo, "undoes the last stroke"},
+                                          {KeyAction::reset, kReset, "resets the sand, without undo"},
+                                          {KeyAction::frameView, kFrame, "brings the whole terrain into view"},
+                                          {KeyAction::pause, kPause, "pauses or resumes"},
+                                          {KeyAction::save, kSave, "saves the sand"},
+                                          {KeyAction::capture, kCapture, "saves a picture"},
+                                          {KeyAction::wireframe, kWireframe, "wireframe"},
+                                          {KeyAction::hillShade, kHillShade, "light and dark, as on maps"},
+                                          {KeyAction::force, kForce, "force as an arrow"},
+                                          {KeyAction::statistics, kStatistics, "statistics"},
+                                          {KeyAction::pattern, kPattern, "next test pattern", false, true},
+                                          {KeyAction::help, kHelp, "shows or hides the help"},
+                                          {KeyAction::quit, kQuit, "ends the session", false, true}}};
+
+constexpr std::array<MouseEntry, 6> kMouse{{{"left button, finger", "digs"},
+                                            {"wheel", "zooms, or depth of the tool if the view is fixed"},
+                                            {"Shift+wheel", "depth of the tool"},
+                                            {"Ctrl+wheel", "size of the tool"},
+                                            {"right button", "turns and tilts the sand"},
+                                            {"middle button, Shift+right button", "moves the sand"}}};
+
+}  // namespace
+
+std::span<const KeyEntry> keyList() { return kKeys; }
+
+std::span<const MouseEntry> mouseList() { return kMouse; }
+
+std::optional<KeyFound> findKey(base::Keystroke key) {
+    for (const KeyEntry& entry : kKeys) {
+        const auto found = std::ranges::find(entry.keys, key.once());
+        if (found != entry.keys.end()) {
+            if (key.repeated != 0 && !entry.repeats) {
+                return std::nullopt;
+            }
+            return KeyFound{entry, static_cast<std::size_t>(found - entry.keys.begin())};
+        }
+    }
+    return std::nullopt;
+}
+
+bool isQuitKey(base::Keystroke key) { return std::ranges::find(kQuit, key.once()) != kQuit.end(); }
+
+std::string keyName(base::Keystroke key) {
+    std::string name;
+    for (const auto& [bit, word] : {std::pair{Keystroke::kControl, "Ctrl+"}, std::pair{Keystroke::kAlt, "Alt+"},
+                                    std::pair{Keystroke::kShift, "Shift+"}}) {
+        name += (key.modifiers & bit) != 0 ? word : "";
+    }
+    switch (key.code) {
+        case ' ':
+            return name + "Space";
+        case Keystroke::kEscape:
+            return name + "Esc";
+        case Keystroke::kHome:
+            return name + "Home";
+        case Keystroke::kPageUp:
+            return name + "PgUp";
+        case Keystroke::kPageDown:
+            return name + "PgDn";
+        default:
+            break;
+    }
+    if (key.code >= Keystroke::kF1 && key.code <= Keystroke::kF12) {
+        return fmt::format("{}F{}", name, key.code - Keystroke::kF1 + 1);
+    }
+    const auto character = static_cast<char>(key.code);
+    const bool letter = character >= 'a' && character <= 'z';
+    name += letter ? static_cast<char>(character - 'a' + 'A') : character;
+    return name;
+}
+
+std::string keyNames(const KeyEntry& entry) {
+    if (entry.action == KeyAction::tool) {
+        return fmt::format("{} – {}", keyName(entry.keys.front()), keyName(entry.keys.back()));
+    }
+    std::string names;
+    for (const base::Keystroke key : entry.keys) {
+        names += fmt::format("{}{}", names.empty() ? "" : " ", keyName(key));
+    }
+    return names;
+}
+
+}  // namespace lockstep

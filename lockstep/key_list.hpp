@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "base/keystroke.hpp"
+
+namespace lockstep {
+
+/// Effect of a key in a wall's windows.
+enum class KeyAction : std::uint8_t {
+    tool,  // one of the tools, in the order of their kinds
+    larger,
+    smaller,
+    turnLeft,  // turns the tool
+    turnRight,
+    sceneTool,  // tool, depth and humidity as the scene has them
+    wetter,
+    drier,
+    undo,
+    reset,
+    frameView,
+    pause,
+    save,
+    capture,
+    wireframe,
+    hillShade,
+    force,
+    statistics,
+    pattern,
+    help,
+    quit
+};
+
+/// Entry of the list of keys: an action, and the keys that have it.
+struct KeyEntry {
+    KeyAction action;
+    std::span<const base::Keystroke> keys;
+    std::string_view effect;    // for people
+    bool repeats = false;       // whether a held key acts again
+    bool everySession = false;  // whether the keys also act if the hand is no pointer
+};
+
+/// Returns all keys that the windows of a wall obey. The master obeys no other key. The help and docs/pointer.md show
+/// this list.
+[[nodiscard]] std::span<const KeyEntry> keyList();
+
+/// Action of a key, and the place of the key among those with this action.
+struct KeyFound {
+    const KeyEntry& entry;
+    std::size_t index = 0;
+};
+/// Returns the entry of a key, or nullopt if the key does nothing. A key that repeats does nothing unless
+/// KeyEntry::repeats.
+[[nodiscard]] std::optional<KeyFound> findKey(base::Keystroke key);
+[[nodiscard]] bool isQuitKey(base::Keystroke key);
+
+/// Returns the name of a key as it is on keyboards, such as "Ctrl+Z" or "F1".
+[[nodiscard]] std::string keyName(base::Keystroke key);
+/// Returns the names of an entry's keys, such as "Ctrl+Z, U". The digits of the tools are one name: "1 – 6".
+[[nodiscard]] std::string keyNames(const KeyEntry& entry);
+
+/// A use of the mouse, for the help and docs/pointer.md.
+struct MouseEntry {
+    std::string_view input, effect;
+};
+[[nodiscard]] std::span<const MouseEntry> mouseList();
+
+}  // namespace lockstep

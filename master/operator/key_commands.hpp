@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lockstep/key_list.hpp"
+#include "lockstep/overlays.hpp"
+#include "master/operator/operator_command.hpp"
+#include "master/operator/tool_keys.hpp"
+
+namespace master {
+
+inline constexpr const char* kFixedView = "this wall's view is fixed";  // answer to an attempt to move it
+
+/// State of a session from which keys start.
+struct KeyState {
+    scene::Material material{};  // with all changes that operators have asked for
+    scene::Material ofScene{};   // as the scene file has it
+    ToolLimits limits{};
+    lockstep::Overlays layers{};
+    bool paused = false;
+    std::string saveName{};  // name of a file that does not exist
+};
+
+/// Returns the operator's commands that a key stands for, in the order in which they are to be carried out. The keys
+/// that move the view have none.
+[[nodiscard]] std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& state);
+
+}  // namespace master

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator/key_commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using base::Keystroke;
+using lockstep::KeyAction;
+using lockstep::Overlay;
+using master::Command;
+using master::KeyState;
+using master::Verb;
+
+Keystroke plain(char key) { return {static_cast<std::uint16_t>(key), 0, 0}; }
+std::vector<Command> commandsOf(Keystroke key, const KeyState& state = {}) {
+    return master::commandsOf(lockstep::findKey(key).value(), state);
+}
+Command commandOf(Keystroke key, const KeyState& state = {}) {
+    const std::vector<Command> commands = commandsOf(key, state);
+    EXPECT_EQ(commands.size(), 1U);
+    return commands.at(0);
+}
+
+TEST(KeyCommands, DigitsChooseTheToolInTheOrderOfItsKinds) {
+    EXPECT_EQ(commandOf(plain('1')).tool.kind, sand::ToolKind::sphere);
+    EXPECT_EQ(commandOf(plain('3')).tool.kind, sand::ToolKind::rectangle);
+    EXPECT_EQ(commandOf(plain('6')).tool.kind, sand::ToolKind::footprint);
+    EXPECT_FALSE(lockstep::findKey(plain('7')));
+}
+
+TEST(KeyCommands, EveryKeyHasOneExceptThoseOfTheView) {
+    for (const lockstep::KeyEntry& entry : lockstep::keyList()) {
+        EXPECT_EQ(commandsOf(entry.keys.front()).empty(), entry.action == KeyAction::frameView) << entry.effect;
+    }
+}
+
+TEST(KeyCommands, EveryLayerHasAKeyThatShowsAndHidesIt) {
+    std::set<Overlay> layers;
+    for (const lockstep::KeyEntry& entry : lockstep::keyList()) {
+        const std::vector<Command> shows = commandsOf(entry.keys.front());
+        if (shows.empty() || shows[0].verb != Verb::show) {
+            continue;
+        }
+        KeyState state;
+        state.layers.set(shows[0].layer, true);
+        const Command hides = commandOf(entry.keys.front(), state);
+        EXPECT_EQ(hides.verb, Verb::hide);
+        EXPECT_EQ(hides.layer, shows[0].layer);
+        layers.insert(hides.layer);
+    }
+    EXPECT_EQ(layers.size(), lockstep::kOverlayNames.size());
+}
+
+TEST(KeyCommands, SpacePausesAndResumes) {
+    EXPECT_EQ(commandOf(plain(' ')).verb, Verb::pause);
+    KeyState paused;
+    paused.paused = true;
+    EXPECT_EQ(commandOf(plain(' '), paused).verb, Verb::resume);
+}
+
+TEST(KeyCommands, ZeroGivesTheToolAndTheHumidityOfTheSceneBack) {
+    const scene::Scene scene = samples::flatScene(64, 64);
+    for (const sand::ToolKind kind : {sand::ToolKind::sphere, sand::ToolKind::ellipse, sand::ToolKind::footprint}) {
+        scene::Material ofScene = scene.material;
+        ofScene.toolKind = kind;
+        ofScene.leftFoot = kind == sand::ToolKind::footprint;
+        ofScene.toolHeading = 30;
+        ofScene.humidity = 0.2;
+        scene::Material now = scene.material;
+        now.toolKind = sand::ToolKind::rectangle;
+        now.toolWidth = 0.3;
+        now.humidity = 0.9;
+        KeyState state;
+        state.ofScene = ofScene;
+        state.material = now;
+        const std::vector<Command> commands = commandsOf(plain('0'), state);
+        ASSERT_EQ(commands.size(), 2U);
+        now = scene::withTool(now, commands[0].tool, scene.grid());
+        now = scene::withNumber(now, commands[1].word, commands[1].number, scene.grid());
+        EXPECT_EQ(scene::tuningOf(now, scene.grid()), scene::tuningOf(ofScene, scene.grid())) << base::nameOf(kind);
+    }
+}
+
+}  // namespace

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator/tool_keys.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using master::ToolLimits;
+
+TEST(ToolKeys, LetTheToolBeFromTwoCellsToAQuarterOfTheField) {
+    const scene::Scene scene = samples::flatScene(320, 80);
+    const double cell = scene.terrain.cellSize();
+    const ToolLimits limits = ToolLimits::of(scene);
+    double radius = 10 * cell;
+    for (int i = 0; i < 100; ++i) {
+        radius = limits.resized(radius, -1);
+    }
+    EXPECT_DOUBLE_EQ(2 * radius, 2 * cell);
+    for (int i = 0; i < 100; ++i) {
+        radius = limits.resized(radius, 1);
+    }
+    EXPECT_DOUBLE_EQ(2 * radius, 20 * cell) << "a quarter of the shorter side";
+}
+
+TEST(ToolKeys, BringAToolOfASceneThatIsOutsideBack) {
+    const ToolLimits limits{1, 8};
+    EXPECT_EQ(limits.resized(20, 1), 20) << "no larger";
+    EXPECT_EQ(limits.resized(20, -1), 16);
+    EXPECT_EQ(limits.resized(0.5, -1), 0.5) << "no smaller";
+    EXPECT_EQ(limits.resized(0.5, 1), 0.625);
+    EXPECT_EQ(limits.resized(7.9, 1), 8);
+    EXPECT_EQ(limits.resized(4, 0.5), 4 * std::sqrt(1.25)) << "a wheel may turn by a part of a notch";
+}
+
+TEST(ToolKeys, LargerAndSmallerCancelOut) {
+    const ToolLimits limits{0.001, 1};
+    EXPECT_DOUBLE_EQ(limits.resized(0.04, 1), 0.05);
+    EXPECT_DOUBLE_EQ(limits.resized(limits.resized(0.04, 1), -1), 0.04);
+}
+
+// A field of 4 cells has no room for both limits.
+TEST(ToolKeys, OfATinyFieldKeepTheSmallestTool) {
+    const scene::Scene scene = samples::flatScene(4, 4);
+    const ToolLimits limits = ToolLimits::of(scene);
+    EXPECT_EQ(limits.least, limits.most);
+    EXPECT_DOUBLE_EQ(limits.least, scene.terrain.cellSize());
+}
+
+TEST(ToolKeys, KeepTheDepthWhereTheToolDigs) {
+    EXPECT_NEAR(master::deepened(0.5, 2), 0.7, 1e-12);
+    EXPECT_EQ(master::deepened(0.5, -100), 0.1) << "at 0 the wheel has switched digging off";
+    EXPECT_EQ(master::deepened(0.5, 1000), 2);
+}
+
+TEST(ToolKeys, TurnAroundTheWholeCircle) {
+    EXPECT_EQ(master::turned(358, 5), 3);
+    EXPECT_EQ(master::turned(3, -5), 358);
+    EXPECT_EQ(master::turned(-90, 5), 275) << "a scene may count clockwise";
+    EXPECT_EQ(master::turned(0, 0), 0);
+}
+
+TEST(ToolKeys, KeepHumidityWithinItsRangeAndRound) {
+    double humidity = 0;
+    for (int i = 0; i < 3; ++i) {
+        humidity = master::moistened(humidity, master::kMoreHumidity);
+    }
+    EXPECT_EQ(humidity, 0.3) << "and not the sum of three tenths";
+    EXPECT_EQ(master::moistened(0.95, 0.1), 1);
+    EXPECT_EQ(master::moistened(0.05, -0.1), 0);
+}
+
+}  // namespace
