@@ -134,5 +134,5 @@ measure() {
 }
 
 [[ $draw == yes ]] || measure
-/usr/bin/python3 scripts/figures/report_plots.py "$data" "$out"
+/usr/bin/python3 scripts/figures/report_page.py "$data" "$out"
 echo "the report: $out/README.md"
