@@ -106,4 +106,4 @@ def latency(tables):
             "\n".join(f"- {note}" for note in table.notes if not note.startswith(HEAD)))
 
 
-HEAD = ("command: ", "date: ", "release: ", "commit: ", "source: ", "algorithm: ", "load: ", "seconds: ", "seed: ")
+HEAD = ("command: ", "date: ", "release: ", "commit: ", "source: ", "algorithm: ", "load: ", "took: ", "seed: ")

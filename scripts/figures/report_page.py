@@ -1,31 +1,29 @@
-#!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """Draws the curves and writes the report's README.md from the tables of scripts/report.sh.
 
-A section whose tables are missing or faulty is replaced by one line that names the table. The exit status is then 1.
-
-usage: scripts/figures/report_page.py DATA OUT
+A section whose tables are missing or faulty is replaced by one line that names the table.
 """
 
-import pathlib
-import sys
+import os
 
-from report_data import Table, TableFault
-from report_text import SECTIONS
+from report_data import Table, TableFault, markdown
+from report_measure import minutes, total
+from report_parts import Old, release
 
 HEAD = """# Report: run time and error of the sand
 
 After reading this page you know the error and the run time of every scheme, and you can measure them again.
 
-    scripts/report.sh --quick   # measures smaller fields with fewer runs, in less than five minutes
-    scripts/report.sh           # measures everything: some 50 minutes on two quiet cores, plus the curves of a TIN
+    scripts/report.sh --quick   # measures smaller fields with fewer runs into out/report; takes about {quick}
+    scripts/report.sh           # measures the tables that are missing or old; all of them take about {full} on {cores} cores
+    scripts/report.sh --list    # prints which tables are missing or old, and the time that they take
     scripts/report.sh --draw    # only draws and writes, from the tables that exist
 
-`{script}` writes this page; do not edit it. The tables were measured from {first} to {last}, {machines}. The compiler was
-{compiler} with `{flags}`, the code path {path}. Times are CPU time of one thread, unless a section names another time. They
-are medians; the tables also have the least and the most. The machine is shared, so trust ratios within one table more than
-times. The tables are in [data](data). The head of each has the command that made it, its seed and the definitions of its
-columns. All sentences about results are computed from these tables.
+`scripts/report.sh` writes this page; do not edit it. If it is interrupted, the next call continues. The tables were measured from
+{first} to {last}, {machines}. The compiler was {compiler} with `{flags}`, the code path {path}. Times are CPU time of one
+thread, unless a section names another time. They are medians; the tables also have the least and the most. {load} The tables are in
+[data](data). The head of each has the command that made it, its seed and the definitions of its columns.
+[Tables](#tables) has the release and the load of each. All sentences about results are computed from the tables.
 
 **The piles.** Each pile is a cylinder of sand on level ground in a box of N × N cells, with a talus of 45°. The band is 0
 unless a section gives another. The *low* cylinder has radius 0.3 N and a height of 0.6 radii, and becomes a frustum. The *tall*
@@ -55,6 +53,16 @@ def machines_of(tables):
                      [f"on {other}: {', '.join(named[other])}" for other in others])
 
 
+def load_of(tables):
+    """Returns a sentence about the load of the machine while the tables were measured."""
+    loads = {name: float(table.fact("load").split()[0]) for name, table in tables.items() if table.fact("load", "")}
+    without = f" It is unknown for {len(tables) - len(loads)} tables." if len(loads) < len(tables) else ""
+    if not loads:
+        return "The load of the machine is unknown, so trust ratios within one table more than times."
+    most = max(loads, key=loads.get)
+    return f"The load average of the machine before a part was at most {loads[most]:.2f} ({most}).{without}"
+
+
 def read_tables(data):
     """Returns the tables of a folder by name, and why others cannot be read, by name."""
     tables, faults = {}, {}
@@ -66,13 +74,26 @@ def read_tables(data):
     return tables, faults
 
 
-def head_of(tables):
+def head_of(tables, parts, out):
+    cores = len(os.sched_getaffinity(0))
     some = next((table for table in tables.values() if table.fact("compiler", "")), None)
     dates = sorted(table.fact("date")[:10] for table in tables.values() if table.fact("date", ""))
     facts = {name: some.fact(name, "unknown").strip() if some else "unknown" for name in ("compiler", "flags", "code path")}
-    return HEAD.format(script="scripts/report.sh", first=dates[0] if dates else "never", last=dates[-1] if dates else "never",
+    quick, full = (minutes(total([part for part in parts if part.options(small) is not None], out / "data", small, cores))
+                   for small in (True, False))
+    return HEAD.format(quick=quick, full=full, cores=cores, first=dates[0] if dates else "never", last=dates[-1] if dates else "never",
                        machines=machines_of(tables) if tables else "nowhere", compiler=facts["compiler"], flags=facts["flags"],
-                       path=facts["code path"])
+                       path=facts["code path"], load=load_of(tables))
+
+
+def replace_file(file, write):
+    """Calls write(path) for a file beside `file`, and gives it the name of `file` when it is whole."""
+    beside = file.with_name(f".new.{file.name}")
+    try:
+        write(beside)
+        beside.rename(file)
+    finally:
+        beside.unlink(missing_ok=True)
 
 
 def body_of(section, tables, out, draw):
@@ -82,7 +103,7 @@ def body_of(section, tables, out, draw):
     if section.figure:
         picture = f"{section.figure}.png"
         try:
-            draw(section.figure, used[0], out / picture)
+            replace_file(out / picture, lambda file: draw(section.figure, used[0], file))
         except (ArithmeticError, LookupError, TypeError, ValueError) as error:
             raise TableFault(f"{used[0].path.name}: cannot be drawn ({type(error).__name__}: {error})") from error
         text.insert(0, f"![{section.title}]({picture})\n")
@@ -90,22 +111,53 @@ def body_of(section, tables, out, draw):
     return text + ([f"*{commands}*\n"] if commands else [])
 
 
-def page(data, out, draw, sections=SECTIONS):
-    """Returns the text of the page, and a line for each section that could not be written."""
-    tables, faults = read_tables(data)
+def table_of_tables(tables, why, parts, now):
+    """Returns the section about the tables themselves. `why` says by name why tables are not those of the present sources."""
+    names = [part.name for part in parts]
+    rows, outdated = [], []
+    for name in names + [name for name in tables if name not in names]:
+        table = tables.get(name)
+        reason = why.get(name)
+        state = (f"old: another {reason.fact}" if isinstance(reason, Old) else reason or
+                 ("valid" if name in names else "of no part of this report"))
+        facts = [table.fact(fact, "–") if table else "–" for fact in ("date", "release", "commit", "load", "took")]
+        if state == "valid" and facts[1] != now:
+            outdated.append(name)
+            state = f"valid, with the times of release {facts[1]}"
+        rows.append([name, facts[0][:10], *facts[1:], state])
+    valid = [row for row in rows if row[-1].startswith("valid")]
+    times = f" Times of a release other than {now}, so that they are old: {', '.join(outdated)}." if outdated else f" Their times are those of release {now}."
+    return ("## Tables\n\nA table is valid if its command, the sources that measure it and the version of the algorithm are the present "
+            f"ones. {len(valid)} of {len(rows)} tables are valid.{times if valid else ''}\n\n" +
+            markdown(["table", "measured", "release", "commit", "load average", "took", "state"], rows) + "\n")
+
+
+def page(out, draw, sections, parts, why=None, now=None):
+    """Returns the text of the page, and a line for each section or table that is missing.
+
+    `why` has by name why a table is missing or old, and `now` is the present release. A section of tables that belong to no part is left out.
+    """
+    tables, faults = read_tables(out / "data")
+    why = {**(why or {}), **faults}
+    names = [part.name for part in parts]
     text, complaints = [], []
     for section in sections:
         text.append(f"## {section.title}\n")
+        missing = [name for name in section.needs if name not in tables]
+        if missing and not set(missing) & set(names):
+            text.append("The quick report leaves this out.\n")
+            continue
         try:
-            for name in section.needs:
-                if name not in tables:
-                    raise TableFault(faults.get(name) or f"{name}.csv: is missing; scripts/report.sh measures it")
+            for name in missing:
+                raise TableFault(why.get(name) or f"{name}.csv: is missing; scripts/report.sh measures it")
             text += body_of(section, tables, out, draw)
         except TableFault as fault:
             complaints.append(f"{section.title}: {fault}")
             text.append(f"**This section is missing.** {fault}\n")
-    missing = ["**Missing on this page:**\n" + "".join(f"- {complaint}\n" for complaint in complaints)] if complaints else []
-    return "\n".join([head_of(tables), *missing, *text]), complaints
+    needed = {name for section in sections for name in section.needs}
+    complaints += [str(why.get(name) or f"{name}.csv: is missing") for name in names if name not in tables and name not in needed]
+    lines = ["**Missing on this page:**\n" + "".join(f"- {complaint}\n" for complaint in complaints)] if complaints else []
+    return "\n".join([head_of(tables, parts, out), *lines, *text, table_of_tables(tables, why, parts, now or release())]), complaints
 
 
 def draw_figure(name, table, file):
@@ -114,22 +166,16 @@ def draw_figure(name, table, file):
     figure = getattr(report_figures, name)(table)
     try:
         # Stronger compression, without loss.
-        figure.savefig(file, bbox_inches="tight", pil_kwargs={"optimize": True})
+        figure.savefig(file, format="png", bbox_inches="tight", pil_kwargs={"optimize": True})
     finally:
         report_figures.plt.close(figure)
 
 
-def main():
-    if len(sys.argv) != 3:
-        print("usage: scripts/figures/report_page.py DATA OUT", file=sys.stderr)
-        return 2
-    data, out = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    text, complaints = page(data, out, draw_figure)
-    (out / "README.md").write_text(text)
-    for complaint in complaints:
-        print(f"report.sh: {complaint}", file=sys.stderr)
-    return 1 if complaints else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def write_page(out, sections, parts, why, now, draw=draw_figure):
+    """Writes the page and its pictures. Returns a line for each section or table that is missing."""
+    try:
+        text, complaints = page(out, draw, sections, parts, why, now)
+        replace_file(out / "README.md", lambda file: file.write_text(text))
+        return complaints
+    except OSError as error:
+        return [f"{error.filename or out}: cannot be written ({error.strerror}); make room on the disk"]

@@ -16,6 +16,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("figures", "launcher")]
 from report_data import Table, TableFault  # noqa: E402
 from report_page import page  # noqa: E402
+from report_parts import PARTS  # noqa: E402
 from report_text import SECTIONS, Section  # noqa: E402
 
 DATA = ROOT / "docs" / "report" / "data"
@@ -161,18 +162,25 @@ class FaultyTables(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory(prefix="sandwall-report-")
         self.addCleanup(self.folder.cleanup)
-        self.data = pathlib.Path(self.folder.name)
+        self.out = pathlib.Path(self.folder.name)
+        self.data = self.out / "data"
+        self.data.mkdir()
+
+    @staticmethod
+    def draw(name, table, file):
+        file.write_text(name)
 
     def with_lines(self, name, alter):
         """Copies the tables, alters the rows of one, and returns its sections of the page and their complaints."""
         sections = [section for section in SECTIONS if name in section.needs]
-        for needed in {needed for section in sections for needed in section.needs}:
-            shutil.copy(DATA / f"{needed}.csv", self.data)
+        needed = {needed for section in sections for needed in section.needs}
+        for table in needed:
+            shutil.copy(DATA / f"{table}.csv", self.data)
         file = self.data / f"{name}.csv"
         lines = file.read_text().splitlines()
         first = next(place for place, line in enumerate(lines) if not line.startswith("#")) + 1
         file.write_text("\n".join(lines[:first] + alter(lines[first:])) + "\n")
-        return page(self.data, self.data, lambda *_: None, sections)
+        return page(self.out, self.draw, sections, [part for part in PARTS if part.name in needed])
 
     def test_a_row_that_the_text_needs_is_missed_by_name(self):
         text, complaints = self.with_lines("sweeps", lambda rows: [row for row in rows if not row.startswith("low,G,0,128")])
@@ -203,7 +211,8 @@ class FaultyTables(unittest.TestCase):
         for path in DATA.glob("*.csv"):
             shutil.copy(path, self.data / path.name)
         (self.data / "dig.csv").unlink()
-        text, complaints = page(self.data, self.data, lambda *_: None, SECTIONS[8:11])
+        sections = [section for section in SECTIONS if section.title in ("Digging", "The hysteresis band")]
+        text, complaints = page(self.out, self.draw, sections, [part for part in PARTS if part.name in ("dig", "band")])
         self.assertIn("Digging: dig.csv: is missing", " ".join(complaints))
         self.assertIn("**Missing on this page:**", text)
         self.assertIn("## The hysteresis band", text)
