@@ -5,30 +5,68 @@ import csv
 import math
 import pathlib
 
+# An order has no value at the first N. The other columns are empty in rows to which they do not apply.
+MAY_BE_NAN = {"order", "exponent"}
+MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio"}
+
+
+class TableFault(Exception):
+    """Why a table cannot be used: one line that names the table, and the row if there is one."""
+
 
 class Table:
-    """A table of a CSV file: its rows as dictionaries, with numbers as numbers, and the comment lines above them."""
+    """A table of a CSV file: its rows as dictionaries, with numbers as numbers, and the comment lines above them.
+
+    Raises TableFault if the file has no row, if a row is cut short, or if a number is not finite. The functions below raise
+    it for a row or column that is missing.
+    """
 
     def __init__(self, path):
         self.path = pathlib.Path(path)
-        lines = self.path.read_text().splitlines()
+        try:
+            lines = self.path.read_text().splitlines()
+        except (OSError, UnicodeDecodeError) as error:
+            raise TableFault(f"{self.path.name}: cannot be read ({error})") from None
         self.notes = [line[2:] for line in lines if line.startswith("# ")]
-        rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-        self.rows = [{key: number(value) for key, value in row.items()} for row in rows]
+        rows = csv.DictReader((line for line in lines if not line.startswith("#")), restkey="more")
+        self.rows = [self._row(place, row) for place, row in enumerate(rows, 1)]
+        self.columns = rows.fieldnames or []
+        if not self.rows:
+            raise TableFault(f"{self.path.name}: has no row")
 
-    def fact(self, name):
+    def _row(self, place, row):
+        if "more" in row or None in row.values():
+            raise TableFault(f"{self.path.name}: row {place} has not as many values as the table has columns")
+        read = {column: number(text) for column, text in row.items()}
+        for column, value in read.items():
+            empty = value == "" and column not in MAY_BE_EMPTY
+            infinite = isinstance(value, float) and not math.isfinite(value) and column not in MAY_BE_NAN
+            if empty or infinite:
+                raise TableFault(f"{self.path.name}: row {place} ({','.join(row.values())}): {column} is {row[column] or 'empty'}")
+        return read
+
+    def fact(self, name, default=None):
         """Returns the value of "machine", "compiler", "command" … in the file's head."""
-        return next(note[len(name) + 2:] for note in self.notes if note.startswith(name + ": "))
-
-    def states(self, name):
-        """Whether the file's head has a value of this name."""
-        return any(note.startswith(name + ": ") for note in self.notes)
+        found = next((note[len(name) + 2:] for note in self.notes if note.startswith(name + ": ")), default)
+        if found is None:
+            raise TableFault(f"{self.path.name}: its head has no line with the {name}")
+        return found
 
     def where(self, **wanted):
+        for column in wanted:
+            self._known(column)
         return [row for row in self.rows if all(row[key] == value for key, value in wanted.items())]
 
+    def some(self, **wanted):
+        """Returns the rows with these values, at least one."""
+        rows = self.where(**wanted)
+        if not rows:
+            raise TableFault(f"{self.path.name}: has no row with {', '.join(f'{k} = {v}' for k, v in wanted.items())}")
+        return rows
+
     def values(self, column, **wanted):
-        return [row[column] for row in self.where(**wanted)]
+        self._known(column)
+        return [row[column] for row in self.some(**wanted)]
 
     def distinct(self, column, **wanted):
         """Returns the values of a column, each once, in the order of their first appearance."""
@@ -37,13 +75,25 @@ class Table:
     def one(self, column, **wanted):
         return self.values(column, **wanted)[0]
 
+    def positive(self, column, **wanted):
+        """Returns one value by which others are divided."""
+        value = self.one(column, **wanted)
+        if not isinstance(value, (int, float)) or value <= 0:
+            raise TableFault(f"{self.path.name}: {column} is {value}, and not positive, in the row with "
+                             f"{', '.join(f'{k} = {v}' for k, v in wanted.items())}")
+        return value
+
+    def _known(self, column):
+        if column not in self.columns:
+            raise TableFault(f"{self.path.name}: has no column {column}")
+
 
 def number(text):
     try:
         value = float(text)
-    except ValueError:
+    except (TypeError, ValueError):
         return text
-    return int(value) if value.is_integer() and "." not in text and "e" not in text else value
+    return int(value) if value.is_integer() and "." not in text and "e" not in text.lower() else value
 
 
 def held(rows):

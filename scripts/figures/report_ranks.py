@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Runs whole sessions of 60 steps over several render ranks, and replays their journals. Writes both hashes as CSV.
+
+usage: scripts/figures/report_ranks.py [--walls 1x1,2x2,3x4] [--out FILE.csv]
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+import layout
+import session_results
+from command_line import Parser
+from latency import processor
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def wall(text):
+    match = re.fullmatch(r"([1-9])x([1-9])", text)
+    if not match:
+        raise ValueError
+    return int(match[1]), int(match[2])
+
+
+def walls(text):
+    return [wall(word) for word in text.split(",")]
+
+
+def run(*command):
+    ran = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    if ran.returncode != 0:
+        sys.exit(f"report_ranks.py: {' '.join(map(str, command))}: {(ran.stderr.strip() or ran.stdout.strip())[-300:]}")
+    return ran.stdout
+
+
+def measure(rows, columns, folder):
+    """Returns the number of ranks, the hash of the session, that of the replay, and the number of divergences."""
+    text = (ROOT / "walls" / "configs" / "tiled_3x4.toml").read_text()
+    for name, value in (("rows", rows), ("columns", columns)):
+        text = re.sub(rf"^{name} = .*", f"{name} = {value}", text, flags=re.MULTILINE)
+    file, out = folder / "wall.toml", folder / f"{rows}x{columns}"
+    file.write_text(text)
+    run(ROOT / "scripts" / "sandwall", "run", "--wall", file, "--scene", ROOT / "scenes" / "writing.toml", "--device", "script:gis",
+        "--gl", layout.in_memory(), "--pace", "fast", "--steps", 60, "--out", out)
+    summary = session_results.read_summary(out)
+    replayed = re.findall(r"\b[0-9a-f]{16}\b", run(layout.bin_folder() / "sandwall-replay", out / "session.journal", "--hash"))
+    return rows * columns, summary["state_hash"], replayed[-1], summary["divergences"]
+
+
+def main():
+    parser = Parser(prog="report_ranks.py", description=__doc__.splitlines()[0])
+    parser.add_argument("--walls", type=walls, default="1x1,2x2,3x4", help="rows and columns of tiles, one render rank each (default: 1x1,2x2,3x4)")
+    parser.add_argument("--out", type=pathlib.Path, help="CSV file to write (default: standard output)")
+    args = parser.parse_args()
+    lines = [f"# machine: {processor()}", f"# command: report_ranks.py {' '.join(sys.argv[1:])}",
+             time.strftime("# date: %Y-%m-%dT%H:%M:%SZ", time.gmtime()), "ranks,session_hash,replay_hash,divergences"]
+    with tempfile.TemporaryDirectory(prefix="sandwall-ranks-") as folder:
+        for rows, columns in args.walls:
+            print(f"a session on {rows} x {columns} tiles", file=sys.stderr)
+            lines.append(",".join(map(str, measure(rows, columns, pathlib.Path(folder)))))
+    text = "\n".join(lines) + "\n"
+    try:
+        args.out.write_text(text) if args.out else sys.stdout.write(text)
+    except OSError as error:
+        print(f"report_ranks.py: {args.out}: cannot be written ({error.strerror})", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
