@@ -62,7 +62,7 @@ TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
 // 60 steps per second in films of 30 frames per second: frame n shows the steps up to 2n. Materials precede the frame
 // of steps 4 to 6 (twice) and that of steps 10 to 12.
 TEST(Recording, EachFrameHasTheHumidityOfItsSteps) {
-    master::Journal journal = sessionOf(12);
+    journal::Journal journal = sessionOf(12);
     const auto wet = [](double humidity) {
         scene::Material material;
         material.humidity = humidity;
@@ -70,7 +70,7 @@ TEST(Recording, EachFrameHasTheHumidityOfItsSteps) {
     };
     journal.scene.material = wet(0.5);
     journal.materials = {{1, wet(0.75)}, {1, wet(1)}, {3, wet(0.25)}};
-    const master::Recording recording(std::move(journal), "FILE", 30);
+    const journal::Recording recording(std::move(journal), "FILE", 30);
     const std::vector<double> want{0.5, 1, 1, 1, 0.25, 0.25};
     for (std::uint64_t frame = 1; frame <= want.size(); ++frame) {
         EXPECT_EQ(recording.humidityOf(frame), want[frame - 1]) << frame;

@@ -422,7 +422,7 @@ TEST_F(Desk, MovesTheViewOfADesktopAndFramesItAgain) {
         EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
         EXPECT_EQ(pointers[1].depth, 0);
     }
-    desk_->obey({{.key = 'v'}});
+    press(plain('v'));
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
 }
 

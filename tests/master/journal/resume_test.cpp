@@ -198,7 +198,7 @@ TEST_F(Resume, KnowsWhatTheOperatorMadeOfTheMaterial) {
         record(writer, 1);
     }
     EXPECT_EQ(master::readSession(journal(), "")->material, wetter);
-    const master::Journal whole = master::readJournal(journal());
+    const journal::Journal whole = master::readJournal(journal());
     EXPECT_EQ(whole.scene.material, scene_.material);
     ASSERT_EQ(whole.materials.size(), 1U);
     EXPECT_EQ(whole.materials[0].material, wetter);
