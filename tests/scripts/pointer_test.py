@@ -269,7 +269,6 @@ class PointerSession(unittest.TestCase):
         self.assertEqual(self.replay("--hash"), json.loads((self.out / "summary.json").read_text())["state_hash"])
         self.assertTrue(any(step["engaged"] == "1" for step in self.steps()))
 
-
     def test_a_whole_wall_is_placed_on_the_desktop(self):
         """The map of the FLEX is 2560 x 1536 pixels large, so that a desktop of 640 x 400 shows it at a quarter of its size."""
         self.server.end()
@@ -294,7 +293,7 @@ class PointerSession(unittest.TestCase):
         self.assertEqual(self.replay("--hash"), summary["state_hash"])
         # One furrow runs south, from the sand behind the front screen to that above the floor.
         dug = [any(value < -0.005 for value in row) for row in self.heights_changed()]
-        first, last = dug.index(True), 127 - dug[::-1].index(True)
+        first, last = dug.index(True), len(dug) - 1 - dug[::-1].index(True)
         self.assertTrue(all(dug[first:last + 1]), dug)
         self.assertGreater(last - first, 20)
 
