@@ -18,7 +18,7 @@
 /// Encodes and decodes the header and the records of a journal (docs/journal.md). Does not access files.
 namespace journal {
 
-inline constexpr std::uint32_t kJournalVersion = 9;
+inline constexpr std::uint32_t kJournalVersion = 10;
 
 inline constexpr std::size_t kMostFailure = 1 << 20;  // [byte]
 

@@ -30,7 +30,7 @@ void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::Tim
     for (const haptic_bridge::TimedStep& timed : steps) {
         replica_.apply(timed.step);
         if (!replica_.leftOut().empty()) {
-            leftOut_.push_back({timed.step.number, replica_.leftOut()});
+            leftOut_.push_back({timed.step.number, replica_.leftOut(), replica_.refusedStep()});
         }
         edits_ += timed.step.edit.any() ? 1 : 0;
         source.reached(replica_);

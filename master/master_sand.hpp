@@ -17,6 +17,7 @@ namespace master {
 struct LeftOut {
     std::uint64_t step = 0;
     std::string what;
+    bool refused = false;  // sand::Replica::refusedStep()
 };
 
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.

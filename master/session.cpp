@@ -140,8 +140,11 @@ void Session::keep(const lockstep::FrameMessage& frame) {
 
 /// A haptic server could send such steps in every frame. So the line is printed for the first one, and then whenever
 /// their number is a power of two.
-void Session::reportLeftOut() {
+void Session::reportLeftOut(const Steps& steps) {
     for (const LeftOut& one : sand_.takeLeftOut()) {
+        if (one.refused) {
+            steps_->refused(steps, one.what);
+        }
         const std::uint64_t count = ++counted_.stepsLeftOut;
         if (std::has_single_bit(count)) {
             host::printLine("step {}: {}; all ranks leave it out, and the session continues ({} such steps so far)",
@@ -170,7 +173,7 @@ bool Session::showFrame(bool& more) {
     const std::int64_t broadcast = monotonicNs();
     keep(frame);
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
-    reportLeftOut();
+    reportLeftOut(steps);
     check_.applied(sand_.replica().stepNumber());
     if (!agree(frame)) {
         return false;

@@ -50,7 +50,7 @@ private:
 
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
-    void reportLeftOut();
+    void reportLeftOut(const Steps& steps);
     void waitForFrame();
     [[nodiscard]] Steps takeSteps();
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);

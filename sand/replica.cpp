@@ -78,8 +78,9 @@ Replica::Replica(const Replica& other)
       probe_(other.probe_),
       heading_(other.heading_),
       engaged_(other.engaged_),
-      settling_(other.settling_),
-      leftOut_(other.leftOut_) {}
+      owed_(other.owed_),
+      leftOut_(other.leftOut_),
+      refusedStep_(other.refusedStep_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
@@ -89,7 +90,12 @@ void Replica::apply(const Step& step) {
         throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
                                std::to_string(stepNumber_));
     }
-    leftOut_.clear();
+    leftOut_ = whyRefused(step);
+    refusedStep_ = !leftOut_.empty();
+    if (refusedStep_) {
+        stepNumber_ = step.number;
+        return;
+    }
     const Hand before{rules_.tuning, probe_, heading_};
     try {
         applyToSand(step);
@@ -113,7 +119,46 @@ void Replica::skip(const Step& step, const Hand& before, const char* why) {
     probe_ = before.probe;
     heading_ = before.heading;
     engaged_ = false;
-    settling_ = false;
+    owed_ = {};
+}
+
+bool Replica::movesTool(const Step& step) const {
+    const bool turns = step.heading && *step.heading != heading_;
+    return step.engaged != engaged_ || (engaged_ && (turns || !step.path.empty()));
+}
+
+Owed Replica::owedBy(const Step& step) const {
+    if (step.edit.kind == Edit::tune) {
+        return {step.edit.tuning.sweepsPerStep, 0};
+    }
+    if (step.edit.kind == Edit::settle && (step.engaged || surface_->settlesBySweeps())) {
+        return {Owed::kUntilRest, 0};
+    }
+    const bool endsSettle = step.edit.kind == Edit::settle || (owed_.untilRest() && movesTool(step));
+    return owed_.any() && !endsSettle ? owed_ : Owed{rules_.tuning.sweepsPerStep, 0};
+}
+
+std::int32_t Replica::mostSweeps(const Step& step) const {
+    return std::min(owedBy(step).left(), rules_.sweepRange().most);
+}
+
+std::string Replica::whyRefused(const Step& step) const {
+    if (holdsTool() && movesTool(step)) {
+        return "it moves the tool while " + std::to_string(owed_.left()) + " sweeps are owed";
+    }
+    if (const std::int32_t left = owedBy(step).left(); step.sweeps > left) {
+        return "it runs " + std::to_string(step.sweeps) + " sweeps, and " + std::to_string(left) + " are owed";
+    }
+    return {};
+}
+
+std::int32_t Replica::wholeSweeps(const Step& step) const {
+    return std::min(wholeOf(owedBy(step)), rules_.sweepRange().most);
+}
+
+std::int32_t Replica::wholeOf(const Owed& owed) const {
+    return owed.untilRest() ? std::min(std::max(settlingSweeps(), rules_.tuning.sweepsPerStep), owed.left())
+                            : owed.left();
 }
 
 bool Replica::restoreKept() {
@@ -133,6 +178,7 @@ bool Replica::restoreKept() {
 }
 
 void Replica::applyToSand(const Step& step) {
+    const Owed owed = owedBy(step);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
     const Tool toolBefore = tool();
@@ -160,8 +206,9 @@ void Replica::applyToSand(const Step& step) {
     engaged_ = step.engaged;
     stepNumber_ = step.number;
 
-    if (step.edit.kind == Edit::settle) {
-        settle();
+    owed_ = owed;
+    if (step.edit.kind == Edit::settle && !settling()) {
+        surface_->settle();
     } else if (step.edit.kind == Edit::tune) {
         tune(step.edit.tuning);
     } else if (putBack(step.edit)) {
@@ -175,10 +222,9 @@ void Replica::applyToSand(const Step& step) {
         surface_->leave(toolBefore);
     }
     const Tool here = tool();
-    const int sweeps =
-        settling_ ? std::max(settlingSweeps(), rules_.tuning.sweepsPerStep) : rules_.tuning.sweepsPerStep;
-    surface_->sweep(sweeps, engaged_ ? &here : nullptr, probe_);
-    settling_ = settling_ && !surface_->settled();
+    const std::int32_t sweeps = step.sweeps != 0 ? step.sweeps : wholeOf(owed_);
+    const bool still = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);
+    owed_ = still ? Owed{} : owed_.after(sweeps);
 }
 
 int Replica::settlingSweeps() const {
@@ -187,13 +233,6 @@ int Replica::settlingSweeps() const {
     constexpr std::int64_t kLeast = 16;
     const std::int64_t sweeps = std::max(kMostCells / std::max<std::int64_t>(surface_->sweepCost(), 1), kLeast);
     return static_cast<int>(std::min<std::int64_t>(sweeps, kMostSweeps));
-}
-
-void Replica::settle() {
-    settling_ = engaged_ || surface_->settlesBySweeps();
-    if (!settling_) {
-        surface_->settle();
-    }
 }
 
 void Replica::tune(const Tuning& tuning) {
@@ -227,7 +266,7 @@ bool Replica::putBack(const Edit& edit) {
     } else {
         return false;
     }
-    settling_ = false;
+    owed_ = {};
     // The stroke of a tool that is still engaged continues. It now begins with the restored sand.
     if (engaged_) {
         surface_->keep();
@@ -244,7 +283,7 @@ std::uint64_t Replica::stateHash() {
     return XXH3_64bits(bytes.data(), bytes.size());
 }
 
-StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, settling_, rules_.tuning}; }
+StateHead Replica::head() const { return {stepNumber_, probe_, heading_, engaged_, owed_, rules_.tuning}; }
 
 StateCopy Replica::copyState() const { return {base::encoded(head()), surface_->kept(), copySand()}; }
 
@@ -276,10 +315,11 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     surface_->replace(*sand);
     stepNumber_ = head.number;
     engaged_ = head.engaged;
-    settling_ = head.settling;
+    owed_ = head.owed;
     probe_ = head.probe;
     heading_ = head.heading;
     leftOut_.clear();
+    refusedStep_ = false;
 }
 
 }  // namespace sand

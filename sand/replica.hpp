@@ -15,14 +15,15 @@
 namespace sand {
 
 /// Version of the bytes that Replica::encodeState() writes. Replica::decodeState() refuses every other version.
-inline constexpr std::uint32_t kStateVersion = 8;
+inline constexpr std::uint32_t kStateVersion = 9;
 
 /// All state of a replica except its sand.
 struct StateHead {
     std::uint64_t number = 0;  // of the last step
     ProbePoint probe;
     Heading heading;
-    bool engaged = false, settling = false;
+    bool engaged = false;
+    Owed owed;
     Tuning tuning;
 
     template <class Self, class Visit>
@@ -35,7 +36,7 @@ struct StateHead {
         }
         visit("heading", it.heading);
         visit("engaged", it.engaged);
-        visit("settling", it.settling);
+        visit("owed", it.owed);
         visit("tuning", it.tuning);
     }
 };
@@ -73,25 +74,36 @@ public:
     ///
     /// 1. An engaged tool displaces sand along step.path.
     /// 2. step.edit is done.
-    /// 3. The sand slides for Tuning::sweepsPerStep sweeps.
+    /// 3. The sand slides for step.sweeps sweeps, which are a part of those that are owed.
+    ///
+    /// **What is owed.** If nothing is owed when a step begins, the step owes Tuning::sweepsPerStep sweeps. It pays
+    /// some of them, and the steps after it pay the rest. A step that begins while sweeps are owed owes no sweeps of
+    /// its own, and must not move an engaged tool: engaging, lifting, turning and each point of a path are movements.
+    /// So the sand does not depend on how sweeps are divided among steps. A sweep that moves no sand ends what is owed.
+    /// On a TIN, each step runs all its sweeps.
     ///
     /// Edits with a rule of their own:
     /// - A reset, a load or an undo restores sand, outflow and inertia. On a TIN, only an undo also restores which sand
     ///   moves. Step number, probe, tool and material are not restored. Such a step runs no sweeps, so that it ends
-    ///   with exactly the restored sand. An engaged tool then presses once.
-    /// - A settle brings all sand to rest within its step. With an engaged tool, and on a height field with rock or
-    ///   walls, the sand settles by sweeps instead. An engaged tool is then an obstacle. These sweeps continue in the
-    ///   next steps, at most settlingSweeps() in each, until all sand is at rest. A reset, a load or an undo ends them,
-    ///   and another settle takes their place.
+    ///   with exactly the restored sand. Nothing is owed after it. An engaged tool then presses once.
+    /// - A tune takes the place of what was owed: the step owes the new Tuning::sweepsPerStep.
+    /// - A settle takes that place too. It brings all sand to rest within its step. With an engaged tool, and on a
+    ///   height field with rock or walls, the sand settles by sweeps instead. An engaged tool is then an obstacle.
+    ///   These sweeps are owed until all sand is at rest, or until an engaged tool moves. On a TIN, each step runs at
+    ///   most settlingSweeps() of them.
     ///
     /// A step may leave out a part of itself. Every replica does so alike, because state and step alone decide:
+    /// - The whole step is left out if it moves an engaged tool while sweeps are owed, or if it runs more sweeps than
+    /// are
+    ///   owed. Nothing but the step number changes. A program that numbers steps correctly makes no such step.
     /// - A load whose bytes are not sand for this field is ignored. The step then runs its sweeps.
     /// - An undo is ignored if canUndo() is false. The step then runs its sweeps.
     /// - A path is ignored, except for its end, if it is so long and the tool so large that the step would take
     ///   minutes. No hand makes such a step.
     /// - The whole step is skipped if the sand throws an exception. It still counts as applied. The sand becomes that
     ///   from before the last stroke, or that of the scene if no such sand is kept. Probe, tool and material become
-    ///   those from before the step, and the tool is lifted. It does not matter how far the step had come.
+    ///   those from before the step, the tool is lifted, and nothing is owed. It does not matter how far the step had
+    ///   come.
     ///
     /// std::bad_alloc is passed on instead, because it depends on the host. The replica is then unusable, and its
     /// process must end.
@@ -99,6 +111,18 @@ public:
     /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
     /// Returns an empty text if there was none of these. An ignored undo does not count.
     [[nodiscard]] const std::string& leftOut() const { return leftOut_; }
+    /// Returns whether the last apply() has left out the whole step because of what was owed.
+    [[nodiscard]] bool refusedStep() const { return refusedStep_; }
+
+    /// Returns the sweeps of the last step that are still to be paid. On a TIN only a settle owes any.
+    [[nodiscard]] const Owed& owed() const { return owed_; }
+    /// Returns whether the tool must stay where it is, because sweeps are owed. A settle does not hold the tool.
+    [[nodiscard]] bool holdsTool() const { return owed_.any() && !owed_.untilRest(); }
+    /// Returns the most sweeps that the next step may run if it is `step`; 0 for a TIN, whose steps state no sweeps.
+    /// `step` need not have its sweeps yet.
+    [[nodiscard]] std::int32_t mostSweeps(const Step& step) const;
+    /// Returns the sweeps with which `step` pays all that is owed, but of a settle only settlingSweeps(); 0 for a TIN.
+    [[nodiscard]] std::int32_t wholeSweeps(const Step& step) const;
 
     [[nodiscard]] const Rules& rules() const { return rules_; }  // the scene's, with the operator's tuning
     [[nodiscard]] const Surface& surface() const { return *surface_; }
@@ -124,12 +148,12 @@ public:
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
     /// Returns whether a settle continues in the next step.
-    [[nodiscard]] bool settling() const { return settling_; }
-    /// Returns the number of sweeps in a step in which a settle continues, unless the rules ask for more.
+    [[nodiscard]] bool settling() const { return owed_.untilRest(); }
+    /// Returns the number of sweeps of a settle in a step without Step::sweeps, unless the rules ask for more.
     [[nodiscard]] int settlingSweeps() const;
 
     /// Returns the state hash. It covers the sand, outflow, probe, heading, step number, whether the tool is engaged,
-    /// whether a settle continues, and the rules that an operator has tuned. It covers the age of the inertia but not
+    /// what is owed, and the rules that an operator has tuned. It covers the age of the inertia but not
     /// its fluxes, because a wrong flux shows in the heights after the next step. It does not cover the sand that is
     /// kept for an undo, because wrong sand shows after the undo.
     [[nodiscard]] std::uint64_t stateHash();
@@ -168,8 +192,16 @@ private:
         Heading heading;
     };
     [[nodiscard]] StateHead head() const;
+    /// Returns whether `step` moves a tool that is in the sand before the step or after it.
+    [[nodiscard]] bool movesTool(const Step& step) const;
+    /// Returns what is owed when `step` has begun, before its sweeps. Assumes that an undo, reset or load has no
+    /// effect.
+    [[nodiscard]] Owed owedBy(const Step& step) const;
+    /// Returns the sweeps in which a step without Step::sweeps pays `owed`.
+    [[nodiscard]] std::int32_t wholeOf(const Owed& owed) const;
+    /// Returns why `step` must be left out because of what is owed, or an empty text.
+    [[nodiscard]] std::string whyRefused(const Step& step) const;
     void tune(const Tuning& tuning);
-    void settle();
     /// Displaces the sand below the tool at its current position.
     void press();
     void applyToSand(const Step& step);
@@ -187,8 +219,9 @@ private:
     ProbePoint probe_;
     Heading heading_;
     bool engaged_ = false;
-    bool settling_ = false;  // a settle has not found all sand at rest yet
-    std::string leftOut_;    // by the last apply()
+    Owed owed_;
+    std::string leftOut_;  // by the last apply()
+    bool refusedStep_ = false;
 };
 
 }  // namespace sand

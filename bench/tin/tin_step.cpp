@@ -106,7 +106,7 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
     sand::tin::TinSurface surface(scene.rules, scene.tin);
     const sand::Tool& tool = scene.rules.tuning.tool;
     sand::ProbePoint probe;
-    surface.sweep(kSweepsPerStep, nullptr, probe);
+    surface.sweep(sand::SweepPart::all(kSweepsPerStep), nullptr, probe);
     bool touched = false;
     for (const auto& [kind, step] : actions) {
         const auto part = [&, &to = kind](const char* name, const auto& work) {
@@ -128,7 +128,7 @@ void measureParts(const scene::Scene& scene, const std::vector<Action>& actions,
         }
         probe = step.path.empty() ? probe : step.path.back();
         touched = step.engaged;
-        part("sweeps", [&] { surface.sweep(kSweepsPerStep, touched ? &tool : nullptr, probe); });
+        part("sweeps", [&] { surface.sweep(sand::SweepPart::all(kSweepsPerStep), touched ? &tool : nullptr, probe); });
         part("hash", [&] { static_cast<void>(surface.hash()); });
         part("change", [&] { static_cast<void>(surface.takeChange()); });
     }

@@ -19,6 +19,10 @@ void Client::Session::take(Link, const TimingTest& test) {
 }
 
 void Client::Session::take(Link link, StepMessage& message) {
+    if (const std::string why = message.step.refusal(sweeps_); !why.empty()) {
+        connection_->close(why, RefusalCode::garbage);
+        return;
+    }
     const std::uint64_t number = message.step.number, last = grant_ ? grant_->lastStep() : 0;
     switch (grant_ && link == Link::linked ? grant_->arrived(message.step) : Grant::Arrival::foreign) {
         case Grant::Arrival::foreign:

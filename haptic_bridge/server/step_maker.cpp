@@ -69,7 +69,8 @@ void StepMaker::catchUp(const CatchUp& steps) {
     }
     bool fits = true;
     for (const sand::Step& step : steps.steps) {
-        fits = fits && step.number == replica_.stepNumber() + 1 && step.number <= start_.stepNumber;
+        fits = fits && step.number == replica_.stepNumber() + 1 && step.number <= start_.stepNumber &&
+               step.refusal(replica_.rules().sweepRange()).empty();
         if (fits) {
             replica_.apply(step);
         }
@@ -171,10 +172,13 @@ void StepMaker::makeStep() {
     message.step.epoch = start_.epoch;
     message.step.number = replica_.stepNumber() + 1;
     message.serverTimeNs = now_();
-    if (const std::int64_t readNs = fill(message.step); readNs != 0) {
+    if (replica_.holdsTool()) {
+        message.step.engaged = replica_.engaged();
+    } else if (const std::int64_t readNs = fill(message.step); readNs != 0) {
         message.serverTimeNs = readNs;
     }
     message.step.edit = std::exchange(edit_, {});
+    message.step.sweeps = replica_.wholeSweeps(message.step);
     const bool edited = message.step.edit.any();
     const std::uint64_t edit = message.step.edit.number;
     replica_.apply(message.step);

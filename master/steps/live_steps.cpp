@@ -25,7 +25,7 @@ constexpr const char* kOtherSand = "the hand felt other sand than the wall has s
 LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
                      std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock)
     : now_(clock ? std::move(clock) : host::monotonicNs),
-      link_(std::move(server), {scene.rules.digest(), scene.name}, std::move(security), now_,
+      link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.sweepRange()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace),
       pace_(pace),
@@ -162,12 +162,21 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::ui
 
 std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
     // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
-    std::vector<TimedStep> steps(std::min(own_.due(now_()), most));
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-        steps[i].step.epoch = epoch_;
-        steps[i].step.number = replica.stepNumber() + 1 + i;
-        own_.fill(steps[i]);
-        steps[i].step.edit = edits_.at(i);
+    const std::size_t due = std::min(own_.due(now_()), most);
+    std::vector<TimedStep> steps;
+    // What is owed after an edit, or while sweeps are owed, is known only when the step has been applied.
+    for (bool known = true; known && steps.size() < due;) {
+        TimedStep& next = steps.emplace_back();
+        next.step.epoch = epoch_;
+        next.step.number = replica.stepNumber() + steps.size();
+        if (replica.holdsTool()) {
+            next.step.engaged = replica.engaged();
+        } else {
+            own_.fill(next);
+        }
+        next.step.edit = edits_.at(0);
+        next.step.sweeps = replica.wholeSweeps(next.step);
+        known = !next.step.edit.any() && !replica.owed().any();
     }
     return steps;
 }
@@ -206,6 +215,15 @@ void LiveSteps::distrustServer() {
     serverUnhealed_ = true;
     link_.connect();
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
+}
+
+void LiveSteps::refused(const std::vector<TimedStep>& steps, const std::string& why) {
+    if (!linked() || steps.empty() || steps.back().step.epoch != epoch_) {
+        return;
+    }
+    link_.leave(why);
+    waitingSinceNs_ = now_();  // for kRetryWait, because a server that has sent such a step will do so again
+    takeOver("step_against_rules", fmt::format("{} has sent a step that is left out: {}", link_.address(), why));
 }
 
 void LiveSteps::stop() {

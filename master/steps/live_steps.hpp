@@ -52,6 +52,8 @@ public:
     /// If the hashes differ, connects again, so that the server starts from the wall's state.
     [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
                                    std::uint64_t stateHash) override;
+    /// Ends the link if the server has numbered the steps. Connects again after kRetryWait.
+    void refused(const std::vector<haptic_bridge::TimedStep>& steps, const std::string& why) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override { return link_.ticks(); }
     /// From the first call on, the pointers are the hand. Call it only without a server.
     void pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,

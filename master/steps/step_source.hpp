@@ -74,6 +74,9 @@ public:
                                            std::uint64_t /* hash */) {
         return true;
     }
+    /// Called when all replicas have left out one of `steps`, because it does what no program that numbers steps
+    /// correctly does (sand::Replica::refusedStep()). `why` is Replica::leftOut().
+    virtual void refused(const std::vector<haptic_bridge::TimedStep>& /* steps */, const std::string& /* why */) {}
     /// Returns the pieces of the server's tick track since the last call. They are written to the journal.
     [[nodiscard]] virtual std::vector<base::Bytes> ticks() { return {}; }
     /// Injects a fault into the link: garbage or a partition. Without a link, the fault is kept until there is one.

@@ -82,12 +82,12 @@ std::size_t Erosion::bytes() const {
            (active_.capacity() + swept_.capacity()) * sizeof active_[0];
 }
 
-std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obstacle) {
+Erosion::Swept Erosion::sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle) {
     wakeTouched();
     std::int64_t outflow = 0;
-    for (int n = 0; n < sweeps && !settled(); ++n) {
-        const float momentum =
-            std::max(momentumAfter<float>(n, dampingOf(sweeps)), momentumAfter<float>(undisturbed_, kMostDamping));
+    for (int n = 0; n < part.sweeps && !settled(); ++n) {
+        const float momentum = std::max(momentumAfter<float>(part.first + n, dampingOf(part.whole)),
+                                        momentumAfter<float>(undisturbed_, kMostDamping));
         outflow += sweepOnce(field, momentum, obstacle);
         markAroundMoved();
         ++sweepsDone_;
@@ -100,7 +100,9 @@ std::int64_t Erosion::sweep(HeightField& field, int sweeps, const Obstacle* obst
             wakeAll();
         }
     }
-    return outflow;
+    // If no block is active, the next sweep would move no sand. A replica that was healed visits all blocks to find
+    // that.
+    return {outflow, settled()};
 }
 
 std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstacle* obstacle) {

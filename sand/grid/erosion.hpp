@@ -14,6 +14,7 @@
 #include "sand/grid/net_flux.hpp"
 #include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
+#include "sand/model/owed.hpp"
 #include "sand/model/rules.hpp"
 
 namespace sand::grid {
@@ -44,9 +45,9 @@ namespace sand::grid {
 /// slope under both laws. The piles of both are equal to three digits, but the default law needs a tenth of the sweeps.
 /// docs/sand.md has the constants p and k, and the measurements.
 ///
-/// Within one call of sweep(), M may grow faster, because a call of few sweeps ends before sand overshoots. In sweep i
-/// (from 0) of the call, M is at least i / (i + d), at most 0.9. Here d is a third of the sweeps that the caller
-/// allows, clamped to [3, 25].
+/// Within one step, M may grow faster, because a step of few sweeps ends before sand overshoots. In sweep i (from 0) of
+/// the step, M is at least i / (i + d), at most 0.9. Here d is a third of the step's sweeps, clamped to [3, 25]. It
+/// does not matter whether the sweeps of a step run in one call of sweep() or in several.
 ///
 /// **Band.** The start threshold may be above t. The sand of a cell slides if sand flowed through a face of the cell in
 /// the last sweep. A face no steeper than the start threshold carries a flux only if the sand of one of its two cells
@@ -81,11 +82,20 @@ public:
     /// has changed heights in `cells`, or has removed an obstacle from them.
     void touch(const CellRect& cells);
 
-    /// Runs `sweeps` sweeps over `field`; stops earlier if all sand is at rest.
+    /// What sweeps have done.
+    struct Swept {
+        std::int64_t outflow = 0;  // volume that fell over an open rim [unit · cell]
+        /// Whether the last sweep moved no sand. It does not depend on which blocks were visited.
+        bool still = false;
+    };
+    /// Runs the sweeps of `part` over `field`; stops earlier after a sweep in which no sand flows.
     ///
-    /// No flux raises a cell above the underside of `obstacle`, which is null without a tool. Returns the volume that
-    /// fell over an open rim [unit · cell].
-    std::int64_t sweep(HeightField& field, int sweeps, const Obstacle* obstacle = nullptr);
+    /// No flux raises a cell above the underside of `obstacle`, which is null without a tool.
+    Swept sweep(HeightField& field, const SweepPart& part, const Obstacle* obstacle = nullptr);
+    /// Runs a step of `sweeps` sweeps. Returns the volume that fell over an open rim [unit · cell].
+    std::int64_t sweep(HeightField& field, int sweeps, const Obstacle* obstacle = nullptr) {
+        return sweep(field, SweepPart::all(sweeps), obstacle).outflow;
+    }
 
     /// Adds the flux of each face in the last sweep to `sum`.
     void addFluxes(NetFlux& sum) const;

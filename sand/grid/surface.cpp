@@ -82,12 +82,14 @@ void GridSurface::release(const Tool& tool, const ProbePoint& probe) {
     erosion_.touch(Displacement(tool).cells(field_, probe));
 }
 
-void GridSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
+bool GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
-    outflow_ += erosion_.sweep(field_, sweeps, tool == nullptr ? nullptr : &here);
+    const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here);
+    outflow_ += swept.outflow;
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);
     }
+    return swept.still;
 }
 
 void GridSurface::changeRules(const Rules& rules) {

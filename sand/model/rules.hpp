@@ -14,7 +14,7 @@ namespace sand {
 
 /// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
 /// versions refuse to run together.
-inline constexpr std::uint32_t kAlgorithmVersion = 10;
+inline constexpr std::uint32_t kAlgorithmVersion = 11;
 
 /// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
 /// docs/sand.md states both laws.
@@ -34,6 +34,11 @@ enum class Rim : std::uint8_t {
     open     // lets sand fall over it, as outflow
 };
 constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
+
+/// Numbers of sweeps that a step may state in bytes.
+struct SweepRange {
+    std::int32_t least = 1, most = kMostSweeps;
+};
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
 /// and sends them to all other processes. These never derive them again, because the last digit of libm's results
@@ -66,6 +71,9 @@ struct Rules {
     /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a
     /// TIN.
     [[nodiscard]] std::uint64_t siteDigest() const { return ground ^ tin; }
+    /// Returns how many sweeps a step of this sand may state. Steps of a TIN state none, because all of its sweeps run
+    /// in one step: the fluxes between two of them are no state.
+    [[nodiscard]] SweepRange sweepRange() const { return tin == 0 ? SweepRange{} : SweepRange{0, 0}; }
     /// Returns a hash of the encoded rules and kAlgorithmVersion. Server and master compare it: replicas with equal
     /// digests and equal sand stay equal under equal steps.
     [[nodiscard]] std::uint64_t digest() const;

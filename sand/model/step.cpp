@@ -65,6 +65,7 @@ Edit decodeDetails(Edit::Kind kind, base::ByteReader& reader) {
 void Step::put(base::ByteWriter& writer) const {
     writer.putVarint(epoch);
     writer.putVarint(number);
+    writer.putVarint(static_cast<std::uint64_t>(sweeps));
     writer.put(static_cast<std::uint8_t>(flagsOf(*this)));
     writer.put(static_cast<std::uint8_t>(path.size()));
     ProbePoint last;
@@ -98,6 +99,12 @@ void Step::get(base::ByteReader& reader) {
     }
     epoch = static_cast<std::uint32_t>(readEpoch);
     number = reader.getVarint();
+    const std::uint64_t readSweeps = reader.getVarint();
+    if (readSweeps > kMostSweeps) {
+        throw base::FormatError("a step with " + std::to_string(readSweeps) + " sweeps; a step runs " +
+                                std::to_string(kMostSweeps) + " at most");
+    }
+    sweeps = static_cast<std::int32_t>(readSweeps);
     const auto flags = reader.get<std::uint8_t>();
     const auto count = reader.get<std::uint8_t>();
     const int kind = flags % kTurned / 2;
@@ -119,6 +126,15 @@ void Step::get(base::ByteReader& reader) {
         heading = base::read<Heading>(reader);
     }
     edit = decodeDetails(static_cast<Edit::Kind>(kind), reader);
+}
+
+std::string Step::refusal(const SweepRange& range) const {
+    if (sweeps >= range.least && sweeps <= range.most) {
+        return {};
+    }
+    return "step " + std::to_string(number) + " states " + std::to_string(sweeps) +
+           " sweeps; a step of this sand states " +
+           (range.most == 0 ? "none" : std::to_string(range.least) + " to " + std::to_string(range.most));
 }
 
 }  // namespace sand

@@ -8,7 +8,7 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/model/probe_point.hpp"
-#include "sand/model/tuning.hpp"
+#include "sand/model/rules.hpp"
 
 namespace sand {
 
@@ -65,16 +65,22 @@ struct Step {
     std::uint32_t epoch = 0;
     std::uint64_t number = 0;
     bool engaged = false;  // true: the tool may touch the sand; false: it hovers and leaves the sand alone
-    std::vector<ProbePoint> path;
+    std::vector<ProbePoint> path{};
     Edit edit = Edit::none;                         // done after the tool's displacement and before the sweeps
     std::optional<Heading> heading = std::nullopt;  // of the tool from this step on; nullopt: unchanged
+    /// Sweeps of a height field that this step runs, at most kMostSweeps. 0 runs all that is owed: a TIN's steps do,
+    /// and so do steps that never become bytes.
+    std::int32_t sweeps = 0;
 
     /// Writes the one format that link, frame message and journal share. A point is written as the difference from the
     /// point before, in integers of variable length: about 60 bytes for a step of 17 samples.
     void put(base::ByteWriter& writer) const;
-    /// Reads what put() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points, and for
-    /// a coordinate beyond kMaxProbe.
+    /// Reads what put() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points or
+    /// kMostSweeps sweeps, and for a coordinate beyond kMaxProbe.
     void get(base::ByteReader& reader);
+    /// Returns why no step of sand with this range has so many sweeps, or an empty text. Call it for each step that
+    /// comes from a network or a file, with Rules::sweepRange().
+    [[nodiscard]] std::string refusal(const SweepRange& range) const;
     friend bool operator==(const Step&, const Step&) = default;
 };
 

@@ -10,6 +10,7 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
+#include "sand/model/owed.hpp"
 #include "sand/model/rules.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
@@ -76,9 +77,10 @@ public:
     /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,
     /// as tin::Settings::keepConstraints says.
     virtual void leave(const Tool&) {}
-    /// Lets the sand slide for at most `sweeps` sweeps. `tool` is an obstacle with its centre at `probe`; null without
-    /// one.
-    virtual void sweep(int sweeps, const Tool* tool, const ProbePoint& probe) = 0;
+    /// Lets the sand slide for the sweeps of `part`, or until a sweep moves no sand. `tool` is an obstacle with its
+    /// centre at `probe`; null without one. Returns whether the last sweep moved no sand. A TIN takes each call for a
+    /// whole step.
+    virtual bool sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once. Ignores rock, walls and tools.

@@ -27,7 +27,7 @@ struct Tuning {
     static void fields(Self& it, Visit& visit) {
         visit("threshold", base::limited(it.threshold, 0, kLargestThreshold));
         visit("start_threshold", base::limited(it.startThreshold, it.threshold, kLargestThreshold));
-        visit("sweeps_per_step", base::limited(it.sweepsPerStep, 0, kMostSweeps));
+        visit("sweeps_per_step", base::limited(it.sweepsPerStep, 1, kMostSweeps));
         visit("tool", it.tool);
     }
     friend bool operator==(const Tuning&, const Tuning&) = default;

@@ -156,7 +156,7 @@ void TinSurface::leave(const Tool& tool) {
     meshChanged();
 }
 
-void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
+bool TinSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     if (detail_.removals > 0) {
         const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(probe);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
@@ -172,13 +172,14 @@ void TinSurface::sweep(int sweeps, const Tool* tool, const ProbePoint& probe) {
             held_ = pose;
             wakeFull(under, here.reach(probe));
         }
-        erosion_.sweep(layer_, sweeps, &under, moved_);
+        erosion_.sweep(layer_, part.sweeps, &under, moved_);
     } else {
         held_.reset();
-        erosion_.sweep(layer_, sweeps, nullptr, moved_);
+        erosion_.sweep(layer_, part.sweeps, nullptr, moved_);
     }
     state_.outflow += erosion_.takeOutflow();
     sandMoved(moved_);
+    return settled();
 }
 
 void TinSurface::changeRules(const Rules& rules) {

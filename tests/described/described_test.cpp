@@ -18,9 +18,9 @@ namespace {
 
 using AllTypes = decltype(std::tuple_cat(std::declval<described::Types>(), std::declval<described::RankTypes>()));
 
-// The worst list is one of steps, because a step of four bytes becomes a sand::Step. While the list grows, it asks for
+// The worst list is one of steps, because a step of five bytes becomes a sand::Step. While the list grows, it asks for
 // less than four times its last size.
-constexpr std::size_t kMostPerByte = 4 * sizeof(sand::Step) / 4;
+constexpr std::size_t kMostPerByte = 4 * sizeof(sand::Step) / 5;
 constexpr std::size_t kAround = 4096;  // [byte], for texts of errors
 
 /// Decodes bytes as a T. A fault fails the test.

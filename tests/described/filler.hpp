@@ -187,10 +187,15 @@ private:
         it.value = below(2) == 1 ? Edit(Edit::Kind::settle) : Edit::loaded({1, 2, 3});
         it.value.number = 1 + below(1000);
     }
+    void form(sand::Owed& owed) {
+        owed.whole = below(2) == 0 ? sand::Owed::kUntilRest : static_cast<std::int32_t>(below(sand::kMostSweeps));
+        owed.done = owed.whole == 0 ? 0 : static_cast<std::int32_t>(below(static_cast<std::size_t>(owed.whole)));
+    }
     void form(sand::Step& step) {
         step = {
             .epoch = 1, .number = below(1000), .engaged = below(2) == 1, .path = {{600, 700, 100}, {-9, 0, 1 << 20}}};
         step.path.resize(below(3));
+        step.sweeps = static_cast<std::int32_t>(below(sand::kMostSweeps + 1));
     }
 
     std::mt19937& random_;

@@ -31,8 +31,9 @@ using Types = std::tuple<
     journal::JournalFrame, journal::JournalEnd, journal::JournalResumed, journal::JournalTicks, journal::JournalDoubt,
     journal::JournalChecked, journal::JournalContinued, journal::JournalForce,
     // scenes
-    sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::StateHead, sand::ForceConstants, scene::Look,
-    scene::Material, scene::Georeference, scene::RasterStatement, sand::tin::Holes::Run, sand::tin::TinStart,
+    sand::Rules, sand::Tuning, sand::Tool, sand::Heading, sand::Owed, sand::StateHead, sand::ForceConstants,
+    scene::Look, scene::Material, scene::Georeference, scene::RasterStatement, sand::tin::Holes::Run,
+    sand::tin::TinStart,
     // walls
     walls::Screen, walls::Output, walls::Place, walls::Tile, walls::Viewer, walls::Clip, walls::Stage, walls::Grid,
     walls::Wall>;

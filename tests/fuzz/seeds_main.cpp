@@ -34,7 +34,10 @@ using fuzz::Folder;
 using fuzz::piece;
 
 sand::Step step(std::uint64_t number) {
-    return {.epoch = 1, .number = number, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}, {-9, 0, 1 << 20}}};
+    sand::Step step{
+        .epoch = 1, .number = number, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}, {-9, 0, 1 << 20}}};
+    step.sweeps = 8;
+    return step;
 }
 
 void writeWire(Folder folder) {

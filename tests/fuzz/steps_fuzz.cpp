@@ -42,7 +42,8 @@ void shorten(Step& step) {
         point.y %= kFar;
     }
     step.path.resize(std::min<std::size_t>(step.path.size(), 4));
-    step.edit.tuning.sweepsPerStep %= 16;
+    step.sweeps %= 20;
+    step.edit.tuning.sweepsPerStep = 1 + step.edit.tuning.sweepsPerStep % 16;
     step.edit.tuning.tool.radius %= 32 * sand::kProbePerCell;
     step.edit.tuning.tool.halfWidth = std::min(step.edit.tuning.tool.halfWidth, step.edit.tuning.tool.radius);
 }

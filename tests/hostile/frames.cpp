@@ -11,6 +11,7 @@ using namespace haptic_bridge;
 
 Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_(std::move(identity)) {
     sand::Step step{.epoch = 1, .number = 7, .engaged = true, .path = {{600, 700, 100}, {700, 650, 50}}};
+    step.sweeps = 8;
     sand::Step loaded = step;
     loaded.edit = sand::Edit::loaded(base::Bytes(300, 9));
     for (const Message& message :

@@ -17,7 +17,9 @@ protected:
                 journal_.beginPart({3, 103});
             }
             journal::JournalFrame frame{number, 99 + number, {}};
-            frame.steps.emplace_back().number = number;
+            sand::Step& step = frame.steps.emplace_back();
+            step.number = number;
+            step.sweeps = 1;
             journal_.add(frame);
         }
         journal_.add(journal::JournalEnd{6, 106});

@@ -158,15 +158,15 @@ TEST_F(Replay, WritesEveryStepAsARow) {
         sand::Tuning tuning = scene.rules.tuning;
         tuning.tool.kind = sand::ToolKind::circle;
         tuning.tool.radius = 3 * sand::kProbePerCell;
-        const sand::Step first{.epoch = 7, .number = 1, .engaged = true, .path = {{256, 512, -64}, {384, 0, 0}}};
-        const sand::Step second{
-            .epoch = 7, .number = 2, .engaged = false, .path = {}, .edit = sand::Edit::tuned(tuning)};
-        const sand::Step third{.epoch = 8,
-                               .number = 3,
-                               .engaged = false,
-                               .path = {},
-                               .edit = sand::Edit::undo,
-                               .heading = sand::Heading{0, 16384}};
+        sand::Step first{.epoch = 7, .number = 1, .engaged = true, .path = {{256, 512, -64}, {384, 0, 0}}};
+        sand::Step second{.epoch = 7, .number = 2, .engaged = false, .path = {}, .edit = sand::Edit::tuned(tuning)};
+        sand::Step third{.epoch = 8,
+                         .number = 3,
+                         .engaged = false,
+                         .path = {},
+                         .edit = sand::Edit::undo,
+                         .heading = sand::Heading{0, 16384}};
+        first.sweeps = second.sweeps = third.sweeps = 8;
         writer.append({5, 0, {first, second}});
         writer.append({9, 0, {third}});
     }
@@ -337,6 +337,7 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     sand::Rules rules;
     rules.columns = rules.rows = 16384;
     rules.stepsPerSecond = 60;
+    rules.tuning.sweepsPerStep = 8;
     base::ByteWriter scene;
     scene.putText("huge");
     base::putMember(scene, rules);

@@ -101,7 +101,8 @@ TEST_F(SkippedStep, LeavesEveryReplicaEqualHoweverFarItCame) {
             early.arm(0, 1);
             late.arm(3, 1);
         }
-        const sand::Step step = number == 4 ? changing(number) : digging(number);
+        sand::Step step = number == 4 ? changing(number) : digging(number);
+        step.sweeps = number == 4 ? 4 : 0;  // the other four of eight would be owed
         one.apply(step);
         other.apply(step);
         ASSERT_EQ(one.leftOut(), number == 4 ? "skipped: too much sand" : "") << number;
@@ -112,6 +113,7 @@ TEST_F(SkippedStep, LeavesEveryReplicaEqualHoweverFarItCame) {
             EXPECT_EQ(one.stepNumber(), 4U);
             EXPECT_FALSE(one.canUndo());
             EXPECT_FALSE(one.engaged());
+            EXPECT_EQ(one.owed(), sand::Owed());
             EXPECT_EQ(one.probe(), digging(3).path.back());
             EXPECT_EQ(one.heading(), scene_.rules.tuning.tool.heading);
             EXPECT_EQ(one.rules(), scene_.rules);

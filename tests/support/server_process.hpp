@@ -201,6 +201,8 @@ struct Wall {
     std::vector<sand::Edit> edits;
 };
 
-inline haptic_bridge::Offer offerOf(const scene::Scene& scene) { return {scene.rules.digest(), scene.name}; }
+inline haptic_bridge::Offer offerOf(const scene::Scene& scene) {
+    return {scene.rules.digest(), scene.name, scene.rules.sweepRange()};
+}
 
 }  // namespace test

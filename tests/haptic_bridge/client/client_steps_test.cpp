@@ -80,14 +80,38 @@ TEST(Client, GivesUpTheLinkOverAMissingStep) {
     EXPECT_TRUE(reaches(client, Link::offered)) << "the client must connect again";
 }
 
+std::uint64_t refusedForGarbage(const Client& client) {
+    return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
+}
+
+TEST(Client, RefusesSweepsThatNoStepHas) {
+    haptic_bridge::Offer tin = kOffer;
+    tin.sweeps = {0, 0};
+    for (const auto& [offer, sweeps] : {std::pair(kOffer, 0), {kOffer, sand::kMostSweeps + 1}, {tin, 1}}) {
+        FakeServer server(
+            toTheFirst([&, given = offer.sweeps.least, wrong = sweeps](FakeServer::Connection& connection) {
+                if (linkUp(connection)) {
+                    for (const std::uint64_t number : {1, 2}) {
+                        StepMessage message = stepOf(1, number);
+                        message.step.sweeps = number == 1 ? given : wrong;
+                        connection.send(message);
+                    }
+                    connection.await<Bye>();
+                }
+            }));
+        Client client(server.address(), offer);
+        grantWhenOffered(client, 1, 0);
+        EXPECT_TRUE(eventually([&] { return refusedForGarbage(client) == 1; }, 10000ms)) << sweeps;
+        EXPECT_NE(client.lastFailure().find(std::to_string(sweeps) + " sweeps"), std::string::npos)
+            << client.lastFailure();
+        EXPECT_EQ(client.drain(10).size(), 1U) << "the step before it counts";
+    }
+}
+
 StepMessage editOf(std::uint64_t number, const sand::Edit& edit) {
     StepMessage message = stepOf(1, number);
     message.step.edit = edit;
     return message;
-}
-
-std::uint64_t refusedForGarbage(const Client& client) {
-    return client.counters().refused[static_cast<std::size_t>(RefusalCode::garbage) - 1];
 }
 
 // Without this, a server could fill memory and journal with sand that no operator has loaded.

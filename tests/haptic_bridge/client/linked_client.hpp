@@ -21,7 +21,9 @@ inline bool reaches(const haptic_bridge::Client& client, haptic_bridge::Link lin
 
 /// A step whose path is one point, at x = `number`.
 inline haptic_bridge::StepMessage stepOf(std::uint32_t epoch, std::uint64_t number) {
-    return {1, 2, {epoch, number, false, {{static_cast<std::int32_t>(number), 0, 0}}}};
+    haptic_bridge::StepMessage message{1, 2, {epoch, number, false, {{static_cast<std::int32_t>(number), 0, 0}}}};
+    message.step.sweeps = 8;
+    return message;
 }
 
 /// Welcomes the client and takes over the numbering of steps.

@@ -46,6 +46,8 @@ public:
     [[nodiscard]] bool crowded() const { return crowded_; }
     /// Makes the server claim this step from its second link on, with the hash that it sent for this step.
     void claimStep(std::uint64_t step) { claimed_ = step; }
+    /// Makes the server send a step that runs more sweeps than are owed. All replicas leave it out.
+    void payTooMuchIn(std::uint64_t step) { wrong_ = step; }
     /// Makes the server answer a goodbye with a last report that says `audited`. Without this call it does not answer.
     void answerByeWith(haptic_bridge::Audited audited) { answer_ = audited; }
     /// Makes the server say goodbye, with such a report, when the next frame is shown. Its sand counts as wrong then.
@@ -151,6 +153,7 @@ private:
         if (edit_) {
             message.step.edit = *std::exchange(edit_, std::nullopt);
         }
+        message.step.sweeps = sand_.wholeSweeps(message.step) + (message.step.number == wrong_ ? 1 : 0);
         sand_.apply(message.step);
         const std::uint64_t hash = sand_.stateHash();
         message.stateHash = sent_[message.step.number] = hashToSend_(link, message.step.number, hash);
@@ -170,6 +173,7 @@ private:
     std::atomic<int> links_{0}, states_{0}, catchUps_{0}, requests_{0};
     std::atomic<std::uint64_t> shown_{0};
     std::atomic<bool> crowded_{false};
+    std::atomic<std::uint64_t> wrong_{0};
     std::optional<haptic_bridge::Audited> answer_;
     std::atomic<haptic_bridge::Audited> leaving_{haptic_bridge::Audited::no};
     mutable std::mutex mutex_;

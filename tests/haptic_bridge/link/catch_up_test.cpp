@@ -22,6 +22,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
         for (int i = 0; i < steps; ++i) {
             sand::Step step{wall.epoch, wall.replica.stepNumber() + 1, false, {}};
             step.edit = i == 0 ? sand::Edit(sand::Edit::settle) : sand::Edit();
+            step.sweeps = wall.replica.wholeSweeps(step);
             wall.replica.apply(step);
             ring.add(step);
             ring.reached(step.number, wall.replica.stateHash());

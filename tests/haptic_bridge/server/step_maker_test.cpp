@@ -54,6 +54,7 @@ protected:
         step.number = number;
         step.engaged = true;
         step.path = {{30 * 256 + static_cast<std::int32_t>(number) * 64, 30 * 256, 0}};
+        step.sweeps = 8;  // all that it owes
         return step;
     }
 

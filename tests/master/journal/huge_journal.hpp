@@ -34,6 +34,7 @@ protected:
     static base::Bytes rulesOfAHugeField() {
         sand::Rules rules;
         rules.columns = rules.rows = 16384;
+        rules.tuning.sweepsPerStep = 8;
         rules.stepsPerSecond = 60;
         base::ByteWriter writer;
         writer.putText("huge");

@@ -10,11 +10,13 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <tuple>
 
 #include "base/input_error.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/sand_samples.hpp"
+#include "tests/support/tin_scene.hpp"
 
 namespace {
 
@@ -69,6 +71,7 @@ TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
     for (const sand::Edit& edit : {sand::Edit::tuned({7, 11, 13, {.radius = 17}}),
                                    sand::Edit::loaded(base::Bytes(200'000, 9)), sand::Edit(sand::Edit::undo)}) {
         frame.steps.push_back({1, frame.steps.size() + 1, false, {}, edit});
+        frame.steps.back().sweeps = 8;
     }
     {
         master::JournalWriter writer(file_, scene, "0123456789abcdef");
@@ -77,6 +80,35 @@ TEST_F(JournalFile, KeepsWhatAnOperatorAskedFor) {
     const journal::Journal journal = master::readJournal(file_);
     ASSERT_EQ(journal.frames.size(), 1U);
     EXPECT_EQ(journal.frames[0].steps, frame.steps);
+}
+
+// The file is not damaged, but its steps are none of this sand.
+TEST_F(JournalFile, RefusesSweepsThatNoStepHas) {
+    const scene::Scene grid = samples::flatScene(20, 10), tin = samples::tinScene();
+    for (const auto& [scene, right, wrong] :
+         {std::tuple(&grid, 8, 0), {&grid, 8, sand::kMostSweeps + 1}, {&tin, 0, 3}}) {
+        {
+            master::JournalWriter writer(file_, *scene, "0123456789abcdef");
+            for (const auto& [number, sweeps] : {std::pair(std::uint64_t{1}, right), {2, wrong}}) {
+                sand::Step step{1, number, false, {}};
+                step.sweeps = sweeps;
+                writer.append({number, number, {step}});
+            }
+        }
+        journal::JournalReader reader = master::openJournal(file_);
+        ASSERT_TRUE(reader.next()) << "the step before it counts";
+        const std::int64_t whole = reader.wholeBytes();
+        try {
+            (void)reader.next();
+            ADD_FAILURE() << wrong;
+        } catch (const base::InputError& error) {
+            const std::string why = error.what();
+            EXPECT_NE(why.find(std::to_string(wrong) + " sweeps"), std::string::npos) << why;
+            EXPECT_NE(why.find("everything before is intact"), std::string::npos) << why;
+        }
+        EXPECT_EQ(reader.wholeBytes(), whole);
+        std::filesystem::remove(file_);
+    }
 }
 
 TEST_F(JournalFile, AFullDiskLeavesTheFramesBeforeWhole) {

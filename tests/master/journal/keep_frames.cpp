@@ -24,7 +24,8 @@ int keepFrames(const std::filesystem::path& folder, const std::string& policy) {
         nullptr, "", "test");
     print("made");
     for (std::uint64_t frame = 1; frame <= 3; ++frame) {
-        const sand::Step step{1, frame, false, {}};
+        sand::Step step{1, frame, false, {}};
+        step.sweeps = replica.wholeSweeps(step);
         try {
             keeper.keep({frame, replica.stateHash(), {step}}, {});
         } catch (const master::DiskFailure&) {

@@ -51,8 +51,10 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
         }
         connection.send(haptic_bridge::Ready{});
         if (server.connections() > 1) {  // it does the edit late, in the next epoch
-            connection.send(haptic_bridge::StepMessage{
-                1, 1, {start->epoch, start->stepNumber + 1, false, {}, withNumber(1, sand::Edit::settle)}});
+            haptic_bridge::StepMessage late{
+                1, 1, {start->epoch, start->stepNumber + 1, false, {}, withNumber(1, sand::Edit::settle)}};
+            late.step.sweeps = 1;
+            connection.send(late);
             connection.await<haptic_bridge::Bye>();
         } else if (connection.await<haptic_bridge::EditRequest>()) {
             ++asked;  // the server then closes the link

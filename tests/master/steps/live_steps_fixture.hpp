@@ -32,6 +32,9 @@ protected:
         std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
         for (const TimedStep& timed : steps) {
             wall_.apply(timed.step);
+            if (wall_.refusedStep()) {
+                live.refused(steps, wall_.leftOut());
+            }
             if (timed.step.edit.any()) {
                 edits_.push_back(timed.step.edit);
             }

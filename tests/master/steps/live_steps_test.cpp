@@ -21,6 +21,20 @@ using test::LiveStepsTest;
 using test::SandServer;
 using namespace std::chrono_literals;
 
+// The step is in the journal by then, and all replicas leave it out, that of the server too. So the hashes agree.
+TEST_F(LiveStepsTest, AServerWhoseStepIsLeftOutIsDropped) {
+    SandServer server(scene_);
+    server.payTooMuchIn(6);
+    master::LiveSteps live = stepsFrom(server.address());
+    ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 6; }));
+    EXPECT_FALSE(live.linked());
+    EXPECT_EQ(live.lastRefusal(), "it runs 9 sweeps, and 8 are owed");
+    EXPECT_EQ(differed_, 0);
+    EXPECT_TRUE(numbersAlone(live));
+    pass(master::LiveSteps::kRetryWait + 1);
+    ASSERT_TRUE(showUntil(live, [&] { return live.linked(); })) << "the master asks the server again";
+}
+
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
     master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
                            [this] { return nowNs_.load(); });

@@ -169,7 +169,7 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
         const base::Bytes state = sand.encodeState();
         base::ByteReader reader(state);
         auto head = base::read<sand::StateHead>(reader);
-        head.settling = false;
+        head.owed = {};
         base::Bytes changed = base::encoded(head);
         changed.insert(changed.end(), reader.rest().begin(), reader.rest().end());
         return changed;

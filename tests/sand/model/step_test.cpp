@@ -22,6 +22,7 @@ TEST(Step, SurvivesItsEncoding) {
     for (int i = 0; i < (samples::kSlowBuild ? 100 : 1000); ++i) {
         sand::Step step = samples::randomStep(random(), samples::flatScene(900, 900).rules, random);
         step.epoch = static_cast<std::uint32_t>(random());
+        step.sweeps = static_cast<std::int32_t>(random() % (sand::kMostSweeps + 1));
         const base::Bytes bytes = bytesOf(step);
         base::ByteReader reader(bytes);
         ASSERT_EQ(base::read<sand::Step>(reader), step);
@@ -54,8 +55,9 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
 TEST(Step, TakesTheseBytes) {
     sand::Step step{
         3, 300, true, {{5, -6, 70}}, samples::withNumber(200, sand::Edit::tuned({7, 11, 13, {.radius = 17}}))};
-    const base::Bytes expected{3,  0xac, 2, 9, 1, 10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0, 0,    11, 0, 0, 0,
-                               13, 0,    0, 0, 0, 17, 0,  0,    0, 0,    0, 0, 0, 0, 0x40, 0,  0, 0};
+    step.sweeps = 621;  // 0xed, 4
+    const base::Bytes expected{3, 0xac, 2, 0xed, 4, 9, 1,  10, 11, 0x8c, 1, 0xc8, 1, 7, 0, 0,    0, 11, 0, 0,
+                               0, 13,   0, 0,    0, 0, 17, 0,  0,  0,    0, 0,    0, 0, 0, 0x40, 0, 0,  0};
     EXPECT_EQ(bytesOf(step), expected);
     base::ByteReader reader(expected);
     EXPECT_EQ(base::read<sand::Step>(reader), step);
@@ -112,6 +114,20 @@ TEST(Step, RefusesEveryTruncation) {
     }
 }
 
+TEST(Step, RefusesMoreSweepsThanAStepMayRun) {
+    sand::Step step{1, 2, true, {{5, 6, 7}}};
+    for (const std::int32_t sweeps : {sand::kMostSweeps, sand::kMostSweeps + 1, -1}) {
+        step.sweeps = sweeps;
+        const base::Bytes bytes = bytesOf(step);
+        base::ByteReader reader(bytes);
+        if (sweeps == sand::kMostSweeps) {
+            EXPECT_EQ(base::read<sand::Step>(reader), step);
+        } else {
+            EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError) << sweeps;
+        }
+    }
+}
+
 TEST(Step, RefusesEveryTruncationOfAnEdit) {
     for (const sand::Edit& edit :
          {sand::Edit::tuned({7, 11, 13, {.radius = 17}}), sand::Edit::loaded({3, 1, 4, 1, 5})}) {
@@ -142,6 +158,8 @@ TEST(Step, RefusesAMaterialOrToolThatNoSceneGives) {
         refused(with([bad](sand::Tuning& tuning) { tuning.tool.radius = bad; }));
     }
     refused({12, 11, 13, {.radius = 17}});  // the start threshold would be below the threshold
+    refused({7, 11, 0, {.radius = 17}});    // a step runs at least one sweep
+    refused({7, 11, sand::kMostSweeps + 1, {.radius = 17}});
 }
 
 TEST(Step, RefusesPathsTooLongAndPointsOutOfReach) {
