@@ -251,7 +251,7 @@ void writeTin(Folder folder) {
     surface.drag(tool, std::array{sand::ProbePoint{1000, 1000, 200}, sand::ProbePoint{2000, 1500, 100}});
     add();  // with an imprint of the tool
     surface.leave(tool);
-    surface.sweep(8, nullptr, {});
+    surface.sweep(sand::SweepPart::all(8), nullptr, {});
     add();
     base::ByteWriter start;
     scene.tin->encode(start);

@@ -27,9 +27,9 @@ void goOn(TinSurface& surface, const scene::Scene& scene) {
     const auto volume = surface.layer().volume();
     const std::array path{ProbePoint{1500, 1500, 300}, ProbePoint{2600, 1900, 200}};
     surface.drag(tool, path);
-    surface.sweep(2, &tool, path.back());
+    surface.sweep(sand::SweepPart::all(2), &tool, path.back());
     surface.leave(tool);
-    surface.sweep(4, nullptr, path.back());
+    surface.sweep(sand::SweepPart::all(4), nullptr, path.back());
     fuzz::require(surface.layer().volume() + surface.outflow() == volume + outside,
                   "the volume of the sand has changed");
     (void)surface.hash();
