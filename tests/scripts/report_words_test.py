@@ -14,7 +14,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("figures", "launcher")]
-from report_data import Table, TableFault  # noqa: E402
+from report_data import Table, TableFault, keys_of  # noqa: E402
 from report_page import page  # noqa: E402
 from report_parts import PARTS  # noqa: E402
 from report_text import SECTIONS, Section  # noqa: E402
@@ -30,14 +30,6 @@ DEFINITIONS = (
     "An error counts from the point where the run does not exceed it again, because a user cannot know when to stop.",
     "The ratio is how many times faster than the reference a method is.",
 )
-# Columns that say what a row is about. All others are results. A dictionary has those of single tables.
-KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "radius", "R", "cells_per_step",
-        "sweeps_per_step", "datum", "degrees", "law", "rate", "slope", "shallow", "arm", "delay", "b", "hand", "ground",
-        "state", "field", "part", "kind", "what", "tool", "refined", "columns", "rows", "terrain", "mesh", "scheme",
-        "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
-        "used", "why", "world", "integers"}
-MORE_KEYS = {"work-precision": {"sweeps"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
-             "ranks": {"ranks"}}
 
 
 def sentences(text):
@@ -47,7 +39,7 @@ def sentences(text):
 
 
 def results(name, table):
-    return [c for c in table.columns if c not in KEYS | MORE_KEYS.get(name.partition("-r")[0] if name.startswith("hashes") else name, set())]
+    return [column for column in table.columns if column not in keys_of(name, table.columns)]
 
 
 def reversed_values(values):
