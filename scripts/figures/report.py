@@ -37,12 +37,13 @@ def options(arguments):
     return args
 
 
-def build(quick, presets=True):
-    """Builds what the parts run, with the presets whose hashes are compared unless the report is quick. Returns why this failed, or None."""
+def build(parts, programs):
+    """Builds the programs of `parts`: the paths `programs`. Returns why this failed, or None."""
     commands = [["scripts/install_dependencies.sh"], ["cmake", "--preset", "release"]]
-    targets = ["--target", "sandwall_bench", "detail_bench"] if quick else []  # whole sessions need all programs
+    sessions = {"ranks", "latency"} & {part.name for part in parts}  # these need all programs
+    targets = [] if sessions else ["--target", "sandwall_bench", "detail_bench"]
     commands.append(["cmake", "--build", "build/release", "--parallel", *targets])
-    for preset in PRESETS[1:] if presets and not quick else []:
+    for preset in (preset for preset in PRESETS[1:] if any(program.startswith(f"build/{preset}/") for program in programs)):
         commands += [["cmake", "--preset", preset], ["cmake", "--build", f"build/{preset}", "--parallel", "--target", "sandwall_bench"]]
     for command in commands:
         ran = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL if "--preset" in command else None)
@@ -59,7 +60,7 @@ def print_list(parts, data, quick, root):
         print(f"{part.name:22} {minutes(expected(part, data, quick)):>7}  {str(why or 'valid').removeprefix(part.name + '.csv: ')}")
     cores = len(os.sched_getaffinity(0))
     print(f"all {len(parts)} parts take about {minutes(total(parts, data, quick, cores))}; "
-          f"{len(waiting)} to measure, about {minutes(total(waiting, data, quick, cores) if waiting else 0)}")
+          f"{len(waiting)} to measure, about {minutes(total(waiting, data, quick, cores) if waiting else 0)}, without building")
 
 
 def lock(data):
@@ -81,7 +82,7 @@ def run(arguments, parts=PARTS, sections=SECTIONS, prepare=build, root=ROOT):
         print_list(parts, data, args.quick, root)
         return 0
     if args.check:
-        if why := prepare(args.quick, presets=False):
+        if why := prepare(parts, {part.check_program or part.program for part in parts}):
             print(f"report.sh: {why}", file=sys.stderr)
             return 1
         return 1 if check(parts, data, args.quick, root, len(os.sched_getaffinity(0))) else 0
@@ -100,7 +101,8 @@ def run(arguments, parts=PARTS, sections=SECTIONS, prepare=build, root=ROOT):
     failures, status = {}, 0
     try:
         if not args.draw:
-            if why := prepare(args.quick):
+            waiting = [part for part in parts if state_of(part, data, args.quick, root)]
+            if waiting and (why := prepare(waiting, {part.program for part in waiting})):
                 print(f"report.sh: {why}", file=sys.stderr)
                 return 1
             measuring = Measuring(parts, data, args.quick, root)
