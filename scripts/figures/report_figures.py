@@ -205,7 +205,9 @@ def dig(table):
     for row in table.where(cells_per_step=1.5):
         tool = (row.get("sand", "grid"), row["R"])
         tools[tool] = max(row["N"], tools.get(tool, 0))
-    for place, ((sand, radius), size) in enumerate(tools.items()):
+    radii = sorted({radius for _, radius in tools}, reverse=True)
+    for (sand, radius), size in tools.items():
+        place = radii.index(radius)
         rows = [row for row in table.where(N=size, R=radius, cells_per_step=1.5) if row.get("sand", "grid") == sand]
         for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
             axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=SERIES[place % len(SERIES)],
