@@ -72,6 +72,7 @@ std::vector<Curve> allCurves() {
          1,
          bench::betweenStability},
         {"tap", "force and work of a tap of 0.1 s, by `between`", {0}, 1, bench::tap},
+        {"extremes", "sand at the ends of its ranges: sweeps, volume and excess at rest", {0}, 1, bench::extremes},
         {"explain", "parts that a scene loads, runs and leaves out, with the cost of each", {}, 100, bench::explain},
         {"certificate",
          "proved bound and true value of the distance from the right pile",
@@ -82,7 +83,7 @@ std::vector<Curve> allCurves() {
         {"tin-piles",
          "error of piles on a TIN by vertices and run time, for meshes of every kind and turned",
          {32, 64, 128},
-         1,
+         10,
          bench::tinPiles},
         {"tin-active", "time of 100 sweeps over 1000 vertices of a TIN", {500}, 10, bench::tinActive},
         {"tin-step", "time of a step on a TIN with 64 sweeps, part by part", {500}, 10, bench::tinStep},
@@ -104,6 +105,10 @@ void addOptions(host::CommandLine& command, const Curve& curve, bench::Settings&
     command.option("--out", settings.out, "CSV file to write (default: standard output)");
     command.option("--runs", settings.runs, "number of runs of each timed measurement").range(1, 1000).showDefault();
     command.option("--seed", settings.seed, "seed of all random numbers").showDefault();
+    if (curve.measure == bench::guardedSweep) {
+        command.option("--rows", settings.rows, "only these rows, ARM/DELAY/DAMPING, separated by commas")
+            .commaSeparated();
+    }
     if (curve.sizes == std::vector<int>{0}) {
         return;
     }

@@ -153,7 +153,8 @@ void measure(const char* law, const sand::ForceConstants& constants, int side, i
         }
         const double error = std::sqrt(first.square / (kTicks - kSettled));
         csv.row(law, side, first.name, 1000.0 / first.every, error, error / size, first.most, first.jump, drags[0].jump,
-                spreadOf(micro).median, spreadOf(micro).lowest, spreadOf(micro).highest, spreadOf(slowest).median);
+                runs, spreadOf(micro).median, spreadOf(micro).lowest, spreadOf(micro).highest,
+                spreadOf(slowest).median);
     }
 }
 
@@ -171,7 +172,7 @@ void forceRate(const Settings& settings, Csv& csv) {
     csv.note(
         "us: CPU time of one thread per tick with the copy of the sand; p99: 99th percentile of a tick without the "
         "copy");
-    csv.columns("law,N,method,rate,rms,share,most,jump,truth_jump,us_median,us_min,us_max,us_p99");
+    csv.columns("law,N,method,rate,rms,share,most,jump,truth_jump,runs,us_median,us_min,us_max,us_p99");
     for (const int side : settings.sizes) {
         sand::ForceConstants constants;
         measure("repulse", constants, side, settings.runs, csv);

@@ -25,7 +25,7 @@ struct Settings {
     std::string scene;                   // scene file of `explain`
     std::string raster;                  // raster file of `tin-simplify`, in place of dunes
     std::optional<base::CodePath> path;  // of `throughput`; nullopt: the fastest one
-    std::vector<std::string> rows;       // of `throughput`; empty: all
+    std::vector<std::string> rows;       // of `throughput` and `guarded-sweep`; empty: all
     std::string commandLine;             // the typed command, for the file's head
 };
 

@@ -32,6 +32,7 @@ void tap(const Settings& settings, Csv& csv);
 void tinPiles(const Settings& settings, Csv& csv);
 void tinActive(const Settings& settings, Csv& csv);
 void tinStep(const Settings& settings, Csv& csv);
+void extremes(const Settings& settings, Csv& csv);
 void explain(const Settings& settings, Csv& csv);
 void imprint(const Settings& settings, Csv& csv);
 void simplify(const Settings& settings, Csv& csv);

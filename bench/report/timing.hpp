@@ -30,6 +30,10 @@ double secondsOf(const Work& work) {
     return cpuSeconds() - before;
 }
 
+/// Returns how often a measurement is run whose first run has taken `first` seconds: `most` times below 5 s, three
+/// times below 60 s, and else once.
+inline int runsFor(double first, int most) { return first < 5 ? most : first < 60 ? std::min(most, 3) : 1; }
+
 /// Returns the value below which `share` of `values` are, by linear interpolation between neighbours. Returns 0 if
 /// `values` is empty.
 inline double quantile(std::vector<double> values, double share) {

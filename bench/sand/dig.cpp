@@ -1,26 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures digging at the rate of a session: the time of a step, and the share of sand that has yet to move.
 #include <cmath>
+#include <memory>
 #include <numbers>
 
 #include "bench/report/curves.hpp"
 #include "bench/report/timing.hpp"
-#include "bench/sand/piles.hpp"
+#include "bench/sand/dig_lag.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "sand/grid/erosion.hpp"
-#include "sand/replica.hpp"
-#include "scene/model/scene.hpp"
+#include "tests/support/tin_piles.hpp"
 
 namespace bench {
 namespace {
 
-constexpr int kSteps = 200;       // per stroke
-constexpr int kMostAfter = 2000;  // largest number of steps after lifting
+constexpr int kSteps = 200;        // per stroke
+constexpr int kLargestTin = 512;   // [cell], side of the largest field that is a TIN, too
+constexpr double kTinRadius = 12;  // [cell], largest tool in a TIN
+constexpr double kTinSpeed = 1.5;  // [cell per step]
 
 struct Stroke {
+    bool tin;
     int side;
     double radius, speed;  // [cell], [cell per step]
     int sweeps;            // per step
+
+    /// Returns whether the stroke and its banks have room along the diagonal.
+    [[nodiscard]] bool fits() const { return speed * kSteps / std::numbers::sqrt2 + 6 * radius < side; }
+    [[nodiscard]] bool measured() const {
+        const bool inTin = side <= kLargestTin && radius <= kTinRadius && speed == kTinSpeed &&
+                           (sweeps == 4 || sweeps == 16 || sweeps == 64);
+        return fits() && (inTin || !tin);
+    }
 };
 
 scene::Scene sceneFor(const Stroke& stroke) {
@@ -30,6 +40,9 @@ scene::Scene sceneFor(const Stroke& stroke) {
     scene.rules.tuning.sweepsPerStep = stroke.sweeps;
     scene.rules.stepsPerSecond = 60;
     scene.rules.tuning.tool.radius = static_cast<std::int32_t>(stroke.radius * sand::kProbePerCell);
+    if (stroke.tin) {
+        scene.tin = std::make_shared<const sand::tin::TinStart>(tin_piles::levelStart(stroke.side, 1));
+    }
     return scene;
 }
 
@@ -55,68 +68,40 @@ std::uint64_t digStroke(sand::Replica& replica, const Stroke& stroke, std::vecto
     return hash;
 }
 
-/// The sand at the end of a stroke, compared with settled sand.
-struct Lag {
-    double held = 0, lifted = 0;  // share of the displaced sand that still has to move
-    double bank = 0;              // [cell]
-    double bankReach = 0;         // [cell]
-    int stepsAfter = 0;
-};
-
-/// Returns the volume of sand that has to move, divided by the volume of displaced sand. Each volume is half of a sum:
-/// of |field - rest|, and of |rest|.
-double behind(const sand::HeightField& field, const sand::HeightField& rest) { return misplaced(field, rest); }
-
-Lag lagOf(sand::Replica& replica, const Stroke& stroke) {
-    Lag lag;
-    const sand::HeightField& field = std::get<sand::GridData>(replica.surface().data()).field;
-    const sand::HeightField end = field;
-    const sand::grid::Obstacle tool = sand::grid::Displacement(replica.tool()).obstacle(end, replica.probe());
-    sand::HeightField held = end;
-    sand::grid::Erosion(held, replica.rules()).sweep(held, kMostSweeps, &tool);
-    sand::HeightField lifted = end;
-    sweepToRest(lifted, replica.rules());
-    lag.held = behind(end, held);
-    lag.lifted = behind(end, lifted);
-    for (int y = 0; y < stroke.side; ++y) {
-        for (int x = 0; x < stroke.side; ++x) {
-            lag.bank = std::max(lag.bank, static_cast<double>(end.height(x, y)) / sand::kUnitsPerCell);
-            if (end.height(x, y) - lifted.height(x, y) > sand::kUnitsPerCell / 2) {
-                lag.bankReach = std::max(lag.bankReach, std::abs(x - y) / std::numbers::sqrt2);
-            }
-        }
+/// Returns the median time of a step of settled sand [s], and its hash.
+std::pair<double, std::uint64_t> idle(const Stroke& stroke) {
+    std::uint64_t hash = 0;
+    std::vector<double> seconds;
+    seconds.reserve(kSteps);
+    sand::Replica settled(sceneFor(stroke));
+    for (int i = 0; i < kSteps; ++i) {
+        seconds.push_back(secondsOf([&] {
+            settled.apply({1, settled.stepNumber() + 1, false, {}});
+            hash = settled.stateHash();
+        }));
     }
-    for (; lag.stepsAfter < kMostAfter && behind(field, lifted) > 0.01; ++lag.stepsAfter) {
-        replica.apply({1, replica.stepNumber() + 1, false, {}});
-    }
-    return lag;
+    return {quantile(seconds, 0.5), hash};
 }
 
-void measure(const Stroke& stroke, int runs, Csv& csv) {
-    progress("N = {}, R = {}, {} cells per step, {} sweeps per step: {} strokes", stroke.side, stroke.radius,
-             stroke.speed, stroke.sweeps, runs);
+void measure(const Stroke& stroke, int most, Csv& csv) {
+    const char* kind = stroke.tin ? "TIN" : "grid";
+    progress("{}, N = {}, R = {}, {} cells per step, {} sweeps per step", kind, stroke.side, stroke.radius,
+             stroke.speed, stroke.sweeps);
     std::vector<double> seconds;
     std::uint64_t hash = 0;
     Lag lag;
-    for (int run = 0; run < runs; ++run) {
+    int run = 0;
+    for (int runs = 1; run < runs; ++run) {
         sand::Replica replica(sceneFor(stroke));
-        hash = digStroke(replica, stroke, seconds);
+        const double took = secondsOf([&] { hash = digStroke(replica, stroke, seconds); });
         if (run == 0) {
-            lag = lagOf(replica, stroke);
+            runs = runsFor(took, most);
+            lag = stroke.tin ? lagOfTin(replica, stroke.side) : lagOfGrid(replica);
         }
     }
-    std::uint64_t idleHash = 0;
-    std::vector<double> idle;
-    idle.reserve(kSteps);
-    sand::Replica settled(sceneFor(stroke));
-    for (int i = 0; i < kSteps; ++i) {
-        idle.push_back(secondsOf([&] {
-            settled.apply({1, settled.stepNumber() + 1, false, {}});
-            idleHash = settled.stateHash();
-        }));
-    }
-    csv.row(stroke.side, stroke.radius, stroke.speed, stroke.sweeps, quantile(seconds, 0.5) * 1e3,
-            quantile(seconds, 0.99) * 1e3, quantile(seconds, 1) * 1e3, quantile(idle, 0.5) * 1e6, lag.held, lag.lifted,
+    const auto [idleSeconds, idleHash] = idle(stroke);
+    csv.row(kind, stroke.side, stroke.radius, stroke.speed, stroke.sweeps, run, quantile(seconds, 0.5) * 1e3,
+            quantile(seconds, 0.99) * 1e3, quantile(seconds, 1) * 1e3, idleSeconds * 1e6, lag.held, lag.lifted,
             lag.bank, lag.bankReach, lag.stepsAfter, fmt::format("{:016x}", hash ^ idleHash));
 }
 
@@ -125,10 +110,11 @@ void measure(const Stroke& stroke, int runs, Csv& csv) {
 void dig(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a stroke: a sphere of R cells, its centre at the level of the sand, dragged straight along the "
-                    "diagonal for {} "
-                    "steps; talus 34 degrees, band 1e-3",
+                    "diagonal for {} steps; talus 34 degrees, band 1e-3",
                     kSteps));
+    csv.note("TIN: one vertex per cell, at a random place of the cell; heights are compared at the middles of cells");
     csv.note("ms: CPU time of one thread per step, hash included, over the steps of all strokes");
+    csv.note("runs: ten strokes if one takes less than 5 s, three below 60 s, else one");
     csv.note(
         "misplaced_held: sum of |height - settled height| over the sum of |settled height - level|. The sand settles "
         "with the tool in its last place. This is sand that has yet to move over displaced sand");
@@ -140,15 +126,17 @@ void dig(const Settings& settings, Csv& csv) {
     csv.note("hash: combined hash of the sand at the end of the stroke and of level sand");
     csv.note("steps_after: number of steps after lifting until misplaced_lifted is 1 %");
     csv.columns(
-        "N,R,cells_per_step,sweeps_per_step,ms_p50,ms_p99,ms_max,idle_us,misplaced_held,misplaced_lifted,bank,"
-        "bank_reach,steps_after,hash");
+        "sand,N,R,cells_per_step,sweeps_per_step,runs,ms_p50,ms_p99,ms_max,idle_us,misplaced_held,misplaced_lifted,"
+        "bank,bank_reach,steps_after,hash");
     for (const int side : settings.sizes) {
-        for (const double radius : {12.0, 2.56}) {
-            for (const double speed : {1.5, 2.4}) {
-                for (const int count : {1, 4, 8, 16, 32, 64, 128}) {
-                    // The stroke and its banks need room along the diagonal.
-                    if (speed * kSteps / std::numbers::sqrt2 + 6 * radius < side) {
-                        measure({side, radius, speed, count}, settings.runs, csv);
+        for (const bool tin : {false, true}) {
+            for (const double radius : {61.0, 30.0, 12.0, 6.0, 2.56}) {
+                for (const double speed : {1.5, 2.4}) {
+                    for (const int count : {1, 4, 8, 16, 32, 64, 128}) {
+                        const Stroke stroke{tin, side, radius, speed, count};
+                        if (stroke.measured()) {
+                            measure(stroke, settings.runs, csv);
+                        }
                     }
                 }
             }

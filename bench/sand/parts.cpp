@@ -77,7 +77,7 @@ void parts(const Settings& settings, Csv& csv) {
                     "presses half of itself in. Everything moving: noise of 64 cells.",
                     kSweeps, kBedrockDepth));
     csv.note("CPU time of one thread; sweeps: number until all motion ended");
-    csv.columns("ground,state,N,us_median,us_min,us_max,sweeps,bytes");
+    csv.columns("ground,state,N,runs,us_median,us_min,us_max,sweeps,bytes");
     for (const int side : settings.sizes) {
         for (const bool withBedrock : {false, true}) {
             for (const auto& [happening, name] : {std::pair{Happening::settled, "settled"},
@@ -86,7 +86,7 @@ void parts(const Settings& settings, Csv& csv) {
                 progress("N = {}, {} bedrock, {}", side, withBedrock ? "with" : "without", name);
                 const Cost cost = measure(side, withBedrock, happening, settings);
                 const Spread us = spreadOf(cost.seconds);
-                csv.row(withBedrock ? "bedrock" : "none", name, side, us.median * 1e6, us.lowest * 1e6,
+                csv.row(withBedrock ? "bedrock" : "none", name, side, settings.runs, us.median * 1e6, us.lowest * 1e6,
                         us.highest * 1e6, cost.sweeps, cost.bytes);
             }
         }

@@ -30,6 +30,8 @@ struct Pile {
 /// G minutes.
 [[nodiscard]] std::vector<Pile> pilesOf(int side);
 inline constexpr int kLargestTall = 256;  // [cell]
+/// Beyond this side only G and settle run to rest, because the other methods would take an hour.
+inline constexpr int kLargestSlow = 512;  // [cell]
 
 /// Returns a plane three times as steep as the talus, with bumps of up to half a cell from a generator
 /// seeded with `seed`. Every cell of it moves in a closed box.

@@ -13,13 +13,11 @@ namespace bench {
 namespace {
 
 struct Contender {
-    const Method* method;
+    Method method;
     std::vector<double> seconds;
     std::vector<double> heights;
     std::int64_t sweeps = 0;
 };
-
-constexpr double kRestPatience = 60;  // total time of one method [s]; a slower method is run fewer times
 
 /// Runs every method in every round, so that the load of other programs affects all methods equally.
 std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightField& start, int runs,
@@ -27,17 +25,17 @@ std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightFi
     std::vector<Contender> contenders;
     contenders.reserve(all.size());
     for (const Method& method : all) {
-        contenders.push_back({&method, {}, {}, 0});
+        contenders.push_back({method, {}, {}, 0});
     }
     for (int run = 0; run < runs; ++run) {
         progress("{}, N = {}, {} of {} runs", field, start.columns(), run + 1, runs);
         for (Contender& contender : contenders) {
-            if (std::accumulate(contender.seconds.begin(), contender.seconds.end(), 0.0) > kRestPatience) {
+            if (run > 0 && run >= runsFor(contender.seconds.front(), runs)) {
                 continue;
             }
             std::unique_ptr<Relaxation> relaxation;
             contender.seconds.push_back(secondsOf([&] {
-                relaxation = contender.method->start(start, rulesFor(start));
+                relaxation = contender.method.start(start, rulesFor(start));
                 relaxation->sweep(kMostSweeps);
             }));
             contender.heights = relaxation->heights();
@@ -54,20 +52,30 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
 
 double sumOf(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
-/// Writes the rows of one race. The first contender is the reference. Errors are divided by `whole`.
+/// Returns the methods for a field of this side.
+std::vector<Method> contendersOn(int side) {
+    std::vector<Method> all = methods(kToRest);
+    std::erase_if(all, [&](const Method& method) { return side > kLargestSlow && method.name.starts_with("G plain"); });
+    return all;
+}
+
+/// Writes the rows of one race. The reference is the first contender, if it runs at this side. Errors are divided by
+/// `whole`.
 void write(Csv& csv, const std::string& field, int side, const std::vector<Contender>& contenders,
            const std::vector<double>& truth, double whole) {
     const double reference = spreadOf(contenders.front().seconds).median;
+    const bool compares = contenders.front().method.name == kToRest.front();
     for (const Contender& contender : contenders) {
         const Spread seconds = spreadOf(contender.seconds);
-        csv.row(field, contender.method->name, side, contender.seconds.size(), contender.sweeps, seconds.median,
-                seconds.lowest, seconds.highest, reference / seconds.median,
+        csv.row(field, contender.method.name, side, contender.seconds.size(), contender.sweeps, seconds.median,
+                seconds.lowest, seconds.highest, compares ? fmt::format("{:.6g}", reference / seconds.median) : "",
                 distance(contender.heights, truth) / whole);
     }
 }
 
 void begin(Csv& csv) {
-    csv.note(fmt::format("a method that has taken {} s in all is not run again", kRestPatience));
+    csv.note(fmt::format("ten runs of a method below 5 s, three below 60 s, else one; beyond N = {} only G and settle",
+                         kLargestSlow));
     csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
     csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
 }
@@ -75,13 +83,13 @@ void begin(Csv& csv) {
 }  // namespace
 
 void rest(const Settings& settings, Csv& csv) {
-    const std::vector<Method> all = methods(kToRest);
     csv.note(
         "low pile: cylinder of height 0.6 R, R = 0.3 N, talus 45 degrees, band 0; error against the analytic pile");
     begin(csv);
     for (const int side : settings.sizes) {
         const Pile pile = lowPile(side);
-        write(csv, "low pile", side, race(all, pile.start, settings.runs, "low pile"), pile.rest, sumOf(pile.rest));
+        write(csv, "low pile", side, race(contendersOn(side), pile.start, settings.runs, "low pile"), pile.rest,
+              sumOf(pile.rest));
     }
 }
 

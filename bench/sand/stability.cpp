@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the stiffest springs on which an arm comes to rest, with and without the guards.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -116,6 +117,10 @@ void guardedSweep(const Settings& settings, Csv& csv) {
     for (const std::string_view name : haptic_bridge::kArmPresets) {
         for (const int delay : {0, 1}) {
             for (const double damping : dampings) {
+                const std::string row = fmt::format("{}/{}/{:g}", name, delay, damping);
+                if (!settings.rows.empty() && std::ranges::find(settings.rows, row) == settings.rows.end()) {
+                    continue;
+                }
                 for (const bool held : {false, true}) {
                     progress("sweep of {}, delay {}, {} N s/m", name, delay, damping);
                     test::Trial trial{*haptic_bridge::armPreset(name), 0, 0, held};

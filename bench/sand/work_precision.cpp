@@ -44,8 +44,6 @@ constexpr int kAtOnce = 96;  // [sweep]
 constexpr double kShort = 50e-6;  // [s]
 constexpr int kRepeats = 32;      // number of repeats
 
-constexpr double kPatience = 4;  // total time of one method [s]; a slower method is run fewer times
-
 /// Returns whether the error has changed by less than a hundredth since half of the sweeps, and since the sample
 /// between.
 ///
@@ -152,7 +150,7 @@ void workPrecision(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a float baseline ends when no sweep moves {} cells, or twice the sweeps change the error by < 1 %",
                     kFloatTolerance));
-    csv.note(fmt::format("a method that has taken {} s in all is not run again; no tall pile beyond N = {}", kPatience,
+    csv.note(fmt::format("ten runs of a method below 5 s, three below 60 s, else one; no tall pile beyond N = {}",
                          kLargestTall));
     csv.columns(
         "pile,method,integers,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
@@ -162,7 +160,8 @@ void workPrecision(const Settings& settings, Csv& csv) {
                 progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
                 Runner runner(method, pile);
                 std::vector<Sample> samples = runner.first();
-                for (int run = 1; run < settings.runs && runner.total() < kPatience; ++run) {
+                const int runs = runsFor(runner.total(), settings.runs);
+                for (int run = 1; run < runs; ++run) {
                     runner.again(samples);
                 }
                 for (const Sample& sample : samples) {

@@ -92,7 +92,7 @@ void measure(const Terrain& terrain, int runs, Csv& csv) {
         std::vector<double> seconds;
         seconds.reserve(static_cast<std::size_t>(runs));
         sand::tin::Simplified tin;
-        for (int run = 0; run < runs; ++run) {
+        while (seconds.empty() || static_cast<int>(seconds.size()) < runsFor(seconds.front(), runs)) {
             seconds.push_back(secondsOf([&] {
                 tin = sand::tin::simplify(terrain.width(), terrain.depth(), terrain.raster(), {0, vertices});
             }));
@@ -101,8 +101,8 @@ void measure(const Terrain& terrain, int runs, Csv& csv) {
             regularGrid(terrain, static_cast<double>(vertices) / static_cast<double>(samples));
         const Spread spread = spreadOf(seconds);
         csv.row(terrain.name, terrain.columns, terrain.rows, samples, highest - lowest, tin.places.size(), share,
-                1e3 * spread.median, 1e3 * spread.lowest, 1e3 * spread.highest, tin.maxError, tin.rmsError,
-                grid.places.size(), grid.maxError, grid.rmsError);
+                seconds.size(), 1e3 * spread.median, 1e3 * spread.lowest, 1e3 * spread.highest, tin.maxError,
+                tin.rmsError, grid.places.size(), grid.maxError, grid.rmsError);
     }
 }
 
@@ -121,7 +121,8 @@ void simplify(const Settings& settings, Csv& csv) {
     csv.note("max, rms: vertical errors over all samples, in the raster's unit of height, as relief is (dunes: cells)");
     csv.note("grid_: vertices and errors of a regular grid of as many samples, triangulated; CPU time of one thread");
     csv.columns(
-        "terrain,columns,rows,samples,relief,vertices,share,ms_median,ms_min,ms_max,max,rms,grid_vertices,grid_max,"
+        "terrain,columns,rows,samples,relief,vertices,share,runs,ms_median,ms_min,ms_max,max,rms,grid_vertices,grid_"
+        "max,"
         "grid_"
         "rms");
     for (const Terrain& terrain : terrains) {

@@ -25,15 +25,25 @@ struct Shape {
 void measurePile(Kind kind, int side, double degrees, const Shape& shape, const Settings& settings, Csv& csv) {
     progress("{}, {} x {}, turned by {}, {}", nameOf(kind), side, side, degrees, shape.name);
     const oracles::Cylinder cylinder(shape.radius * side, shape.height * side);
-    VertexSand layer = tin_piles::layerOf(kind, side, degrees, settings.seed);
-    tin_piles::fill(layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.start(r); }));
+    const auto started = [&] {
+        VertexSand layer = tin_piles::layerOf(kind, side, degrees, settings.seed);
+        tin_piles::fill(layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.start(r); }));
+        return layer;
+    };
+    VertexSand layer = started();
     const sand::tin::Wide before = layer.volume();
     sand::tin::Settled settled;
-    const double seconds = secondsOf([&] { settled = sand::tin::settle(layer, kSteepest, kSteepest); });
+    std::vector<double> seconds{secondsOf([&] { settled = sand::tin::settle(layer, kSteepest, kSteepest); })};
+    for (const int runs = runsFor(seconds.front(), settings.runs); static_cast<int>(seconds.size()) < runs;) {
+        VertexSand again = started();
+        seconds.push_back(secondsOf([&] { sand::tin::settle(again, kSteepest, kSteepest); }));
+    }
+    const Spread spread = spreadOf(seconds);
     const double error = tin_piles::misplaced(
         layer, oracles::around(side / 2.0, side / 2.0, [&](double r) { return cylinder.rest(r); }));
     csv.row(nameOf(kind), shape.name, side, degrees, layer.mesh().vertexCount(), error, settled.iterations,
-            settled.sweeps, settled.atRest ? 1 : 0, seconds, layer.volume() == before ? 1 : 0);
+            settled.sweeps, settled.atRest ? 1 : 0, layer.volume() == before ? 1 : 0, seconds.size(), spread.median,
+            spread.lowest, spread.highest);
 }
 
 }  // namespace
@@ -43,7 +53,9 @@ void tinPiles(const Settings& settings, Csv& csv) {
         "error: volume between the pile at rest and the right one, over its volume; iterations of the projection,");
     csv.note("then sweeps, settled 0: 1,000,000 were not enough; seconds: of this thread, from the cylinder to rest;");
     csv.note("exact: whether the volume has stayed the same");
-    csv.columns("mesh,pile,N,degrees,vertices,error,iterations,sweeps,settled,seconds,exact");
+    csv.columns(
+        "mesh,pile,N,degrees,vertices,error,iterations,sweeps,settled,exact,runs,seconds_median,seconds_min,seconds_"
+        "max");
     for (const int side : settings.sizes) {
         for (const Shape& shape : {Shape{"low", 0.25, 0.15}, Shape{"tall", 0.15, 0.45}}) {
             for (const double degrees : {0.0, 9.0, 22.5, 45.0}) {

@@ -15,6 +15,7 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 from command_line import BAD_INPUT, Parser
+from report_check import check
 from report_measure import Measuring, expected, minutes, state_of, total
 from report_page import write_page
 from report_parts import PARTS, PRESETS, ROOT, release
@@ -28,6 +29,7 @@ def options(arguments):
     parser.add_argument("--quick", action="store_true", help="smaller fields and fewer runs, into out/report unless --out names another folder")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--list", action="store_true", help="only print the parts, whether their tables are those of the present sources, and the time that they take")
+    what.add_argument("--check", action="store_true", help="measure the smallest N of each table again, and compare errors, sweeps and hashes; at most two minutes")
     what.add_argument("--draw", action="store_true", help="only draw the pictures and write the text, from the tables that exist")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="folder of the report (default: docs/report)")
     args = parser.parse_args(arguments)
@@ -35,12 +37,13 @@ def options(arguments):
     return args
 
 
-def build(quick):
-    """Builds what the parts run. Returns why this failed, or None."""
+def build(parts, programs):
+    """Builds the programs of `parts`: the paths `programs`. Returns why this failed, or None."""
     commands = [["scripts/install_dependencies.sh"], ["cmake", "--preset", "release"]]
-    targets = ["--target", "sandwall_bench", "detail_bench"] if quick else []  # whole sessions need all programs
+    sessions = {"ranks", "latency"} & {part.name for part in parts}  # these need all programs
+    targets = [] if sessions else ["--target", "sandwall_bench", "detail_bench"]
     commands.append(["cmake", "--build", "build/release", "--parallel", *targets])
-    for preset in PRESETS[1:] if not quick else []:
+    for preset in (preset for preset in PRESETS[1:] if any(program.startswith(f"build/{preset}/") for program in programs)):
         commands += [["cmake", "--preset", preset], ["cmake", "--build", f"build/{preset}", "--parallel", "--target", "sandwall_bench"]]
     for command in commands:
         ran = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL if "--preset" in command else None)
@@ -57,7 +60,7 @@ def print_list(parts, data, quick, root):
         print(f"{part.name:22} {minutes(expected(part, data, quick)):>7}  {str(why or 'valid').removeprefix(part.name + '.csv: ')}")
     cores = len(os.sched_getaffinity(0))
     print(f"all {len(parts)} parts take about {minutes(total(parts, data, quick, cores))}; "
-          f"{len(waiting)} to measure, about {minutes(total(waiting, data, quick, cores) if waiting else 0)}")
+          f"{len(waiting)} to measure, about {minutes(total(waiting, data, quick, cores) if waiting else 0)}, without building")
 
 
 def lock(data):
@@ -78,6 +81,11 @@ def run(arguments, parts=PARTS, sections=SECTIONS, prepare=build, root=ROOT):
     if args.list:
         print_list(parts, data, args.quick, root)
         return 0
+    if args.check:
+        if why := prepare(parts, {part.check_program or part.program for part in parts}):
+            print(f"report.sh: {why}", file=sys.stderr)
+            return 1
+        return 1 if check(parts, data, args.quick, root, len(os.sched_getaffinity(0))) else 0
     if importlib.util.find_spec("matplotlib") is None and any(section.figure for section in sections):
         print("report.sh: Debian's python3-matplotlib is missing; run scripts/install_dependencies.sh --with-report", file=sys.stderr)
         return BAD_INPUT
@@ -93,7 +101,8 @@ def run(arguments, parts=PARTS, sections=SECTIONS, prepare=build, root=ROOT):
     failures, status = {}, 0
     try:
         if not args.draw:
-            if why := prepare(args.quick):
+            waiting = [part for part in parts if state_of(part, data, args.quick, root)]
+            if waiting and (why := prepare(waiting, {part.program for part in waiting})):
                 print(f"report.sh: {why}", file=sys.stderr)
                 return 1
             measuring = Measuring(parts, data, args.quick, root)

@@ -7,7 +7,16 @@ import pathlib
 
 # An order has no value at the first N. The other columns are empty in rows to which they do not apply.
 MAY_BE_NAN = {"order", "exponent"}
-MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio"}
+MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio", "bound"}
+
+# Columns that say what a row is about. All others are results. MORE_KEYS has those of single tables.
+KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "radius", "R", "cells_per_step",
+        "sweeps_per_step", "datum", "degrees", "law", "rate", "slope", "shallow", "arm", "delay", "b", "hand", "ground",
+        "state", "field", "part", "kind", "what", "tool", "refined", "columns", "rows", "terrain", "mesh", "scheme",
+        "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
+        "used", "why", "world", "integers", "measure", "stays", "talus"}
+MORE_KEYS = {"work-precision": {"sweeps"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
+             "ranks": {"ranks"}}
 
 
 class TableFault(Exception):
@@ -94,6 +103,11 @@ def number(text):
     except (TypeError, ValueError):
         return text
     return int(value) if value.is_integer() and "." not in text and "e" not in text.lower() else value
+
+
+def keys_of(name, columns):
+    """Returns the columns of a table that say what a row is about."""
+    return [column for column in columns if column in KEYS | MORE_KEYS.get(name, set())]
 
 
 def held(rows):

@@ -201,26 +201,31 @@ def edit(table):
 
 def dig(table):
     figure, axes = panels(2)
-    size = table.distinct("N")[0]
-    strokes = [(radius, speed) for radius in (12, 2.56) for speed in (1.5, 2.4)]
-    for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
-        for (radius, speed), colour, marker in zip(strokes, SERIES, MARKERS):
-            rows = table.where(N=size, R=radius, cells_per_step=speed)
-            axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=colour,
-                      marker=marker, label=f"R = {radius:g}, {speed:g} cells per step")
-    for row in table.where(N=size, R=12, cells_per_step=1.5):
-        axes[0].annotate(f"{row['sweeps_per_step']:g}", (row["ms_p99"], 100 * row["misplaced_held"]), fontsize=7,
-                         textcoords="offset points", xytext=(4, 4))
-    label(axes[0], "time per step, 99th percentile [ms]", "sand behind the hand [%]",
-          f"N = {size}; labels: sweeps per step", logy=True)
-    label(axes[1], "sweeps per step", "sand behind the hand [%]", f"N = {size}")
+    tools = {}  # the largest field for each kind of sand and each tool
+    for row in table.where(cells_per_step=1.5):
+        tool = (row.get("sand", "grid"), row["R"])
+        tools[tool] = max(row["N"], tools.get(tool, 0))
+    radii = sorted({radius for _, radius in tools}, reverse=True)
+    for (sand, radius), size in tools.items():
+        place = radii.index(radius)
+        rows = [row for row in table.where(N=size, R=radius, cells_per_step=1.5) if row.get("sand", "grid") == sand]
+        for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
+            axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=SERIES[place % len(SERIES)],
+                      marker=MARKERS[place % len(MARKERS)], linestyle="--" if sand == "TIN" else "-",
+                      label=f"R = {radius:g}, {sand} of N = {size}")
+        if (sand, radius) == ("grid", 12):
+            for row in rows:
+                axes[0].annotate(f"{row['sweeps_per_step']:g}", (row["ms_p99"], 100 * row["misplaced_held"]), fontsize=7,
+                                 textcoords="offset points", xytext=(4, 4))
+    label(axes[0], "time per step, 99th percentile [ms]", "sand behind the hand [%]", "1.5 cells per step; labels: sweeps per step")
+    label(axes[1], "sweeps per step", "sand behind the hand [%]", "1.5 cells per step")
     axes[0].axvline(2, color="#777777", linewidth=1)
     sizes_on(axes[1], table.distinct("sweeps_per_step"))
     for axis in axes:
         axis.axhline(10, color="#777777", linewidth=1)
         percents(axis)
     percents(axes[1])
-    legend_below(figure, axes, 2)
+    legend_below(figure, axes, 3)
     return figure
 
 
@@ -357,7 +362,7 @@ def tin_piles(table):
             sizes = table.distinct("N", mesh=mesh, pile=pile)
             turns = [table.where(mesh=mesh, pile=pile, N=size) for size in sizes]
             errors = [[100 * row["error"] for row in rows] for rows in turns]
-            for axis, x in zip(axes, ("vertices", "seconds")):
+            for axis, x in zip(axes, ("vertices", "seconds_median" if "seconds_median" in table.columns else "seconds")):
                 middle = [sum(row[x] for row in rows) / len(rows) for rows in turns]
                 axis.plot(middle, [sum(some) / len(some) for some in errors], color=colour, marker=marker,
                           linestyle=line, label=f"{mesh} mesh, {names[pile]}")

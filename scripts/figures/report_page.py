@@ -17,6 +17,7 @@ After reading this page you know the error and the run time of every scheme, and
     scripts/report.sh --quick   # measures smaller fields with fewer runs into out/report; takes about {quick}
     scripts/report.sh           # measures the tables that are missing or old; all of them take about {full} on {cores} cores
     scripts/report.sh --list    # prints which tables are missing or old, and the time that they take
+    scripts/report.sh --check   # measures the smallest N of each table again, and compares; at most two minutes
     scripts/report.sh --draw    # only draws and writes, from the tables that exist
 
 `scripts/report.sh` writes this page; do not edit it. If it is interrupted, the next call continues. The tables were measured from

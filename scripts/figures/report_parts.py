@@ -23,7 +23,8 @@ class Part:
     timed: bool = True  # measures times, so that nothing may run beside it
     program: str = f"{RELEASE}/sandwall-bench"
     command: Optional[str] = None  # subcommand; "": none
-    check: Optional[str] = None  # options that measure the smallest N again; None: derived from the options; "": it takes too long
+    check: Optional[str] = None  # options that measure the smallest N again; None: derived from the options; "": it has only times
+    check_program: Optional[str] = None  # program for that; None: `program`
 
     def options(self, quick):
         return self.quick if quick else self.full
@@ -44,40 +45,41 @@ class Part:
 def hash_parts():
     for preset in PRESETS:
         quick = "--sizes 64" if preset == "release" else None
-        yield Part(f"hashes-{preset}", "--sizes 64", quick, (20 if preset == "release" else 240, 20), "bench/sand/hashes.cpp", False,
-                   f"build/{preset}/bin/sandwall-bench", "hashes")
+        yield Part(f"hashes-{preset}", "--sizes 64", quick, (20, 20), "bench/sand/hashes.cpp", False,
+                   f"build/{preset}/bin/sandwall-bench", "hashes", check_program=f"{RELEASE}/sandwall-bench")
 
 
 SAND, TIN, FORCE = "bench/sand", "bench/tin", "bench/force"
 PARTS = [
-    Part("error-at-rest", "--sizes 32,64,128,256,512,1024", "--sizes 32,64,128", (900, 3), f"{SAND}/rest_curves.cpp", False),
-    Part("sweeps", "--sizes 32,64,128,256,512", "--sizes 32,64,128", (120, 3), f"{SAND}/rest_curves.cpp", False),
-    Part("anisotropy", "--sizes 64,256", "--sizes 64,128", (60, 2), f"{SAND}/rest_curves.cpp", False),
+    Part("error-at-rest", "--sizes 32,64,128,256,512,1024", "--sizes 32,64,128", (200, 3), f"{SAND}/rest_curves.cpp", False),
+    Part("sweeps", "--sizes 32,64,128,256,512", "--sizes 32,64,128", (60, 3), f"{SAND}/rest_curves.cpp", False),
+    Part("anisotropy", "--sizes 64,256", "--sizes 64,128", (20, 2), f"{SAND}/rest_curves.cpp", False),
     Part("decay", "--sizes 128", "--sizes 64", (5, 1), f"{SAND}/rest_curves.cpp", False),
     Part("height-bits", "--sizes 32,64,128", "--sizes 32,64", (5, 1), f"{SAND}/unit_curves.cpp", False),
-    Part("band", "--sizes 128", "--sizes 64", (15, 1), f"{SAND}/unit_curves.cpp", False),
+    Part("band", "--sizes 128", "--sizes 64", (10, 1), f"{SAND}/unit_curves.cpp", False),
     Part("mass-drift", "--sizes 128", "--sizes 64", (10, 2), f"{SAND}/mass_drift.cpp", False),
     Part("certificate", "--sizes 32,64,128,256", "--sizes 32,64", (120, 2), f"{SAND}/certificate.cpp", False),
     Part("budget", "--sizes 64,128,256", "--sizes 64", (15, 1), f"{SAND}/unit_curves.cpp", False),
-    Part("stability", "--runs 10", "--runs 1", (60, 2), f"{SAND}/stability.cpp", False, check="--runs 1"),
-    Part("guarded-sweep", "--runs 10", "--runs 1", (240, 2), f"{SAND}/stability.cpp", False, check=""),
+    Part("stability", "--runs 10", "--runs 1", (10, 2), f"{SAND}/stability.cpp", False, check="--runs 1"),
+    Part("guarded-sweep", "--runs 10", "--runs 1", (100, 2), f"{SAND}/stability.cpp", False, check="--rows touch/0/0.5 --runs 10"),
+    Part("extremes", "--runs 1", "--runs 1", (2, 2), f"{SAND}/extremes.cpp", False),
     Part("force-work", "--sizes 256", "--sizes 256", (2, 2), f"{FORCE}/force_work.cpp", False),
     *hash_parts(),
-    Part("work-precision", "--sizes 16,32,64,128,256,512 --runs 10", "--sizes 16,32,64,128 --runs 3", (600, 20), f"{SAND}/work_precision.cpp"),
+    Part("work-precision", "--sizes 16,32,64,128,256,512 --runs 10", "--sizes 16,32,64,128 --runs 3", (400, 20), f"{SAND}/work_precision.cpp"),
     Part("edit", "--sizes 512,1024,2048 --runs 10", "--sizes 512,2048 --runs 3", (20, 5), f"{SAND}/edit.cpp"),
-    Part("dig", "--sizes 512,2048 --runs 10", "--sizes 512,2048 --runs 1", (600, 60), f"{SAND}/dig.cpp"),
+    Part("dig", "--sizes 256,512,2048 --runs 10", "--sizes 256,512,2048 --runs 1", (900, 120), f"{SAND}/dig.cpp"),
     Part("throughput", "--sizes 64,128,256,512,1024,2048,4096 --runs 10", "--sizes 64,256,1024 --runs 5", (120, 10), f"{SAND}/throughput.cpp"),
     Part("force-rate", "--sizes 256 --runs 10", "--sizes 256 --runs 2", (15, 4), f"{FORCE}/force_rate.cpp"),
     Part("parts", "--sizes 512,1024,2048 --runs 10", "--sizes 512 --runs 3", (30, 2), f"{SAND}/parts.cpp"),
     Part("explain", "scenes/dunes.toml", "scenes/dunes.toml", (5, 5), "bench/session/explain.cpp"),
-    Part("rest", "--sizes 512,1024 --runs 10", "--sizes 512 --runs 1", (360, 55), f"{SAND}/rest.cpp", check=""),
-    Part("rest-moving", "--sizes 256,512 --runs 10", "--sizes 256 --runs 1", (1500, 62), f"{SAND}/rest.cpp", check=""),
-    Part("tin-piles", "--sizes 32,64,128,256", "--sizes 32,64", (180, 2), f"{TIN}/tin_curves.cpp"),
+    Part("rest", "--sizes 128,512,1024 --runs 10", "--sizes 128,512 --runs 1", (250, 40), f"{SAND}/rest.cpp"),
+    Part("rest-moving", "--sizes 64,256,512 --runs 10", "--sizes 64,256 --runs 1", (1300, 40), f"{SAND}/rest.cpp"),
+    Part("tin-piles", "--sizes 32,64,128,256", "--sizes 32,64", (350, 2), f"{TIN}/tin_curves.cpp"),
     Part("tin-simplify", "--sizes 256,1024 --runs 10", "--sizes 256 --runs 1", (30, 1), f"{TIN}/simplify.cpp"),
     Part("tin-imprint", "--sizes 512 --runs 10", "--sizes 256 --runs 2", (20, 2), f"{TIN}/imprint.cpp"),
-    Part("tin-active", "--sizes 500 --runs 10", "--sizes 200 --runs 3", (15, 2), f"{TIN}/tin_curves.cpp"),
-    Part("detail", "--sizes 1024,2048 --runs 5 --frames 12", "--sizes 2048 --runs 3 --frames 4", (120, 15), "bench/draw/detail_bench.cpp",
-         program=f"{RELEASE}/detail_bench", command="", check=""),
+    Part("tin-active", "--sizes 500 --runs 10", "--sizes 200 --runs 3", (15, 2), f"{TIN}/tin_curves.cpp", check="--sizes 500 --runs 10"),
+    Part("detail", "--sizes 1024,2048 --runs 10 --frames 12", "--sizes 2048 --runs 3 --frames 4", (240, 15), "bench/draw/detail_bench.cpp",
+         program=f"{RELEASE}/detail_bench", command=""),
     Part("ranks", "--walls 1x1,2x2,3x4", None, (60, 0), "scripts/figures/report_ranks.py", program="scripts/figures/report_ranks.py",
          command="", check="--walls 1x1"),
     Part("latency", "--seconds 10", None, (420, 0), "scripts/figures/latency.py", check=""),

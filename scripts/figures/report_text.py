@@ -7,6 +7,7 @@ from typing import Callable, Optional
 import report_piles as piles
 import report_steps as steps
 from report_data import TableFault
+from report_extremes import extremes
 from report_haptics import force_rate, force_work, latency, stability
 from report_tin import tin_piles, tin_simplify, tin_tool
 
@@ -44,6 +45,7 @@ SECTIONS = [
     Section("Mass", "mass_drift", ["mass-drift"], piles.mass_drift),
     Section("The certificate", "certificate", ["certificate"], piles.certificate),
     Section("The parts of one pile's error", "budget", ["budget"], piles.budget),
+    Section("Extremes", None, ["extremes"], extremes),
     Section("Springs that an arm bears", "stability", ["stability", "guarded-sweep"], stability),
     Section("Parts that a scene does not need", None, ["parts"], steps.parts),
     Section("A scene explained", None, ["explain"], steps.explain),

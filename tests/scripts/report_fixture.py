@@ -77,4 +77,4 @@ def make_root(root):
 
 if __name__ == "__main__":
     sections = [Section(name.title(), None, [name], text(name)) for name in NAMES]
-    sys.exit(report.run(sys.argv[2:], parts(), sections, lambda quick: None, pathlib.Path(sys.argv[1])))
+    sys.exit(report.run(sys.argv[2:], parts(), sections, lambda waiting, programs: None, pathlib.Path(sys.argv[1])))

@@ -14,7 +14,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("figures", "launcher")]
-from report_data import Table, TableFault  # noqa: E402
+from report_data import Table, TableFault, keys_of  # noqa: E402
 from report_page import page  # noqa: E402
 from report_parts import PARTS  # noqa: E402
 from report_text import SECTIONS, Section  # noqa: E402
@@ -30,14 +30,6 @@ DEFINITIONS = (
     "An error counts from the point where the run does not exceed it again, because a user cannot know when to stop.",
     "The ratio is how many times faster than the reference a method is.",
 )
-# Columns that say what a row is about. All others are results. A dictionary has those of single tables.
-KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "radius", "R", "cells_per_step",
-        "sweeps_per_step", "datum", "degrees", "law", "rate", "slope", "shallow", "arm", "delay", "b", "hand", "ground",
-        "state", "field", "part", "kind", "what", "tool", "refined", "columns", "rows", "terrain", "mesh", "scheme",
-        "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
-        "used", "why", "world", "integers"}
-MORE_KEYS = {"work-precision": {"sweeps"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
-             "ranks": {"ranks"}}
 
 
 def sentences(text):
@@ -47,7 +39,7 @@ def sentences(text):
 
 
 def results(name, table):
-    return [c for c in table.columns if c not in KEYS | MORE_KEYS.get(name.partition("-r")[0] if name.startswith("hashes") else name, set())]
+    return [column for column in table.columns if column not in keys_of(name, table.columns)]
 
 
 def reversed_values(values):
@@ -154,6 +146,37 @@ class AlteredTables(Tables):
 
     def test_hashes_that_differ_are_reported(self):
         self.assertIn("**the hashes differ**", self.text("One hash", self.set("hashes-release", "hash", "0", threads=7)))
+
+
+EXTREMES = """world,scheme,band,columns,rows,talus,sweeps,at_rest,moved,outflow,lost,measure,start,excess,bound,stays,why
+"talus 0°, rough",G,0,31,33,0,2000,1,1662,0,0,face,641,4,4,0,"a quarter"
+one cell,G,0,1,1,65536,1,1,0,0,0,slope,-65536,-65536,,1,"moves nothing"
+"""
+
+
+class Verdicts(unittest.TestCase):
+    def text(self, old="", new=""):
+        with tempfile.TemporaryDirectory(prefix="sandwall-report-") as folder:
+            file = pathlib.Path(folder) / "extremes.csv"
+            self.assertTrue(old in EXTREMES)
+            file.write_text(EXTREMES.replace(old, new) if old else EXTREMES)
+            return next(section for section in SECTIONS if section.title == "Extremes").text({"extremes": Table(file)})
+
+    def test_a_world_within_its_bound_holds(self):
+        text = self.text()
+        self.assertIn("The verdict *holds* is found in all 2 rows. Nearest", text)
+        self.assertIn("*talus 0°, rough*, with 4 of 4 units", text)
+
+    def test_each_fault_is_the_verdict_of_its_world(self):
+        for old, new, world, verdict in (("641,4,4", "641,5,4", "talus 0°, rough", "exceeds its bound"),
+                                         ("2000,1,1662,0,0", "2000,1,1662,0,3", "talus 0°, rough", "loses 3 units"),
+                                         ("2000,1,", "2000,0,", "talus 0°, rough", "still moves"),
+                                         ("2000,1,1662", "2000,1,0", "talus 0°, rough", "does not move"),
+                                         ("65536,1,1,0", "65536,1,1,7", "one cell", "moves")):
+            with self.subTest(verdict=verdict):
+                text = self.text(old, new)
+                self.assertIn(f"in 1 of 2 rows. The others: {world}.", text)
+                self.assertIn(f"**{verdict}**", text)
 
 
 class FaultyTables(unittest.TestCase):
