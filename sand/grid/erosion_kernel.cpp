@@ -6,6 +6,7 @@
 
 #include "sand/grid/erosion_fluxes.hpp"
 #include "sand/grid/erosion_report.hpp"
+#include "sand/grid/erosion_short_run.hpp"
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
@@ -36,12 +37,13 @@ public:
         return sweepRow(y);
     }
 
-    /// Sweeps all other cell rows. Returns their outflow [unit · cell].
+    /// Sweeps all other cell rows, and writes where sand flows. Returns their outflow [unit · cell].
     std::int64_t rest() const {
         std::int64_t outflow = 0;
         for (int y = blocks_.y0 + 1; y < blocks_.y1; ++y) {
             outflow += sweepRow(y);
         }
+        reportFlow(sweep_, buffers_, blocks_, run_);
         return outflow;
     }
 
@@ -161,8 +163,13 @@ template <class Law, class Task>
 void forEachRun(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row, const Law& east, const Law& north,
                 const Task& task) {
     for (const Run& run : row.runs) {
-        run.sand != nullptr ? task(RunSweep<Law, true>(sweep, buffers, row, run, east, north))
-                            : task(RunSweep<Law, false>(sweep, buffers, row, run, east, north));
+        if (ShortRunSweep<Law>::fits(sweep, row, run)) {
+            task(ShortRunSweep<Law>(sweep, buffers, row, run, east, north));
+        } else if (run.sand != nullptr) {
+            task(RunSweep<Law, true>(sweep, buffers, row, run, east, north));
+        } else {
+            task(RunSweep<Law, false>(sweep, buffers, row, run, east, north));
+        }
     }
 }
 
@@ -173,9 +180,6 @@ std::int64_t walkWith(const Sweep& sweep, const RowBuffers& buffers, const Block
     forEachRun(sweep, buffers, row, east, north, [&](const auto& run) { outflow += run.first(); });
     balance(sweep, &buffers, row.below, row.y0 - 1);
     forEachRun(sweep, buffers, row, east, north, [&](const auto& run) { outflow += run.rest(); });
-    for (const Run& run : row.runs) {
-        reportFlow(sweep, buffers, row, run);
-    }
     return outflow;
 }
 

@@ -37,12 +37,13 @@ struct Run {
 /// Numbers of one cell row that a walk hands on to its next row. Each pointer is at column 0 of a row as long as the
 /// field's, with a margin.
 struct RowBuffers {
-    std::int32_t* old[3];     // heights before the sweep; row y is in old[y % 3] [unit]
-    std::int32_t* rise[2];    // sand that each cell's eastern neighbour is higher than its western one [unit]
-    Sliding* sliding[2];      // of an even and an odd row
-    std::int32_t* before;     // last sweep's fluxes to the north of the row below the run; 0 where no run is below
-    std::int32_t* flowed[3];  // not 0 where sand flows: in a block's first row, between, and in its last two rows
-    Sliding* slidingAtStart;  // of the first cell row of a strip that has a strip below it; 0 outside its runs
+    std::int32_t* old[3];   // heights before the sweep; row y is in old[y % 3] [unit]
+    std::int32_t* rise[2];  // sand that each cell's eastern neighbour is higher than its western one [unit]
+    Sliding* sliding[2];    // of an even and an odd row. In a short run the first of nine rows, from south to north.
+    std::ptrdiff_t slidingStride;  // between these rows [cell]
+    std::int32_t* before;          // last sweep's fluxes to the north of the row below the run; 0 where no run is below
+    std::int32_t* flowed[3];       // not 0 where sand flows: in a block's first row, between, and in its last two rows
+    Sliding* slidingAtStart;       // of the first cell row of a strip that has a strip below it; 0 outside its runs
 };
 
 /// One sweep over a field. Pointers are at cell (0,0).

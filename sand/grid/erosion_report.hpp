@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/erosion_fluxes.hpp"
@@ -71,37 +70,11 @@ inline void reportPiece(const Sweep& sweep, const RowBuffers& buffers, int north
     }
 }
 
-inline constexpr int kShortBlock = 8;  // [cell], side of the blocks that reportShortRun() handles: a byte per column
-inline constexpr int kShortRun = 64;   // [cell], a longer run is faster with vectors that cross blocks
-
-/// Does the same as reportPiece() for whole blocks of eight columns. The bits of the columns are the bytes of one
-/// number.
-inline void reportShortRun(const RowBuffers& buffers, int northOfFirst, int from, int count, std::uint8_t* blocks) {
-    static_assert(std::endian::native == std::endian::little, "the first column is the lowest byte");
-    for (int x = from; x < from + count; x += kShortBlock) {
-        std::array<std::uint8_t, kShortBlock> columns;
-        joinRows(buffers.flowed[0] + x, buffers.flowed[1] + x, buffers.flowed[2] + x, northOfFirst, kShortBlock,
-                 columns.data());
-        const auto bits = std::bit_cast<std::uint64_t>(columns);
-        std::uint64_t joined = bits | bits >> 32;
-        joined |= joined >> 16;
-        joined |= joined >> 8;
-        const int west = (bits & 0xFF) != 0 ? flow::kWest : 0;
-        const int east = bits >> (kShortBlock - 2) * 8 != 0 ? flow::kEast : 0;
-        *blocks++ = static_cast<std::uint8_t>(joined | static_cast<unsigned>(west | east));
-    }
-}
-
 /// Writes where sand flows in each block of a run.
 inline void reportFlow(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& row, const Run& run) {
     const int size = sweep.blockSize;
     const int northOfFirst = row.y1 - row.y0 <= 2 ? flow::kNorth : 0;  // the first row is one of the last two
     std::uint8_t* const blocks = sweep.flowed + row.y0 / size * sweep.flowedStride;
-    const int width = run.x1 - run.x0;
-    if (size == kShortBlock && width <= kShortRun && width % kShortBlock == 0) {
-        reportShortRun(buffers, northOfFirst, run.x0, width, blocks + run.x0 / size);
-        return;
-    }
     const int piece = kPiece / size * size;
     for (int from = run.x0; from < run.x1; from += piece) {
         reportPiece(sweep, buffers, northOfFirst, from, std::min(piece, run.x1 - from), blocks + from / size);

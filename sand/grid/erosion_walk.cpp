@@ -13,7 +13,7 @@ enum : int {
     kBefore,
     kOld,
     kSliding = kOld + 3,
-    kRise = kSliding + 2,
+    kRise = kSliding + 9,  // a short run marks nine rows
     kFlowed = kRise + 2,
     kRows = kFlowed + 3
 };
@@ -120,6 +120,7 @@ RowBuffers ErosionWalk::buffersOf(std::size_t strip) {
     return {.old = {rows.row(kOld), rows.row(kOld + 1), rows.row(kOld + 2)},
             .rise = {rows.row(kRise), rows.row(kRise + 1)},
             .sliding = {rows.row(kSliding), rows.row(kSliding + 1)},
+            .slidingStride = rows.stride(),
             .before = rows.row(kBefore),
             .flowed = {rows.row(kFlowed), rows.row(kFlowed + 1), rows.row(kFlowed + 2)},
             .slidingAtStart = rows.row(kSlidingAtStart)};

@@ -152,8 +152,26 @@ double misplaced(const sand::Replica& sand, const Right& right) {
     return misplaced(sand, right, [](double, double) { return true; });
 }
 
+/// Returns whether a place is so far within a tool that the outline in a mesh holds it, because this outline is a
+/// polygon. The outline holds 0.98 of the tool. That of a foot holds 0.98 of each piece of the sole, less two probe
+/// units (docs/tin.md).
+inline bool isWithinOutline(const sand::TurnedShape& turned, const sand::Tool& tool, const sand::Offset& offset) {
+    const auto sole = sand::solePieces(tool.kind);
+    if (sole.empty()) {
+        return turned.covers({offset.x * 50 / 49, offset.y * 50 / 49});
+    }
+    const double east = tool.heading.x, north = tool.heading.y, length = std::hypot(east, north);
+    const auto x = static_cast<double>(offset.x), y = static_cast<double>(offset.y);
+    const double along = (x * east + y * north) / length;
+    const double across = (tool.heading.mirrored ? -1 : 1) * (y * east - x * north) / length;
+    return std::any_of(sole.begin(), sole.end(), [&](const sand::SolePiece& piece) {
+        return std::hypot((along - piece.along * tool.radius) / (0.98 * piece.halfLength * tool.radius - 2),
+                          (across - piece.across * tool.halfWidth) / (0.98 * piece.halfWidth * tool.halfWidth - 2)) < 1;
+    });
+}
+
 /// Returns how far the surface is above the underside of a tool at `probe`, on a lattice of quarter cells. Counts only
-/// places on ground within 0.98 of the tool's outline, because the outline in a mesh is a polygon inside it.
+/// places on ground that the outline in a mesh holds.
 inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& probe) {
     const sand::TurnedShape turned(sand.tool());
     const bool tin = sand.rules().tin != 0;
@@ -164,9 +182,8 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& p
     for (std::int32_t y = step / 2; y < sand.rules().rows * sand::kProbePerCell; y += step) {
         for (std::int32_t x = step / 2; x < sand.rules().columns * sand::kProbePerCell; x += step) {
             const sand::Offset offset{std::int64_t{x} - probe.x, std::int64_t{y} - probe.y};
-            const sand::Offset wider{offset.x * 50 / 49, offset.y * 50 / 49};
-            if (std::max(std::abs(offset.x), std::abs(offset.y)) > sand.tool().radius || !turned.covers(wider) ||
-                (holes != nullptr && holes->holds({x, y})) ||
+            if (std::max(std::abs(offset.x), std::abs(offset.y)) > sand.tool().radius ||
+                !isWithinOutline(turned, sand.tool(), offset) || (holes != nullptr && holes->holds({x, y})) ||
                 (ground != nullptr && ground->isWall(x / sand::kProbePerCell, y / sand::kProbePerCell))) {
                 continue;
             }

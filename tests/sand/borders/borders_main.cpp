@@ -17,44 +17,145 @@ using borders::kCoarse;
 using borders::kGrid;
 using borders::kTin;
 
-struct Table {
-    bool good = true;
+/// Experiments with their results. Leaves out an experiment whose name does not contain `only`.
+class Table {
+public:
+    Table(std::string only, bool lists) : only_(std::move(only)), lists_(lists) {}
 
-    void row(const char* what, double value, double most, const char* unit) {
+    /// Returns whether the experiment `name` is to be done. With --list, prints its name and returns false.
+    [[nodiscard]] bool wants(const std::string& name) const {
+        const bool chosen = name.find(only_) != std::string::npos;
+        if (chosen && lists_) {
+            fmt::print("{}\n", name);
+        }
+        return chosen && !lists_;
+    }
+
+    void row(const std::string& what, double value, double most, const char* unit) {
         const bool within = value <= most;
-        good = good && within;
+        good_ = good_ && within;
         fmt::print("{:<98} {:>9.4g} {:>9.4g} {:<6} {}\n", what, value, most, unit, within ? "ok" : "WRONG");
         std::fflush(stdout);
     }
+    [[nodiscard]] bool good() const { return good_; }
+
+private:
+    std::string only_;
+    bool lists_;
+    bool good_ = true;
 };
 
-/// Measures planes of sand (O5) and the method of images at closed rims, walls and rock faces.
+/// Measures piles and drags at closed rims, and damp banks.
+void measureRims(Table& table, int n) {
+    // A half pile must have half of the error of the whole pile, up to a tenth.
+    for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
+        for (const bool settles : {false, true}) {
+            const std::string at =
+                fmt::format("half a pile at a closed rim, {}, {}", name, settles ? "settle" : "steps");
+            if (table.wants(at)) {
+                const double whole = borders::rimPile(ground, n, true, settles);
+                table.row(fmt::format("{}; the whole pile has {:.1f}", at, whole),
+                          borders::rimPile(ground, n, false, settles), 0.55 * whole, "cell3");
+            }
+        }
+    }
+    if (table.wants("drag along a closed rim, grid")) {
+        table.row("drag along a closed rim against its mirror, grid", borders::rimDrag(kGrid, n).misplaced, 10,
+                  "cell3");
+    }
+    // A mesh differs from its mirror image, so that a drag in the middle leaves two different halves.
+    if (table.wants("drag along a closed rim, TIN")) {
+        const borders::Drag fine = borders::rimDrag(kTin, n);
+        table.row("drag along a closed rim, TIN; at most the mesh's own mirror error", fine.misplaced,
+                  borders::mirrorError(kTin, n), "cell3");
+        table.row("the same, largest difference", fine.largest, 0.5, "cell");
+    }
+    if (table.wants("drag along a closed rim, default mesh")) {
+        table.row("drag along a closed rim, default mesh; at most its own mirror error",
+                  borders::rimDrag(kCoarse, n).misplaced, borders::mirrorError(kCoarse, n), "cell3");
+    }
+    for (const double start : {1.62, 0.81 * 1.2}) {
+        const std::string at = fmt::format("bank that slides from a slope of {:.2f}, TIN", start);
+        if (table.wants(at)) {
+            const borders::Steepness bank = borders::wetBank(n, start);
+            table.row(at + ": steepest / talus", bank.largest, 1.05, "");
+            table.row("the same, share more than 2 % too steep", bank.tooSteep, 0.01, "");
+        }
+    }
+}
+
+/// Measures sand that a tool pushes through walls and over rock, and sand above a tool's underside.
+void measureTools(Table& table, int n) {
+    using enum sand::ToolKind;
+    using enum borders::Where;
+    for (const sand::ToolKind kind : support::everyTool()) {
+        const auto measure = [&](const char* what, const auto& value) {
+            const std::string name = fmt::format("{}, {}", what, base::nameOf(kind));
+            if (table.wants(name)) {
+                table.row(name, value(), 0, "cell3");
+            }
+        };
+        measure("through walls, grid", [&] { return borders::throughWalls(kGrid, n, kind); });
+        measure("through walls, TIN", [&] { return borders::throughWalls(kTin, n, kind); });
+        measure("over a ridge of rock, grid", [&] { return borders::overRidge(n, kind); });
+    }
+    for (const auto& [where, place] : {std::pair{middle, "in the middle"}, {rim, "at a rim"}, {hole, "at a hole"}}) {
+        for (const sand::ToolKind kind : {sphere, ellipsoid, circle, rectangle, ellipse}) {
+            const bool bowl = kind == sphere || kind == ellipsoid;
+            const std::string name = fmt::format("sand over the underside {}, TIN, {}", place, base::nameOf(kind));
+            if (table.wants(name)) {
+                table.row(name, borders::underTool(kTin, n, kind, where), bowl ? 0.4 : 1e-3, "cell");
+            }
+        }
+    }
+    for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
+        for (const bool atRest : {false, true}) {
+            const std::string at = fmt::format("settle with a tool held, {}, {}", name, atRest ? "at rest" : "moving");
+            if (table.wants(at)) {
+                const borders::Held held = borders::heldSettle(ground, n, atRest);
+                table.row(at + ": sand over the underside", held.largest, ground.tin ? 0.4 : 0, "cell");
+                table.row("the same, volume", held.volume, ground.tin ? 10 : 0, "cell3");
+                table.row("the same, moves in the step after", held.still ? 0 : 1, 0, "");
+            }
+        }
+    }
+}
+
+/// Measures planes of one kind of sand (O5) and the method of images at closed rims, walls or rock faces.
+void measurePlane(Table& table, int n, const borders::Ground& ground, borders::Face face, const borders::Sand& sand) {
+    const std::string at = fmt::format("{}, {}, {}", borders::nameOf(face), sand.name, ground.tin ? "TIN" : "grid");
+    if (table.wants("plane at rest, " + at)) {
+        double moved = 0;
+        for (const double degrees : {0.0, 22.5, 45.0, 90.0}) {
+            moved += borders::movedOfPlane(ground, n, face, sand, degrees, false, 0.95);
+        }
+        table.row("plane at rest, " + at, moved, 0, "cell3");
+    }
+    const std::string slid = "plane that has slid, error of its slope, " + at;
+    // A plane of a TIN takes minutes.
+    if ((!ground.tin || sand.name == "dry") && table.wants(slid)) {
+        // A TIN takes a slope of up to 1.001 of the talus for the talus.
+        table.row(slid, borders::errorOfSlidPlane(ground, n, face, sand, false), ground.tin ? 1e-3 : 1e-4, "");
+    }
+    const std::string images = "plane and piles against their mirror image, " + at;
+    if (table.wants(images)) {
+        const borders::Image image = borders::mirrored(ground, n, face, sand);
+        // Beyond a grid's closed rim the ground continues with the same slope. Walls and rock are mirrors.
+        const double most = ground.tin ? 0.3 * image.mirrorError : face == borders::Face::rim ? 0.015 * image.moved : 0;
+        const std::string of = ground.tin ? fmt::format("the mesh's own error is {:.1f}", image.mirrorError)
+                                          : fmt::format("{:.0f} have moved", image.moved);
+        table.row(fmt::format("{}; {}", images, of), image.atRest, most, "cell3");
+    }
+}
+
 void measurePlanes(Table& table, int n) {
     using enum borders::Face;
-    for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
+    for (const borders::Ground& ground : {kGrid, kTin}) {
         for (const borders::Face face : {rim, wall, rock}) {
             for (const borders::Sand& sand : borders::sands()) {
-                if (ground.tin && face == rock) {
-                    continue;
+                if (!ground.tin || face != rock) {
+                    measurePlane(table, n, ground, face, sand);
                 }
-                const std::string at = fmt::format("{}, {}, {}", borders::nameOf(face), sand.name, name);
-                double moved = 0;
-                for (const double degrees : {0.0, 22.5, 45.0, 90.0}) {
-                    moved += borders::movedOfPlane(ground, n, face, sand, degrees, false, 0.95);
-                }
-                table.row(("plane at rest, " + at).c_str(), moved, 0, "cell3");
-                if (!ground.tin || sand.name == "dry") {  // a plane of a TIN takes minutes
-                    // A TIN takes a slope of up to 1.001 of the talus for the talus.
-                    table.row(("plane that has slid, error of its slope, " + at).c_str(),
-                              borders::errorOfSlidPlane(ground, n, face, sand, false), ground.tin ? 1e-3 : 1e-4, "");
-                }
-                const borders::Image image = borders::mirrored(ground, n, face, sand);
-                // Beyond a grid's closed rim the ground continues with the same slope. Walls and rock are mirrors.
-                const double most = ground.tin ? 0.3 * image.mirrorError : face == rim ? 0.015 * image.moved : 0;
-                const std::string of = ground.tin ? fmt::format("the mesh's own error is {:.1f}", image.mirrorError)
-                                                  : fmt::format("{:.0f} have moved", image.moved);
-                table.row(fmt::format("plane and piles against their mirror image, {}; {}", at, of).c_str(),
-                          image.atRest, most, "cell3");
             }
         }
     }
@@ -65,80 +166,33 @@ void measureHeldTools(Table& table, int n) {
     using enum sand::ToolKind;
     for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
         for (const borders::HeldAt place : borders::kHeldAt) {
-            if (ground.tin && place == borders::HeldAt::overRock) {
-                continue;
-            }
-            double flat = 0, bowl = 0, wrong = 0;
             for (const sand::ToolKind kind : support::everyTool()) {
+                const std::string at =
+                    fmt::format("settle around a tool, {}, {}, {}", borders::nameOf(place), name, base::nameOf(kind));
+                if ((ground.tin && place == borders::HeldAt::overRock) || !table.wants(at)) {
+                    continue;
+                }
                 const borders::HeldSettle held = borders::settleAround(ground, n, kind, place);
-                double& worst = kind == circle || kind == rectangle || kind == ellipse ? flat : bowl;
-                worst = std::max(worst, held.largest);
-                wrong += held.changed != 0 || held.exchanged > 0 || !held.still ? 1 : 0;
+                const bool flat = kind == circle || kind == rectangle || kind == ellipse;
+                table.row(at + ": sand in it", held.largest, !ground.tin ? 0 : flat ? 1e-3 : 0.4, "cell");
+                const bool wrong = held.changed != 0 || held.exchanged > 0 || !held.still;
+                table.row("the same, volume changes, sand passes walls, or sand moves afterwards", wrong ? 1 : 0, 0,
+                          "");
             }
-            const std::string at = fmt::format("{}, {}", borders::nameOf(place), name);
-            table.row(("settle around a flat tool, sand in it, " + at).c_str(), flat, ground.tin ? 1e-3 : 0, "cell");
-            table.row(("settle around a bowl, sand in it, " + at).c_str(), bowl, ground.tin ? 0.4 : 0, "cell");
-            table.row("the same, tools whose volume changes or whose sand moves afterwards", wrong, 0, "");
         }
     }
 }
 
-bool measure(int n) {
-    using enum sand::ToolKind;
-    using enum borders::Where;
-    Table table;
-    fmt::print("{} cells a side; lengths as for 64\n{:<98} {:>9} {:>9}\n", n, "experiment", "measured", "at most");
-    // A half pile must have half of the error of the whole pile, up to a tenth.
-    for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
-        for (const bool settles : {false, true}) {
-            const double whole = borders::rimPile(ground, n, true, settles);
-            table.row(fmt::format("half a pile at a closed rim, {}, {}; the whole pile has {:.1f}", name,
-                                  settles ? "settle" : "steps", whole)
-                          .c_str(),
-                      borders::rimPile(ground, n, false, settles), 0.55 * whole, "cell3");
-        }
+bool measure(int n, const std::string& only, bool lists) {
+    Table table(only, lists);
+    if (!lists) {
+        fmt::print("{} cells a side; lengths as for 64\n{:<98} {:>9} {:>9}\n", n, "experiment", "measured", "at most");
     }
-    const borders::Drag grid = borders::rimDrag(kGrid, n), fine = borders::rimDrag(kTin, n),
-                        coarse = borders::rimDrag(kCoarse, n);
-    table.row("drag along a closed rim against its mirror, grid", grid.misplaced, 10, "cell3");
-    // A mesh differs from its mirror image, so that a drag in the middle leaves two different halves.
-    table.row("the same, TIN; at most the mesh's own mirror error", fine.misplaced, borders::mirrorError(kTin, n),
-              "cell3");
-    table.row("the same, largest difference", fine.largest, 0.5, "cell");
-    table.row("the same on the default mesh; at most its own mirror error", coarse.misplaced,
-              borders::mirrorError(kCoarse, n), "cell3");
-    for (const double start : {1.62, 0.81 * 1.2}) {
-        const borders::Steepness bank = borders::wetBank(n, start);
-        table.row(fmt::format("bank that slides from a slope of {:.2f}, TIN: steepest / talus", start).c_str(),
-                  bank.largest, 1.05, "");
-        table.row("the same, share more than 2 % too steep", bank.tooSteep, 0.01, "");
-    }
-    for (const sand::ToolKind kind : support::everyTool()) {
-        const auto name = [&](const char* what) { return fmt::format("{}, {}", what, base::nameOf(kind)); };
-        table.row(name("through walls, grid").c_str(), borders::throughWalls(kGrid, n, kind), 0, "cell3");
-        table.row(name("through walls, TIN").c_str(), borders::throughWalls(kTin, n, kind), 0, "cell3");
-        table.row(name("over a ridge of rock, grid").c_str(), borders::overRidge(n, kind), 0, "cell3");
-    }
-    for (const auto& [where, place] : {std::pair{middle, "in the middle"}, {rim, "at a rim"}, {hole, "at a hole"}}) {
-        for (const sand::ToolKind kind : {sphere, ellipsoid, circle, rectangle, ellipse}) {
-            const bool bowl = kind == sphere || kind == ellipsoid;
-            table.row(fmt::format("sand over the underside {}, TIN, {}", place, base::nameOf(kind)).c_str(),
-                      borders::underTool(kTin, n, kind, where), bowl ? 0.4 : 1e-3, "cell");
-        }
-    }
-    for (const auto& [ground, name] : {std::pair{kGrid, "grid"}, {kTin, "TIN"}}) {
-        for (const bool atRest : {false, true}) {
-            const borders::Held held = borders::heldSettle(ground, n, atRest);
-            const char* const when = atRest ? "at rest" : "moving";
-            table.row(fmt::format("settle with a tool held, {}, {}: sand over the underside", name, when).c_str(),
-                      held.largest, ground.tin ? 0.4 : 0, "cell");
-            table.row("the same, volume", held.volume, ground.tin ? 10 : 0, "cell3");
-            table.row("the same, moves in the step after", held.still ? 0 : 1, 0, "");
-        }
-    }
+    measureRims(table, n);
+    measureTools(table, n);
     measurePlanes(table, n);
     measureHeldTools(table, n);
-    return table.good;
+    return table.good();
 }
 
 /// A scene whose instructions are counted, and the line x = `line` [cell] along which its tool goes up and down.
@@ -302,6 +356,8 @@ bool search(int scenes, std::uint32_t seed) {
 
 struct Options {
     int size = 64;
+    std::string only;
+    bool list = false;
     std::string dig;
     int steps = 200;
     int search = 0;
@@ -314,6 +370,8 @@ int main(int argc, char** argv) {
     host::CommandLine line("Measures the sand at rims, walls, rock faces and holes.", "sand_borders");
     Options options;
     line.option("--size", options.size, "cells along a side").range(64, 512).showDefault();
+    line.option("--only", options.only, "measure only the experiments whose names contain this text");
+    line.flag("--list", options.list, "print the names of the experiments, and measure nothing");
     line.option(
         "--dig", options.dig,
         "dig in a scene to count instructions: grid, wall, near-wall, rock, near-rock, tin, rim-tin, hole-tin or "
@@ -326,6 +384,9 @@ int main(int argc, char** argv) {
         if (options.search > 0) {
             return search(options.search, options.seed) ? 0 : 1;
         }
-        return (options.dig.empty() ? measure(options.size) : dig(options.dig, options.steps)) ? 0 : 1;
+        if (!options.dig.empty()) {
+            return dig(options.dig, options.steps) ? 0 : 1;
+        }
+        return measure(options.size, options.only, options.list) ? 0 : 1;
     });
 }

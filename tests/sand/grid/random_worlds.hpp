@@ -29,9 +29,17 @@ inline constexpr std::array kBlocks{2, 8, 13, 32, 128};
 /// Random case: a field, its laws, its ground and a tool.
 class World {
 public:
-    World(unsigned seed, int widest, int highest /* [cell] */)
-        : random(seed), field(1 + below(widest), 1 + below(highest), 1.0), rules(samples::rulesFor(field)) {
+    /// With `lumpy`, the field has the largest size, and a few lumps on level ground. Most blocks between the lumps are
+    /// at rest, so that runs of blocks are short and touch no rim.
+    World(unsigned seed, int widest, int highest /* [cell] */, bool lumpy)
+        : random(seed),
+          field(lumpy ? widest : 1 + below(widest), lumpy ? highest : 1 + below(highest), 1.0),
+          rules(samples::rulesFor(field)) {
         chooseRules();
+        if (lumpy) {
+            chooseLumps();
+            return;
+        }
         chooseHeights();
         chooseGround();
     }
@@ -44,8 +52,13 @@ public:
             return std::nullopt;
         }
         const sand::Tool tool{sand::ToolKind::sphere, (2 + below(8)) * sand::kProbePerCell, 0};
-        const sand::ProbePoint place{below(field.columns() + 1) * sand::kProbePerCell,
-                                     below(field.rows() + 1) * sand::kProbePerCell, below(12) * sand::kProbePerCell};
+        sand::ProbePoint place{below(field.columns() + 1) * sand::kProbePerCell,
+                               below(field.rows() + 1) * sand::kProbePerCell, below(12) * sand::kProbePerCell};
+        if (!lumps.empty()) {
+            const auto& [x, y] = lumps.at(static_cast<std::size_t>(below(static_cast<int>(lumps.size()))));
+            place.x = (x - 6 + below(20)) * sand::kProbePerCell;
+            place.y = (y - 6 + below(20)) * sand::kProbePerCell;
+        }
         return sand::grid::Displacement(tool).obstacle(field, place);
     }
 
@@ -60,6 +73,7 @@ public:
     sand::HeightField field;
     sand::Rules rules;
     std::unique_ptr<sand::Ground> ground;
+    std::vector<std::pair<int, int>> lumps;  // south-western cell of each
 
 private:
     void chooseRules() {
@@ -93,6 +107,18 @@ private:
         }
     }
 
+    /// Lays lumps of noise, one per 50 x 50 cells.
+    void chooseLumps() {
+        const int count = std::max(1, field.columns() * field.rows() / 2500);
+        for (int i = 0; i < count; ++i) {
+            const int x = below(field.columns() - 8), y = below(field.rows() - 8);
+            lumps.emplace_back(x, y);
+            for (int cell = 0; cell < 64; ++cell) {
+                field.setHeight(x + cell % 8, y + cell / 8, below(1 << 21));
+            }
+        }
+    }
+
     /// Chooses rock and walls in two cases of three.
     void chooseGround() {
         const int kind = below(3);
@@ -117,6 +143,7 @@ private:
 struct Way {
     const base::Executor* executor = nullptr;     // null: the calling thread does all work
     std::optional<CodePath> path = std::nullopt;  // nullopt: one that this CPU has, at random in each world
+    bool lumpy = false;  // whether all worlds are lumps on level ground, with the blocks that programs have
 };
 
 /// The solver and a reference on one case. The field, the tool and the rules change in between. A reference has the
@@ -126,7 +153,7 @@ class Pair {
 public:
     Pair(World world, const Way& way)
         : world_(std::move(world)),
-          options_{.blockSize = kBlocks.at(world_.random() % kBlocks.size()),
+          options_{.blockSize = way.lumpy ? Erosion::kDefaultBlock : kBlocks.at(world_.random() % kBlocks.size()),
                    .path = pathOf(way, world_.random()),
                    .ground = world_.ground.get(),
                    .executor = way.executor},
@@ -246,7 +273,7 @@ private:
 template <class Reference>
 std::string firstDifference(unsigned seed, int sweeps, int widest, int highest, const Way& way = {}) {
     for (int done = 0; done < sweeps; ++seed) {
-        Pair<Reference> pair(World(seed, widest, highest), way);
+        Pair<Reference> pair(World(seed, widest, highest, way.lumpy), way);
         for (int part = 0; part < 6; ++part) {
             done += pair.sweep();
             if (const std::string difference = pair.difference(); !difference.empty()) {

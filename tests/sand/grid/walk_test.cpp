@@ -39,6 +39,14 @@ TEST(Walk, EqualsTwoPassesInWideWorlds) {
     }
 }
 
+// Short runs of blocks are swept in another way than long ones.
+TEST(Walk, EqualsTwoPassesInWorldsOfLumps) {
+    for (const base::CodePath path : base::codePathsHere()) {
+        compare(kSweeps, 100, 100, {.path = path, .lumpy = true});
+    }
+    compare(kSweeps, 200, 200, {.executor = &kBackwards, .lumpy = true});
+}
+
 TEST(Walk, EqualsTwoPassesWithStripsInAnyOrder) {
     compare(kFew, 200, 200, {.executor = &kBackwards});
     compare(kFew, 500, 30, {.executor = &kBackwards});

@@ -25,9 +25,10 @@ struct Options {
 struct Size {
     int widest, highest;  // [cell]
     int percent;
+    bool lumpy = false;
 };
 // Rims and blocks count most in small worlds. Rows are swept in pieces of 256 cells, and strips have 4096 cells.
-constexpr std::array<Size, 3> kSizes{{{45, 45, 60}, {1000, 40, 20}, {200, 200, 20}}};
+constexpr std::array<Size, 4> kSizes{{{45, 45, 50}, {1000, 40, 20}, {200, 200, 15}, {150, 150, 15, true}}};
 
 /// Returns whether both sweeps gave the same sand on one path with one number of threads, and prints it.
 bool compare(const Options& options, base::CodePath path, int threads) {
@@ -38,7 +39,7 @@ bool compare(const Options& options, base::CodePath path, int threads) {
         if (difference.empty()) {
             difference = worlds::firstDifference<two_pass::Solver>(
                 options.seed, static_cast<int>(std::int64_t{options.sweeps} * size.percent / 100), size.widest,
-                size.highest, {.executor = team.lend(), .path = path});
+                size.highest, {.executor = team.lend(), .path = path, .lumpy = size.lumpy});
         }
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
