@@ -64,13 +64,14 @@ def print_list(parts, data, quick, root):
 
 
 def lock(data):
-    """Returns a file whose lock this process holds, or None if another report holds it."""
-    file = (data / ".lock").open("w")
+    """Locks the folder. Returns its descriptor, which holds the lock, or None if another report holds it."""
+    folder = os.open(data, os.O_RDONLY)
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
+        os.close(folder)
         return None
-    return file
+    return folder
 
 
 def run(arguments, parts=PARTS, sections=SECTIONS, prepare=build, root=ROOT):

@@ -24,8 +24,13 @@ def die_with_parent():
 
 
 def commit_of(root=ROOT):
-    ran = subprocess.run(["git", "-C", root, "describe", "--always", "--dirty=, with changes"], capture_output=True, text=True)
-    return ran.stdout.strip() if ran.returncode == 0 else "unknown"
+    """Returns the commit of the sources, and whether they have changed since. The report itself does not count."""
+    def git(*words):
+        ran = subprocess.run(["git", "-C", root, *words], capture_output=True, text=True, check=False)
+        return ran.stdout.strip() if ran.returncode == 0 else None
+    commit = git("rev-parse", "--short", "HEAD")
+    changed = git("status", "--porcelain", "--untracked-files=no", "--", ".", ":!docs/report")
+    return "unknown" if commit is None else f"{commit}, with changes" if changed else commit
 
 
 def minutes(seconds):
