@@ -21,6 +21,8 @@ struct Arrival {
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() after the steps of this frame
     std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
     base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
+    // [ns], durations of the movements and edits of this frame's steps, of their sweeps, and of audit and hash
+    std::int64_t dragged = 0, swept = 0, hashed = 0;
 };
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so

@@ -267,8 +267,10 @@ void describeSession(host::CommandLine& line, Options& options) {
             "--pace", session.pace,
             "fast: as fast as the machine can, and a recorded hand waits for the wall; not for driver: and spacenav")
         .offeredBy({"run"});
-    const host::Option steps =
-        line.option("--steps", session.steps, "end after exactly this many shown steps").metavar("N").positive();
+    const host::Option steps = line.option("--steps", session.steps,
+                                           "end after exactly this many shown steps, with those that only pay sweeps")
+                                   .metavar("N")
+                                   .positive();
     steps.offeredBy({"run"});
     line.option("--frames", session.frames, "end after this many frames")
         .metavar("N")

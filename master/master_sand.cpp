@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "host/clock.hpp"
 #include "lockstep/cluster.hpp"
 
 namespace master {
@@ -27,16 +28,21 @@ void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::Tim
                        std::uint32_t auditTiles, StepSource& source) {
     faults_.strike(frame, replica_);
     source.reached(replica_);
+    work_ = {};
+    time_ = {};
     for (const haptic_bridge::TimedStep& timed : steps) {
-        replica_.apply(timed.step);
+        time_ += lockstep::applyTimed(replica_, timed.step);
+        work_ += replica_.lastWork();
         if (!replica_.leftOut().empty()) {
             leftOut_.push_back({timed.step.number, replica_.leftOut(), replica_.refusedStep()});
         }
         edits_ += timed.step.edit.any() ? 1 : 0;
         source.reached(replica_);
     }
+    const std::int64_t applied = host::monotonicNs();
     replica_.audit(static_cast<int>(auditTiles));
     rehash();
+    time_.hashNs = host::monotonicNs() - applied;
 }
 
 std::uint32_t MasterSand::auditTiles(double sinceSwap) const {

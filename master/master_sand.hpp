@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lockstep/fault.hpp"
+#include "lockstep/sand_time.hpp"
 #include "master/steps/step_source.hpp"
 #include "sand/replica.hpp"
 
@@ -48,6 +49,10 @@ public:
         return static_cast<std::uint32_t>(replica_.hashTiles().tileCount());
     }
 
+    /// Returns the work of the last apply(), and the time that it took here.
+    [[nodiscard]] const sand::StepWork& work() const { return work_; }
+    [[nodiscard]] const lockstep::SandTime& time() const { return time_; }
+
     /// Returns what the steps since the last call have left out.
     [[nodiscard]] std::vector<LeftOut> takeLeftOut() { return std::exchange(leftOut_, {}); }
     /// Returns the number of steps with an edit since the session began.
@@ -59,6 +64,8 @@ private:
     std::uint64_t hash_ = 0;
     std::uint64_t edits_ = 0;
     std::vector<LeftOut> leftOut_;
+    sand::StepWork work_;
+    lockstep::SandTime time_;
 };
 
 }  // namespace master

@@ -185,7 +185,7 @@ bool Session::showFrame(bool& more) {
     if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
         desk_.takeCapture(frame.frame, barrier_);
     }
-    steps_->shown(sand_.replica().stepNumber(), swap.interval, held);
+    steps_->shown({sand_.replica().stepNumber(), swap.interval, held, cost()});
     measure_.addHand(steps_->handed());
     if (!steps_->proveServer(steps, sand_.hash())) {
         check_.serverDiffered(frame.frame);
@@ -197,9 +197,22 @@ bool Session::showFrame(bool& more) {
     return true;
 }
 
+haptic_bridge::FrameCost Session::cost() const {
+    haptic_bridge::FrameCost cost{.sweeps = sand_.work().sweeps, .substeps = sand_.work().substeps};
+    for (const lockstep::Arrival& rank : barrier_.arrivals()) {
+        cost.dragNs = std::max(cost.dragNs, rank.dragged);
+        cost.sweepNs = std::max(cost.sweepNs, rank.swept);
+        cost.hashNs = std::max(cost.hashNs, rank.hashed);
+        cost.drawNs = std::max(cost.drawNs, rank.drawn);
+    }
+    return cost;
+}
+
 bool Session::agree(const lockstep::FrameMessage& frame) {
-    const lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(),
-                                 0,           sand_.hash(),  check_.viewHash(frame.view)};
+    lockstep::Arrival mine{frame.frame, monotonicNs(), clock_.lastSwap(), 0, sand_.hash(), check_.viewHash(frame.view)};
+    mine.dragged = sand_.time().dragNs;
+    mine.swept = sand_.time().sweepNs;
+    mine.hashed = sand_.time().hashNs;
     return check_.agree(frame, mine, sand_, *steps_, clock_.next(held()));
 }
 
@@ -230,7 +243,9 @@ nlohmann::json Session::status() const {
                           {"state_hash", fmt::format("{:016x}", sand_.hash())},
                           {"checking_journal", check_.pending()},
                           {"edits", sand_.edits()},
-                          {"can_undo", sand.canUndo()}};
+                          {"can_undo", sand.canUndo()},
+                          {"sweeps_owed", sand.holdsTool() ? sand.owed().left() : 0},
+                          {"settling", sand.settling()}};
     const Incidents all = incidents();
     host::JsonWriter writer(status);
     Incidents::counters(all, writer);

@@ -68,6 +68,8 @@ private:
                : record_.full() ? haptic_bridge::Held::disk
                                 : haptic_bridge::Held::no;
     }
+    /// Returns the cost of the last frame on the slowest rank, and the work of its steps.
+    [[nodiscard]] haptic_bridge::FrameCost cost() const;
     /// Meets the ranks at the barrier of `frame`. Returns whether all ranks agreed.
     [[nodiscard]] bool agree(const lockstep::FrameMessage& frame);
     [[nodiscard]] journal::JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }

@@ -16,6 +16,7 @@
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
 #include "lockstep/healing.hpp"
+#include "lockstep/sand_time.hpp"
 #include "lockstep/screenshots.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
@@ -94,14 +95,16 @@ public:
             drawMs_.add(figures.drawMs);
             const std::uint64_t hash = replica_->stateHash();
             const std::int64_t arrived = monotonicNs();
+            cost_.hashNs += arrived - drawn;
             if (message_.pointer) {
                 barrier.setPointer(readPointer(frame.view, clockAhead));
             }
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
-            const lockstep::Arrival mine{frame.frame, arrived - clockAhead,        lastSwap, drawn - start,
-                                         hash,        viewProof_.hash(frame.view), nextKey()};
+            const lockstep::Arrival mine{
+                frame.frame, arrived - clockAhead, lastSwap,      drawn - start, hash, viewProof_.hash(frame.view),
+                nextKey(),   cost_.dragNs,         cost_.sweepNs, cost_.hashNs};
             if (!agree(barrier, mine, frame, figures)) {
                 (void)lockstep::gatherReports(barrier, report());
                 return;
@@ -183,10 +186,13 @@ private:
     }
 
     void applySteps(const lockstep::FrameMessage& frame) {
+        cost_ = {};
         for (const sand::Step& step : frame.steps) {
-            replica_->apply(step);
+            cost_ += lockstep::applyTimed(*replica_, step);
         }
+        const std::int64_t applied = monotonicNs();
         replica_->audit(static_cast<int>(frame.auditTiles));
+        cost_.hashNs = monotonicNs() - applied;
     }
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
@@ -236,8 +242,9 @@ private:
     const lockstep::Cluster& cluster_;
     const lockstep::SessionMessage& message_;
     lockstep::FaultsOfRank faults_;
-    walls::Wall wall_;   // at the start of the session
-    walls::Wall shown_;  // in the mode of the last frame; the painter refers to it
+    lockstep::SandTime cost_;  // of the frame
+    walls::Wall wall_;         // at the start of the session
+    walls::Wall shown_;        // in the mode of the last frame; the painter refers to it
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // declared before all owners of GL objects

@@ -84,7 +84,7 @@ Replica::Replica(const Replica& other)
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
-void Replica::apply(const Step& step) {
+void Replica::apply(const Step& step, const std::function<void()>& moved) {
     (void)base::needDefaultFloats();  // a driver may change the rounding of its caller at any time
     if (step.number != stepNumber_ + 1) {
         throw std::logic_error("Replica::apply: step " + std::to_string(step.number) + " after step " +
@@ -92,13 +92,14 @@ void Replica::apply(const Step& step) {
     }
     leftOut_ = whyRefused(step);
     refusedStep_ = !leftOut_.empty();
+    lastWork_ = {};
     if (refusedStep_) {
         stepNumber_ = step.number;
         return;
     }
     const Hand before{rules_.tuning, probe_, heading_};
     try {
-        applyToSand(step);
+        applyToSand(step, moved);
     } catch (const std::bad_alloc&) {
         throw;
     } catch (const std::exception& error) {
@@ -177,7 +178,8 @@ bool Replica::restoreKept() {
     return false;
 }
 
-void Replica::applyToSand(const Step& step) {
+void Replica::applyToSand(const Step& step, const std::function<void()>& moved) {
+    lastWork_ = {0, substepsOf(step, probe_, engaged_)};
     const Owed owed = owedBy(step);
     const bool wasEngaged = engaged_;
     const ProbePoint before = probe_;
@@ -223,8 +225,10 @@ void Replica::applyToSand(const Step& step) {
     }
     const Tool here = tool();
     const std::int32_t sweeps = step.sweeps != 0 ? step.sweeps : wholeOf(owed_);
-    const bool still = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);
-    owed_ = still ? Owed{} : owed_.after(sweeps);
+    moved();
+    const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);
+    lastWork_.sweeps = swept.sweeps;
+    owed_ = swept.still ? Owed{} : owed_.after(sweeps);
 }
 
 int Replica::settlingSweeps() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -107,7 +108,14 @@ public:
     ///
     /// std::bad_alloc is passed on instead, because it depends on the host. The replica is then unusable, and its
     /// process must end.
-    void apply(const Step& step);
+    void apply(const Step& step) {
+        apply(step, [] {});
+    }
+    /// Applies the next step. Calls `moved` after the tool's movement and the edit, and before the sweeps, so that the
+    /// caller can measure both. It is not called for a step that is left out.
+    void apply(const Step& step, const std::function<void()>& moved);
+    /// Returns the work of the last step that was applied. The number of sweeps may differ between equal replicas.
+    [[nodiscard]] const StepWork& lastWork() const { return lastWork_; }
     /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
     /// Returns an empty text if there was none of these. An ignored undo does not count.
     [[nodiscard]] const std::string& leftOut() const { return leftOut_; }
@@ -204,7 +212,7 @@ private:
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.
     void press();
-    void applyToSand(const Step& step);
+    void applyToSand(const Step& step, const std::function<void()>& moved);
     /// Ends a step whose application has failed. `before` is from before the step.
     void skip(const Step& step, const Hand& before, const char* why);
     /// Restores the sand that is kept for an undo. Returns false if no sand is kept, or if it is not possible sand.
@@ -222,6 +230,7 @@ private:
     Owed owed_;
     std::string leftOut_;  // by the last apply()
     bool refusedStep_ = false;
+    StepWork lastWork_;
 };
 
 }  // namespace sand

@@ -44,9 +44,7 @@ void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t 
 
 std::vector<TimedStep> Client::drain(std::size_t most) { return session_->drain(most); }
 
-void Client::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, Held held) {
-    session_->shown({stepNumber, frameIntervalNs, held});
-}
+void Client::shown(const Shown& frame) { session_->shown(frame); }
 
 void Client::request(const sand::Edit& edit) { session_->request({edit}); }
 

@@ -123,12 +123,11 @@ public:
     /// A server is at most StepMaker::kWindow steps ahead of shown(). Against a server that ignores this, the network
     /// thread stops reading when kMaxQueued steps wait, until this is called. TCP then holds the server back.
     [[nodiscard]] std::vector<TimedStep> drain(std::size_t most);
-    /// Tells the server that the wall has swapped and shows step `stepNumber`. The server may then send further steps.
-    /// `frameIntervalNs` is the time since the swap before [ns]. `held` says why the wall takes no steps.
+    /// Tells the server that the wall has swapped and what it shows. The server may then send further steps.
     ///
     /// Also answers the timing tests that came before the frame's steps were drained. Like a step, a test that comes
     /// while a frame is drawn belongs to the next frame.
-    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, Held held = Held::no);
+    void shown(const Shown& frame);
     /// Asks the server to put an operator's edit into its next step. Ignored unless the link is `linked`.
     void request(const sand::Edit& edit);
     /// Sets the share of the server's force that the hand feels from now on, also in later links. At first it is the

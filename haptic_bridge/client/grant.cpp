@@ -55,7 +55,9 @@ void Grant::asked(const sand::Edit& edit) {
 }
 
 Shown Grant::bounded(const Shown& frame) const {
-    return {std::clamp(frame.stepNumber, start_.stepNumber, lastStep_), frame.frameIntervalNs, frame.held};
+    Shown bounded = frame;
+    bounded.stepNumber = std::clamp(frame.stepNumber, start_.stepNumber, lastStep_);
+    return bounded;
 }
 
 }  // namespace haptic_bridge

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "haptic_bridge/hand/path_builder.hpp"
 #include "sand/replica.hpp"
@@ -29,7 +30,12 @@ public:
 
     /// Fills `step.engaged`, `step.path` and `step.heading` with the movement since the step before. Returns when the
     /// last of its samples was read [ns, the samples' clock]. Returns 0 if the step has no sample that was read.
-    std::int64_t fill(sand::Step& step);
+    /// A path of an engaged tool has at most `mostSubsteps` sub-steps, or one point.
+    ///
+    /// While the replica holds its tool (sand::Replica::holdsTool()), do not call it: the movement waits.
+    std::int64_t fill(sand::Step& step, std::int64_t mostSubsteps = PathBuilder::kNoLimit);
+    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
+    [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const { return path_.engagedSinceNs(); }
 
     /// Returns the number of samples that were dropped while the hand was present (PathBuilder::dropped()).
     [[nodiscard]] virtual std::uint64_t dropped() const { return path_.dropped(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/hand/path_builder.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace haptic_bridge {
@@ -54,7 +55,13 @@ void PathBuilder::letGoIfFarAhead() {
     }
 }
 
-std::int64_t PathBuilder::take(sand::Step& step) {
+std::optional<std::int64_t> PathBuilder::engagedSinceNs() const {
+    const auto first = std::ranges::find_if(
+        waiting_, [this](const HandSample& sample) { return sample.engaged && (!engaged_ || sample.probe != last_); });
+    return first == waiting_.end() ? std::nullopt : std::optional(first->readNs);
+}
+
+std::int64_t PathBuilder::take(sand::Step& step, std::int64_t mostSubsteps) {
     step.engaged = engaged_;
     if (waiting_.empty()) {
         return 0;
@@ -66,8 +73,15 @@ std::int64_t PathBuilder::take(sand::Step& step) {
     const std::int64_t until = waiting_.front().readNs + mostNs_;
     const bool changed = waiting_.front().engaged != engaged_;
     engaged_ = waiting_.front().engaged;
+    std::int64_t substeps = 0;
     while (!waiting_.empty() && waiting_.front().engaged == engaged_ && waiting_.front().readNs < until) {
         const HandSample sample = waiting_.front();
+        if (engaged_ && sample.probe != last_) {
+            substeps += changed && path.empty() ? 1 : sand::substepsBetween(last_, sample.probe);
+            if (substeps > mostSubsteps && !path.empty()) {
+                break;
+            }
+        }
         waiting_.pop_front();
         readNs = sample.read ? sample.readNs : readNs;
         step.heading = sample.heading ? sample.heading : step.heading;

@@ -25,10 +25,11 @@ struct HandSample {
 /// next step takes the rest. Points at which the hand rests are left out. A path that is too long for a step keeps its
 /// first and its last point, and evenly chosen points in between. The points stay in the order of time.
 ///
-/// Samples wait while a slow wall holds the server back. A later step then holds up to kMostPeriods periods of the
-/// hand. It holds no more, because a longer path takes longer to apply, and the wall would fall further behind. If the
-/// waiting samples span more than kFarthestAhead, only the last kMostPeriods periods of them are kept. The tool is then
-/// lifted, and put down where these samples begin.
+/// Samples wait while a slow wall holds the server back, and while sweeps are owed. A later step then holds up to
+/// kMostPeriods periods of the hand, and no more sub-steps of the tool than its caller allows. It holds no more,
+/// because a longer path takes longer to apply, and the wall would fall further behind. If the waiting samples span
+/// more than kFarthestAhead, only the last kMostPeriods periods of them are kept. The tool is then lifted, and put down
+/// where these samples begin.
 class PathBuilder {
 public:
     static constexpr std::int64_t kMostPeriods = 4;  // [period of a step] of hand movement that a step may hold
@@ -42,8 +43,12 @@ public:
     void add(const HandSample& sample);
     /// Fills `step.engaged`, `step.path` and the hand's last heading from waiting samples. Returns the time at which
     /// the last sample was read [ns], or 0 if the step has no sample that was read. If no sample waits, the hand is
-    /// where it was, and the step is engaged as the one before.
-    std::int64_t take(sand::Step& step);
+    /// where it was, and the step is engaged as the one before. A path of an engaged tool has at most `mostSubsteps`
+    /// sub-steps, or one point.
+    std::int64_t take(sand::Step& step, std::int64_t mostSubsteps = kNoLimit);
+    static constexpr std::int64_t kNoLimit = INT64_MAX;
+    /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
+    [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const;
     /// Forgets all waiting samples. The hand now hovers at `probe`.
     void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "haptic_bridge/hand/frame_cost.hpp"
 #include "haptic_bridge/link/greetings.hpp"
 #include "haptic_bridge/link/message_forms.hpp"
 #include "haptic_bridge/link/report.hpp"
@@ -85,11 +86,13 @@ struct Shown {
     std::uint64_t stepNumber = 0;      // the last step that the wall shows
     std::int64_t frameIntervalNs = 0;  // from the swap of the frame before to the swap of this frame
     Held held = Held::no;
+    FrameCost cost{};  // of this frame, on the slowest rank
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("step", it.stepNumber);
         visit("frame_interval_ns", it.frameIntervalNs);
         visit("held", it.held);
+        visit("cost", it.cost);
     }
     friend bool operator==(const Shown&, const Shown&) = default;
 };
@@ -164,8 +167,10 @@ struct NeedState {
 };
 /// One step of the sand. A load in it has no sand, because the master has the sand and knows the edit by its number.
 struct StepMessage {
-    std::int64_t serverTimeNs = 0;  // server's clock at the step's last hand sample, or when it made the step
-    std::uint64_t stateHash = 0;    // of the server's replica after the step
+    // Server's clock at the step's last hand sample, or when it made the step. 0 if the hand waited for sweeps that are
+    // owed.
+    std::int64_t serverTimeNs = 0;
+    std::uint64_t stateHash = 0;  // of the server's replica after the step
     sand::Step step;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {

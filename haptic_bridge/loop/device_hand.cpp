@@ -32,7 +32,8 @@ void ChannelHand::drain() {
 
 void ChannelHand::publish(const sand::Replica& replica, bool edited) {
     edits_ += edited ? 1 : 0;
-    stepNs_ = now_();
+    // The hand feels sand in which its oldest waiting movement is missing. The guards see how old that is.
+    stepNs_ = std::min(now_(), engagedSinceNs().value_or(now_()));
     copy(replica);
 }
 

@@ -29,7 +29,8 @@ StepMaker::StepMaker(const scene::Scene& scene, DeviceHand& hand, Output output,
       output_(std::move(output)),
       replica_(scene, executor),
       now_(std::move(clock)),
-      clock_(scene.rules.stepsPerSecond) {}
+      clock_(scene.rules.stepsPerSecond),
+      budget_(hand.onHostClock() ? Pace::realtime : Pace::fast, 1'000'000'000 / scene.rules.stepsPerSecond) {}
 
 bool StepMaker::asGranted() {
     return replica_.stepNumber() == start_.stepNumber && replica_.stateHash() == start_.stateHash;
@@ -94,6 +95,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     shown_ = std::max(shown_, std::min(frame.stepNumber, replica_.stepNumber()));
     held_ = frame.held;
     clock_.frameShown(nowNs, frame.frameIntervalNs);
+    budget_.shown(frame.cost, shown_);
 }
 
 void StepMaker::edit(EditRequest request) {
@@ -142,7 +144,7 @@ void StepMaker::collect() {
 /// Returns the time at which the last sample of the step was read [ns, the host's clock]. Returns 0 if the step has no
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
-    const std::int64_t readNs = hand_.fill(step);
+    const std::int64_t readNs = hand_.fill(step, hand_.onHostClock() ? budget_.mostSubsteps() : PathBuilder::kNoLimit);
     if (sand::isRound(replica_.tool().kind) || step.heading == replica_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }
@@ -174,11 +176,12 @@ void StepMaker::makeStep() {
     message.serverTimeNs = now_();
     if (replica_.holdsTool()) {
         message.step.engaged = replica_.engaged();
+        message.serverTimeNs = 0;  // no latency of the hand
     } else if (const std::int64_t readNs = fill(message.step); readNs != 0) {
         message.serverTimeNs = readNs;
     }
     message.step.edit = std::exchange(edit_, {});
-    message.step.sweeps = replica_.wholeSweeps(message.step);
+    message.step.sweeps = budget_.sweepsOf(message.step, replica_);
     const bool edited = message.step.edit.any();
     const std::uint64_t edit = message.step.edit.number;
     replica_.apply(message.step);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "haptic_bridge/hand/sweep_budget.hpp"
 #include "haptic_bridge/link/protocol.hpp"
 #include "haptic_bridge/loop/device_hand.hpp"
 #include "haptic_bridge/server/step_clock.hpp"
@@ -20,7 +21,8 @@ namespace haptic_bridge {
 ///
 /// An epoch begins when a master sends Start and the replica has the same sand. It ends with release(). Until then,
 /// makeStep() puts the samples of the hand into a step and applies the step to the replica. It sends the step to the
-/// master, with the replica's state hash, and gives the hand the sand after the step.
+/// master, with the replica's state hash, and gives the hand the sand after the step. While sweeps are owed, the steps
+/// only pay them, and the movement of the hand waits.
 ///
 /// Threads: one thread calls it, except where a function allows any thread. It has no thread of its own.
 class StepMaker {
@@ -98,6 +100,7 @@ private:
     sand::Replica replica_;
     Clock now_;
     StepClock clock_;
+    SweepBudget budget_;
     std::uint32_t session_ = 0;
     Start start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;

@@ -28,6 +28,7 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
       link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.sweepRange()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace),
+      budget_(pace, 1'000'000'000 / scene.rules.stepsPerSecond),
       pace_(pace),
       source_(link_.hasServer() ? Source::starting : Source::own),
       epoch_(epoch),
@@ -142,7 +143,7 @@ std::vector<TimedStep> LiveSteps::next(const sand::Replica& replica, std::uint64
 std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
     const bool fromServer = linked();
     if (fromServer) {
-        std::vector<TimedStep> steps = link_.client()->drain(most);
+        std::vector<TimedStep> steps = drain(replica, most);
         if (!steps.empty()) {
             return steps;
         }
@@ -150,7 +151,7 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::ui
     followLink(replica, stateHash);
     if (fromServer && source_ == Source::own && link_.client() != nullptr) {
         // Steps that arrived between the first look and the loss of the link count, too.
-        std::vector<TimedStep> steps = link_.client()->drain(most);
+        std::vector<TimedStep> steps = drain(replica, most);
         if (!steps.empty()) {
             source_ = Source::server;
             --epoch_;
@@ -158,6 +159,29 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::ui
         }
     }
     return source_ == Source::own ? ownSteps(replica, most) : std::vector<TimedStep>();
+}
+
+std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_t most) {
+    std::vector<TimedStep> steps;
+    sand::StepWork taken;
+    sand::ProbePoint probe = replica.probe();
+    bool engaged = replica.engaged();
+    while (steps.size() < most) {
+        std::vector<TimedStep> next = link_.client()->drain(1);
+        if (next.empty()) {
+            break;
+        }
+        const sand::Step& step = next.front().step;
+        taken += {step.sweeps, sand::substepsOf(step, probe, engaged)};
+        probe = step.path.empty() ? probe : step.path.back();
+        engaged = step.engaged;
+        steps.push_back(std::move(next.front()));
+        // One more like it must fit, because a step that has been taken cannot be put back.
+        if (!budget_.fits(taken, {steps.back().step.sweeps, 0})) {
+            break;
+        }
+    }
+    return steps;
 }
 
 std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
@@ -172,18 +196,19 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         if (replica.holdsTool()) {
             next.step.engaged = replica.engaged();
         } else {
-            own_.fill(next);
+            own_.fill(next, budget_.mostSubsteps());
         }
         next.step.edit = edits_.at(0);
-        next.step.sweeps = replica.wholeSweeps(next.step);
-        known = !next.step.edit.any() && !replica.owed().any();
+        next.step.sweeps = budget_.sweepsOf(next.step, replica);
+        known = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step);
     }
     return steps;
 }
 
-void LiveSteps::shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, haptic_bridge::Held held) {
+void LiveSteps::shown(const haptic_bridge::Shown& frame) {
+    budget_.shown(frame.cost, frame.stepNumber);
     if (link_.client() != nullptr) {
-        link_.client()->shown(stepNumber, frameIntervalNs, held);
+        link_.client()->shown(frame);
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/hand/pace.hpp"
+#include "haptic_bridge/hand/sweep_budget.hpp"
 #include "lockstep/fault.hpp"
 #include "master/steps/own_steps.hpp"
 #include "master/steps/server_link.hpp"
@@ -48,7 +49,7 @@ public:
     void request(sand::Edit edit) override { edits_.add(std::move(edit)); }
     void shareForce(double share) override { link_.shareForce(share); }
 
-    void shown(std::uint64_t stepNumber, std::int64_t frameIntervalNs, haptic_bridge::Held held) override;
+    void shown(const haptic_bridge::Shown& frame) override;
     /// If the hashes differ, connects again, so that the server starts from the wall's state.
     [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
                                    std::uint64_t stateHash) override;
@@ -83,6 +84,8 @@ private:
 
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& replica, std::uint64_t stateHash,
                                                                  std::size_t most);
+    /// Takes the steps of the server that fit into a frame, at least one if one has come, and at most `most`.
+    [[nodiscard]] std::vector<haptic_bridge::TimedStep> drain(const sand::Replica& replica, std::size_t most);
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& replica, std::size_t most);
     void followLink(const sand::Replica& replica, std::uint64_t stateHash);
     /// Follows a link that is neither linked, streaming nor offered.
@@ -99,6 +102,7 @@ private:
     ServerLink link_;
     OwnSteps own_;
     WaitingEdits edits_;
+    haptic_bridge::SweepBudget budget_;
     haptic_bridge::StepRing recent_;
     haptic_bridge::Pace pace_;
     Source source_;

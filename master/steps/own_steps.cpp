@@ -19,12 +19,12 @@ std::size_t OwnSteps::due(std::int64_t nowNs) {
     return static_cast<std::size_t>(due);
 }
 
-void OwnSteps::fill(haptic_bridge::TimedStep& own) {
+void OwnSteps::fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps) {
     if (!pointer_) {
-        positions_.fill(own.step);
+        (void)positions_.fill(own.step, mostSubsteps);
         return;
     }
-    own.serverTimeNs = pointer_->fill(own.step);
+    own.serverTimeNs = pointer_->fill(own.step, mostSubsteps);
     own.receivedNs = pointedNs_;
 }
 

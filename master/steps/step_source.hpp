@@ -63,10 +63,8 @@ public:
     /// Sets how far the tool's underside is below the sand while a pointer is pressed [tool radius].
     virtual void setPointerDepth(double /* depth */) {}
 
-    /// Called when the wall has swapped and shows the sand after step `stepNumber`. `frameIntervalNs` is the time since
-    /// the swap before [ns]. `held` says why the frame took no steps.
-    virtual void shown(std::uint64_t /* stepNumber */, std::int64_t /* frameIntervalNs */,
-                       haptic_bridge::Held /* held */) {}
+    /// Called when the wall has swapped.
+    virtual void shown(const haptic_bridge::Shown& /* frame */) {}
     /// Compares the wall's state hash `hash` with the haptic server's hash after the last of `steps`. The wall shows
     /// this step now. If the server's sand differs, ends the link to this server and returns false. Also returns false,
     /// once, if a server has said goodbye and has found that its memory had changed (haptic_bridge::Audited::differed).

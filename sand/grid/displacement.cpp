@@ -237,7 +237,7 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
-    const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+    const std::int64_t steps = substepsBetween(from, to);
     Work all{{field.columns(), field.rows(), 0, 0}, 0};
     for (std::int64_t i = 1; i <= steps; ++i) {
         const ProbePoint probe{static_cast<std::int32_t>(from.x + dx * i / steps),

@@ -82,14 +82,15 @@ void GridSurface::release(const Tool& tool, const ProbePoint& probe) {
     erosion_.touch(Displacement(tool).cells(field_, probe));
 }
 
-bool GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
+Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
+    const std::int64_t before = erosion_.sweepsDone();
     const Erosion::Swept swept = erosion_.sweep(field_, part, tool == nullptr ? nullptr : &here);
     outflow_ += swept.outflow;
     for (const CellRect& block : erosion_.takeMoved()) {
         touch(block);
     }
-    return swept.still;
+    return {erosion_.sweepsDone() - before, swept.still};
 }
 
 void GridSurface::changeRules(const Rules& rules) {

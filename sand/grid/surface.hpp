@@ -26,7 +26,7 @@ public:
 
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
     void release(const Tool& tool, const ProbePoint& probe) override;
-    bool sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
+    Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }

@@ -27,6 +27,14 @@ inline constexpr std::int32_t kMaxProbe = 1 << 24;
     return static_cast<std::int32_t>(std::floor(std::clamp(cells * kProbePerCell, -kFarthest, kFarthest - 1) + 0.5));
 }
 
+/// Returns the number of sub-steps in which a tool moves from one probe point to another: at most a cell each, and at
+/// least one.
+[[nodiscard]] inline std::int64_t substepsBetween(const ProbePoint& from, const ProbePoint& to) {
+    const auto distance = [](std::int64_t a, std::int64_t b) { return a < b ? b - a : a - b; };
+    const std::int64_t longest = std::max({distance(from.x, to.x), distance(from.y, to.y), distance(from.z, to.z)});
+    return std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+}
+
 /// Returns the probe point of a place [cell]. All code that quantises a place uses it.
 [[nodiscard]] inline ProbePoint probePoint(double x, double y, double z) {
     return {probeCoordinate(x), probeCoordinate(y), probeCoordinate(z)};

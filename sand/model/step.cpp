@@ -128,6 +128,19 @@ void Step::get(base::ByteReader& reader) {
     edit = decodeDetails(static_cast<Edit::Kind>(kind), reader);
 }
 
+std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged) {
+    if (!step.engaged || step.path.empty()) {
+        return 0;
+    }
+    std::int64_t substeps = 0;
+    ProbePoint from = engaged ? probe : step.path.front();
+    for (const ProbePoint& to : step.path) {
+        substeps += substepsBetween(from, to);
+        from = to;
+    }
+    return substeps;
+}
+
 std::string Step::refusal(const SweepRange& range) const {
     if (sweeps >= range.least && sweeps <= range.most) {
         return {};

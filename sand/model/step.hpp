@@ -84,4 +84,20 @@ struct Step {
     friend bool operator==(const Step&, const Step&) = default;
 };
 
+/// Amount of work that a step asks of a replica.
+struct StepWork {
+    std::int64_t sweeps = 0;
+    std::int64_t substeps = 0;  // of the tool, in which it displaces sand
+
+    StepWork& operator+=(const StepWork& other) {
+        sweeps += other.sweeps;
+        substeps += other.substeps;
+        return *this;
+    }
+    friend bool operator==(const StepWork&, const StepWork&) = default;
+};
+
+/// Returns the sub-steps of `step`, before which the tool is at `probe` and `engaged` or not.
+[[nodiscard]] std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged);
+
 }  // namespace sand

@@ -49,6 +49,12 @@ public:
     [[nodiscard]] virtual base::Bytes encode() const = 0;
 };
 
+/// What sweeps have done.
+struct Swept {
+    std::int64_t sweeps = 0;  // that have run. A replica that was healed may run one more, which moves no sand
+    bool still = false;       // whether the last sweep moved no sand. All replicas agree about it
+};
+
 /// Function that decodes the bytes of SurfaceCopy::encode() for one surface. It throws base::FormatError if the bytes
 /// are not sand for that surface, or if further bytes follow. Any thread may call it, also after the surface is
 /// destroyed.
@@ -78,9 +84,8 @@ public:
     /// as tin::Settings::keepConstraints says.
     virtual void leave(const Tool&) {}
     /// Lets the sand slide for the sweeps of `part`, or until a sweep moves no sand. `tool` is an obstacle with its
-    /// centre at `probe`; null without one. Returns whether the last sweep moved no sand. A TIN takes each call for a
-    /// whole step.
-    virtual bool sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) = 0;
+    /// centre at `probe`; null without one. A TIN takes each call for a whole step.
+    virtual Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
     /// Lets all sand come to rest at once. Ignores rock, walls and tools.

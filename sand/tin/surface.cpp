@@ -156,7 +156,7 @@ void TinSurface::leave(const Tool& tool) {
     meshChanged();
 }
 
-bool TinSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
+Swept TinSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     if (detail_.removals > 0) {
         const Box keepOut = tool == nullptr ? Box{} : displacementOf(*tool).reach(probe);
         if (coarsening_.step(layer_, detail_, state_.nextToGo, keepOut) > 0) {
@@ -164,6 +164,7 @@ bool TinSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint
         }
     }
     moved_.clear();
+    int sweeps = 0;
     if (tool != nullptr) {
         const Displacement& here = displacementOf(*tool);
         const Underside under = here.underside(probe);
@@ -172,14 +173,14 @@ bool TinSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint
             held_ = pose;
             wakeFull(under, here.reach(probe));
         }
-        erosion_.sweep(layer_, part.sweeps, &under, moved_);
+        sweeps = erosion_.sweep(layer_, part.sweeps, &under, moved_);
     } else {
         held_.reset();
-        erosion_.sweep(layer_, part.sweeps, nullptr, moved_);
+        sweeps = erosion_.sweep(layer_, part.sweeps, nullptr, moved_);
     }
     state_.outflow += erosion_.takeOutflow();
     sandMoved(moved_);
-    return settled();
+    return {sweeps, settled()};
 }
 
 void TinSurface::changeRules(const Rules& rules) {

@@ -34,7 +34,7 @@ public:
     /// Does nothing, because Erosion itself finds the sand that the tool held back.
     void release(const Tool&, const ProbePoint&) override {}
     void leave(const Tool& tool) override;
-    bool sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
+    Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     void settle() override;
     [[nodiscard]] std::int64_t sweepCost() const override;

@@ -173,7 +173,7 @@ struct Wall {
                 for (const auto& timed : client.drain(steps - replica.stepNumber())) {
                     apply(timed);
                 }
-                client.shown(replica.stepNumber(), 16'666'667);
+                client.shown({replica.stepNumber(), 16'666'667});
                 return replica.stepNumber() >= steps;
             },
             60000ms);

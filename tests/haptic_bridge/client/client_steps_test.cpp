@@ -207,12 +207,12 @@ TEST(Client, AnswersATimingTestAtOnceAndAgainWhenAFrameThatTookItIsShown) {
     grantWhenOffered(client, 1, 0);
     ASSERT_TRUE(eventually([&] { return client.counters().stepsIn == 3; }));
     EXPECT_TRUE(eventually([&] { return received.load(); })) << "the first echo comes before any frame";
-    client.shown(0, 1);  // this frame began before the test came
+    client.shown({0, 1});  // this frame began before the test came
     EXPECT_EQ(client.drain(1).size(), 1U);
-    client.shown(1, 1);  // this frame took only a part of the steps before the test
+    client.shown({1, 1});  // this frame took only a part of the steps before the test
     EXPECT_EQ(client.drain(1).size(), 1U);
-    client.shown(2, 1);  // this frame took all steps before the test
-    client.shown(3, 1);
+    client.shown({2, 1});  // this frame took all steps before the test
+    client.shown({3, 1});
     EXPECT_TRUE(eventually([&] { return framesBefore >= 0; }));
     EXPECT_EQ(framesBefore, 3);
 }

@@ -31,6 +31,38 @@ TEST(PathBuilder, GivesEverySampleInOrder) {
     EXPECT_EQ(step.path.back().x, 17);
 }
 
+TEST(PathBuilder, EndsAPathBehindTheSubstepsThatFit) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int cell = 1; cell <= 9; ++cell) {
+        builder.add(at(cell * sand::kProbePerCell));
+    }
+    sand::Step step;
+    EXPECT_EQ(builder.take(step, 3), 3 * sand::kProbePerCell + 1);
+    EXPECT_EQ(step.path.size(), 3U) << "a press, and two cells";
+    EXPECT_EQ(builder.engagedSinceNs(), 4 * sand::kProbePerCell + 1);
+    (void)builder.take(step, 2);
+    EXPECT_EQ(step.path.size(), 2U);
+    EXPECT_EQ(step.path.front().x, 4 * sand::kProbePerCell);
+    builder.add(at(40 * sand::kProbePerCell));
+    (void)builder.take(step, 4);
+    (void)builder.take(step, 1);
+    EXPECT_EQ(step.path.size(), 1U) << "a single point is always taken";
+    EXPECT_EQ(step.path.front().x, 40 * sand::kProbePerCell);
+    EXPECT_EQ(builder.dropped(), 0U);
+    EXPECT_EQ(builder.engagedSinceNs(), std::nullopt);
+}
+
+TEST(PathBuilder, HoveringTakesNoTimeOfTheSand) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int cell = 1; cell <= 9; ++cell) {
+        builder.add(at(cell * sand::kProbePerCell, false));
+    }
+    sand::Step step;
+    EXPECT_EQ(builder.engagedSinceNs(), std::nullopt);
+    (void)builder.take(step, 1);
+    EXPECT_EQ(step.path.size(), 9U);
+}
+
 TEST(PathBuilder, EndsAStepWhereTheHandLifts) {
     PathBuilder builder(kStepsPerSecond);
     for (int x = 1; x <= 9; ++x) {

@@ -40,7 +40,7 @@ TEST_F(LinkSecurityTest, CatchesUpByStepsOnTheSameHistoryAndByTheSandElse) {
                 ring.add(timed.step);
                 ring.reached(timed.step.number, timed.serverHash);
             }
-            client.shown(wall.replica.stepNumber(), 16'666'667);
+            client.shown({wall.replica.stepNumber(), 16'666'667});
             return wall.replica.stepNumber() >= until;
         })) << client.link().message
             << server.errors();

@@ -145,7 +145,7 @@ TEST_F(LinkSecurityTest, UnderTlsACaptureShowsNoProbePosition) {
                     wall.apply(timed);
                     steps.push_back(timed.step);
                 }
-                link.shown(wall.replica.stepNumber(), 16'666'667);
+                link.shown({wall.replica.stepNumber(), 16'666'667});
                 return steps.size() >= 100;
             }));
             EXPECT_EQ(wall.divergences, 0);

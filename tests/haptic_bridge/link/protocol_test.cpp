@@ -81,8 +81,12 @@ TEST(Protocol, EveryMessageComesBackAsItWent) {
 }
 
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
-    EXPECT_EQ(encode(Shown{0x0102, 3, Held::disk}),
-              (base::Bytes{18, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1}));
+    base::Bytes shown{66, 0, 0, 0, 10, 2, 1, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0, 0, 0, 1};
+    for (std::uint8_t i = 4; i < 10; ++i) {
+        shown.insert(shown.end(), {i, 0, 0, 0, 0, 0, 0, 0});
+    }
+    const FrameCost cost{.sweeps = 4, .substeps = 5, .sweepNs = 6, .dragNs = 7, .hashNs = 8, .drawNs = 9};
+    EXPECT_EQ(encode(Shown{0x0102, 3, Held::disk, cost}), shown);
     base::Bytes hello{60, 0, 0, 0, 1, 'S', 'W', 'H', 'B', 6, 0, 0, 0, 1,   0, 0,
                       0,  2, 0, 0, 0, 0,   0,   0,   0,   1, 0, 0, 0, 'a', 2, 3};
     for (std::uint8_t i = 0; i < 32; ++i) {
@@ -168,8 +172,10 @@ TEST(Protocol, RefusesACauseOrAResultThatHasNoName) {
             return true;
         }
     };
-    EXPECT_FALSE(refuses(Shown{}, 1, 2));
-    EXPECT_TRUE(refuses(Shown{}, 1, 3)) << "a reason to hold the sand";
+    const std::size_t held = 1 + 6 * sizeof(std::int64_t);  // in front of the cost of the frame
+    EXPECT_FALSE(refuses(Shown{}, held, 2));
+    EXPECT_TRUE(refuses(Shown{}, held, 3)) << "a reason to hold the sand";
+    EXPECT_TRUE(refuses(Shown{}, 1, 255)) << "a time below zero";
     EXPECT_FALSE(refuses(Report{}, 2, 1));
     EXPECT_TRUE(refuses(Report{}, 2, 2)) << "a mark of literal guards";
     EXPECT_FALSE(refuses(Report{}, 1, 2));

@@ -105,6 +105,24 @@ TEST_F(DeviceHandTest, AChannelCarriesSamplesOneWayAndSandTheOther) {
     EXPECT_TRUE(times_.empty()) << "only the force thread reads the hand";
 }
 
+TEST_F(DeviceHandTest, TheGuardsSeeHowLongAMovementWaits) {
+    ChannelHand hand(hand_, *channel_, 60, [] { return 1000; });
+    hand.begin(sand_);
+    const auto stepNs = [&] {
+        hand.publish(sand_, false);
+        return channel_->surface.latest().stepNs;
+    };
+    EXPECT_EQ(stepNs(), 1000);
+    for (const std::int64_t readNs : {300, 400, 500}) {
+        (void)channel_->samples.push({readNs, {1, 2, 3}, readNs > 300});
+    }
+    hand.drain();
+    EXPECT_EQ(stepNs(), 400) << "the oldest engaged sample";
+    (void)nextStep(hand);
+    (void)nextStep(hand);
+    EXPECT_EQ(stepNs(), 1000);
+}
+
 TEST(HandTicks, CountTicksWithAForceAndTicksOfAFault) {
     const scene::Scene scene = samples::flatScene(60, 60);
     test::FakeArm::State arm;

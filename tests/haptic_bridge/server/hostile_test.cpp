@@ -48,7 +48,7 @@ TEST_F(Hostile, ThousandsOfFramesDoNotTouchWhoIsLinkedToTheServer) {
             for (const auto& timed : client.drain(100)) {
                 wall.apply(timed);
             }
-            client.shown(wall.replica.stepNumber(), 16'666'667);
+            client.shown({wall.replica.stepNumber(), 16'666'667});
             return over.load();
         },
         240000ms);

@@ -171,7 +171,7 @@ TEST_F(HandOverABadLink, TheSandIsTheSameAndAResetEndsNothing) {
     ASSERT_TRUE(wall.follow(client, 20)) << client.link().message << "\n" << server.errors();
     // The wall reports after every frame which step it shows, so the reset comes soon.
     ASSERT_TRUE(eventually([&] {
-        client.shown(wall.replica.stepNumber(), 16'666'667);
+        client.shown({wall.replica.stepNumber(), 16'666'667});
         return link.resets() == 1;
     }));
     const std::uint64_t then = wall.replica.stepNumber();

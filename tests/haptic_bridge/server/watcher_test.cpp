@@ -61,7 +61,7 @@ TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
             for (const auto& timed : master.drain(100)) {
                 wall.apply(timed);
             }
-            master.shown(wall.replica.stepNumber(), 16'666'667);
+            master.shown({wall.replica.stepNumber(), 16'666'667});
             const std::string told = folder_.read("watch");
             return told.find("steps/s", told.find("steps/s") + 1) != std::string::npos ||
                    (told.find("127.0.0.1") != std::string::npos && told.ends_with('\n'));

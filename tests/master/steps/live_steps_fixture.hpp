@@ -39,7 +39,7 @@ protected:
                 edits_.push_back(timed.step.edit);
             }
         }
-        live.shown(wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no);
+        live.shown({wall_.stepNumber(), kFrameNs});
         differed_ += live.proveServer(steps, wall_.stateHash()) ? 0 : 1;
         return steps;
     }

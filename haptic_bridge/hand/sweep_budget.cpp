@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/hand/sweep_budget.hpp"
+
+#include <algorithm>
+
+namespace haptic_bridge {
+
+void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
+    drawNs_ = cost.drawNs;
+    if (cost.sweeps > 0 || cost.substeps > 0) {
+        hashNs_ = cost.hashNs;
+    }
+    if (cost.sweeps > 0) {
+        sweepNs_ = static_cast<double>(cost.sweepNs) / static_cast<double>(cost.sweeps);
+    }
+    if (cost.substeps > 0) {
+        substepNs_ = static_cast<double>(cost.dragNs) / static_cast<double>(cost.substeps);
+    }
+    if (step >= since_ && part_ > 0) {
+        part_ = std::max(part_, 2 * cost.sweeps);
+    }
+}
+
+std::int64_t SweepBudget::budgetNs() const { return std::min(std::max(periodNs_, drawNs_) / 2, kMostNs); }
+
+double SweepBudget::expectedNs(const sand::StepWork& work) const {
+    return sweepNs_ * static_cast<double>(work.sweeps) + substepNs_ * static_cast<double>(work.substeps);
+}
+
+void SweepBudget::begin(std::int64_t part, std::uint64_t step) {
+    part_ = part;
+    since_ = step;
+}
+
+std::int64_t SweepBudget::whenAllMoves(const sand::Replica& replica) const {
+    return std::clamp<std::int64_t>(budgetNs() / (kCellNs * replica.surface().sweepCost()), 1, kFastPart);
+}
+
+std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& replica) {
+    const std::int32_t most = replica.mostSweeps(step);
+    if (most == 0 || pace_ == Pace::fast) {
+        return std::min(most, kFastPart);
+    }
+    if (step.edit.any() || part_ == 0) {
+        begin(whenAllMoves(replica), step.number);
+    }
+    if (!step.edit.any() && step.engaged && !replica.engaged()) {
+        // Sand at rest moves at the tool alone. The costs of other sand say nothing about it.
+        begin(replica.settled() ? kFastPart : std::min<std::int64_t>(part_, kFastPart), step.number);
+    }
+    double sweeps = static_cast<double>(std::min<std::int64_t>(part_, most));
+    if (sweepNs_ > 0) {
+        const double budget = static_cast<double>(budgetNs());
+        const double others =
+            static_cast<double>(hashNs_) + expectedNs({0, sand::substepsOf(step, replica.probe(), replica.engaged())});
+        // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, so that they go on.
+        sweeps = std::min(sweeps, std::max(budget - others, budget / 4) / sweepNs_);
+    }
+    return std::max(static_cast<std::int32_t>(sweeps), 1);
+}
+
+std::int64_t SweepBudget::mostSubsteps() const {
+    constexpr double kUnlimited = 1 << 30;
+    const double most = substepNs_ > 0 ? static_cast<double>(budgetNs()) / substepNs_ : kUnlimited;
+    return static_cast<std::int64_t>(std::clamp(most, 1.0, kUnlimited));
+}
+
+bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& further) const {
+    const double all = expectedNs(taken) + expectedNs(further) + static_cast<double>(hashNs_);
+    return pace_ == Pace::fast || all <= static_cast<double>(budgetNs());
+}
+
+}  // namespace haptic_bridge

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "haptic_bridge/hand/frame_cost.hpp"
+#include "haptic_bridge/hand/pace.hpp"
+#include "sand/replica.hpp"
+
+namespace haptic_bridge {
+
+/// Decides how much work of the sand fits into a frame: how many sweeps a step runs, how far it moves the tool, and how
+/// many steps a frame takes.
+///
+/// The time for sand in a frame is half of the longer of its period and its drawing, and at most kMostNs. The sweeps of
+/// a step fit into it by the last wall time of a sweep. They are also at most twice as many as a frame has shown since
+/// a change. A stroke begins with kFastPart sweeps. After an edit all sand may move, as at the start of a session. So
+/// the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
+///
+/// The sand after all sweeps of a step does not depend on these numbers. In real time the path of the hand does.
+/// Reads no clock. Used by one thread.
+class SweepBudget {
+public:
+    static constexpr std::int32_t kFastPart = 64;        // [sweep], in every step under the fast pace
+    static constexpr std::int64_t kMostNs = 80'000'000;  // [ns], of sand in a frame
+    static constexpr std::int64_t kCellNs = 2;           // [ns], of a cell that moves, in a sweep of a large field
+
+    /// `periodNs` is that of the wall's frames [ns].
+    SweepBudget(Pace pace, std::int64_t periodNs) : pace_(pace), periodNs_(periodNs) {}
+
+    /// Takes the cost of a frame. `step` is the number of its last step.
+    void shown(const FrameCost& cost, std::uint64_t step);
+
+    /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
+    [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
+    /// Returns how many sub-steps of the tool a step may have; at least 1.
+    [[nodiscard]] std::int64_t mostSubsteps() const;
+    /// Returns whether a frame whose steps ask for `taken` may take a further step that asks for `further`.
+    [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further) const;
+
+    [[nodiscard]] std::int64_t budgetNs() const;  // [ns], for sand in a frame
+
+private:
+    void begin(std::int64_t part, std::uint64_t step);
+    /// Returns the sweeps that fit if all sand moves.
+    [[nodiscard]] std::int64_t whenAllMoves(const sand::Replica& replica) const;
+    [[nodiscard]] double expectedNs(const sand::StepWork& work) const;
+
+    Pace pace_;
+    std::int64_t periodNs_;
+    std::int64_t drawNs_ = 0, hashNs_ = 0;  // of the last frame
+    double sweepNs_ = 0, substepNs_ = 0;    // [ns], of one of them; 0: not known
+    std::int64_t part_ = 0;                 // [sweep], at most in a step; 0 before the first step
+    std::uint64_t since_ = 0;               // frames before this step do not let parts grow
+};
+
+}  // namespace haptic_bridge

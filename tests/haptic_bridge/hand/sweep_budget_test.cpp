@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "haptic_bridge/hand/sweep_budget.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/border_scenes.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace {
+
+using haptic_bridge::FrameCost;
+using haptic_bridge::Pace;
+using haptic_bridge::SweepBudget;
+using sand::Step;
+
+constexpr std::int64_t kPeriod = 16'000'000, kMillisecond = 1'000'000;
+
+class Budget : public testing::Test {
+protected:
+    explicit Budget(int whole = 4000) {
+        scene_ = samples::flatScene(1000, 500);  // a sweep takes at most 1 ms
+        scene_.rules.tuning.sweepsPerStep = whole;
+        sand_.emplace(scene_);
+    }
+    /// Returns the sweeps of the next step, which engages, holds or edits.
+    std::int32_t next(bool engaged = false, const sand::Edit& edit = {}) {
+        return budget_.sweepsOf({1, sand_->stepNumber() + 1, engaged, {}, edit}, *sand_);
+    }
+    /// Shows a frame with such a part, each sweep of which takes `sweepNs`.
+    void show(std::int64_t sweeps, std::int64_t sweepNs, std::int64_t drawNs = 0) {
+        budget_.shown({.sweeps = sweeps, .sweepNs = sweeps * sweepNs, .drawNs = drawNs}, sand_->stepNumber() + 1);
+    }
+
+    scene::Scene scene_;
+    std::optional<sand::Replica> sand_;
+    SweepBudget budget_{Pace::realtime, kPeriod};
+};
+
+TEST_F(Budget, IsHalfOfPeriodOrDrawingAndAtMostEightyMilliseconds) {
+    EXPECT_EQ(budget_.budgetNs(), kPeriod / 2);
+    show(1, 1, 10 * kMillisecond);
+    EXPECT_EQ(budget_.budgetNs(), kPeriod / 2) << "drawing is shorter than the period";
+    show(1, 1, 40 * kMillisecond);
+    EXPECT_EQ(budget_.budgetNs(), 20 * kMillisecond);
+    show(1, 1, 900 * kMillisecond);
+    EXPECT_EQ(budget_.budgetNs(), 80 * kMillisecond);
+}
+
+TEST_F(Budget, BeginsAsIfAllSandMovedAndAtMostDoublesWithEachFrameThatWasShown) {
+    EXPECT_EQ(next(), 8);
+    EXPECT_EQ(next(), 8) << "no cost is known yet";
+    for (const int part : {16, 32, 64, 128, 256}) {
+        show(part / 2, 1000);
+        EXPECT_EQ(next(), part);
+    }
+    show(200, 1000);
+    EXPECT_EQ(next(), 400);
+    show(3, 1000);
+    EXPECT_EQ(next(), 400) << "sand that rested early does not make parts small";
+}
+
+TEST_F(Budget, FitsByTheLastTimeOfASweep) {
+    (void)next();
+    show(1000, 10'000);
+    EXPECT_EQ(next(), 800) << "8 ms of 0.01 ms each";
+    show(800, 20'000);
+    EXPECT_EQ(next(), 400);
+    show(400, 400 * kMillisecond);
+    EXPECT_EQ(next(), 1) << "at least one";
+    show(1, 10'000);
+    EXPECT_EQ(next(), 800);
+}
+
+TEST_F(Budget, NeverRunsMoreThanIsOwed) {
+    (void)next();
+    show(100'000, 10);
+    EXPECT_EQ(next(), 4000);
+    scene_.terrain.setHeight(16, 16, 1 << 24);
+    sand_.emplace(scene_);
+    sand_->apply({1, 1, false, {}, sand::Edit::none, std::nullopt, 1});
+    ASSERT_TRUE(sand_->owed().any());
+    EXPECT_EQ(next(), 3999);
+}
+
+TEST_F(Budget, AStrokeBeginsWithSixtyFourSweeps) {
+    sand_->apply({1, 1, false, {}});
+    ASSERT_TRUE(sand_->settled());
+    EXPECT_EQ(next(true), 64) << "sand at rest";
+    show(3000, 100);
+    EXPECT_EQ(next(true), 64) << "a new stroke";
+    sand_->apply({1, 2, true, {}});
+    EXPECT_EQ(next(true), 64) << "the same stroke, of which no frame was shown";
+    budget_.shown({.sweeps = 3000, .sweepNs = 300'000}, 1);
+    EXPECT_EQ(next(true), 64) << "a frame from before the stroke";
+    show(64, 100);
+    EXPECT_EQ(next(true), 128);
+}
+
+TEST_F(Budget, AStrokeInSandThatMovesBeginsWithNoMoreThanBefore) {
+    scene_.terrain.setHeight(16, 16, 1 << 24);
+    sand_.emplace(scene_);
+    sand_->apply({1, 1, false, {}, sand::Edit::none, std::nullopt, 1});
+    ASSERT_FALSE(sand_->settled());
+    (void)next();
+    show(10, 1000);
+    EXPECT_EQ(next(true), 20);
+}
+
+TEST_F(Budget, AnEditBeginsAsIfAllSandMoved) {
+    (void)next();
+    show(1000, 10);
+    EXPECT_GT(next(), 1000);
+    for (const sand::Edit& edit : {sand::Edit(sand::Edit::reset), sand::Edit::tuned(scene_.rules.tuning)}) {
+        EXPECT_EQ(next(false, edit), 8);
+    }
+    EXPECT_EQ(next(), 8);
+    show(8, 10);
+    EXPECT_EQ(next(), 16);
+}
+
+TEST_F(Budget, OfALargeFieldBeginsWithOneSweep) {
+    sand_.emplace(samples::flatScene(4000, 2000));
+    EXPECT_EQ(next(), 1);
+}
+
+TEST_F(Budget, OfASmallFieldBeginsWithSixtyFourSweeps) {
+    scene_ = samples::flatScene(40, 40);
+    scene_.rules.tuning.sweepsPerStep = 4000;
+    sand_.emplace(scene_);
+    EXPECT_EQ(next(), 64);
+}
+
+TEST_F(Budget, DragAndHashTakeTheirShareAndLeaveAQuarter) {
+    (void)next();
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 4'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 1);
+    Step step{1, 1, true, {borders::probeAt(0, 0, 0), borders::probeAt(3, 0, 0)}};
+    sand_->apply({1, 1, true, {}});
+    ASSERT_TRUE(sand_->engaged());
+    step.number = 2;
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 4000) << "of 8 ms, 4 sub-steps take 4 ms";
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2000);
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 90 * kMillisecond, .hashNs = 0}, 2);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 1000) << "a quarter";
+}
+
+TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
+    EXPECT_GT(budget_.mostSubsteps(), 1'000'000) << "no cost is known yet";
+    budget_.shown({.sweeps = 1, .substeps = 10, .sweepNs = 1, .dragNs = 20 * kMillisecond}, 1);
+    EXPECT_EQ(budget_.mostSubsteps(), 4);
+    budget_.shown({.sweeps = 1, .substeps = 1, .sweepNs = 1, .dragNs = 20 * kMillisecond}, 1);
+    EXPECT_EQ(budget_.mostSubsteps(), 1) << "at least one";
+}
+
+TEST_F(Budget, AFrameTakesTheStepsThatFit) {
+    budget_.shown({.sweeps = 10, .substeps = 2, .sweepNs = 10 * kMillisecond, .dragNs = 2 * kMillisecond}, 1);
+    EXPECT_TRUE(budget_.fits({3, 1}, {3, 1})) << "8 ms";
+    EXPECT_FALSE(budget_.fits({3, 1}, {4, 1}));
+    EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}));
+}
+
+TEST_F(Budget, TheFastPaceDependsOnNoTime) {
+    SweepBudget fast(Pace::fast, kPeriod);
+    for (const std::int64_t sweepNs : {1, 1000, 1'000'000'000}) {
+        fast.shown({.sweeps = 64, .sweepNs = 64 * sweepNs}, 1);
+        EXPECT_EQ(fast.sweepsOf({1, 1, true, {}}, *sand_), 64);
+        EXPECT_EQ(fast.sweepsOf({1, 1, true, {}, sand::Edit::reset}, *sand_), 64);
+    }
+    scene_.rules.tuning.sweepsPerStep = 24;
+    sand_.emplace(scene_);
+    EXPECT_EQ(fast.sweepsOf({1, 1, true, {}}, *sand_), 24);
+}
+
+TEST_F(Budget, StepsOfATinStateNoSweeps) {
+    borders::Case given;
+    given.tin = true;
+    const sand::Replica sand(borders::sceneOf(given));
+    EXPECT_EQ(budget_.sweepsOf({1, 1, true, {}}, sand), 0);
+    EXPECT_EQ(SweepBudget(Pace::fast, kPeriod).sweepsOf({1, 1, true, {}}, sand), 0);
+}
+
+}  // namespace
