@@ -106,7 +106,7 @@ inline std::array<base::Bytes, 2> sandOf(const sand::Replica& replica) {
 /// Plays `steps` random steps of a hand over a random field, as wholes and in parts of 1, 7, 16 and 64 sweeps. Returns
 /// the first difference, or an empty text. `executor` shares out the sweeps of one replica for each size of parts.
 inline std::string firstDifference(unsigned seed, int steps, const base::Executor* executor = nullptr) {
-    worlds::World world(seed, 48, 36);
+    worlds::World world(seed, 48, 36, false);
     scene::Scene scene = samples::flatScene(world.field.columns(), world.field.rows());
     world.rules.tuning.tool.kind = sand::ToolKind::sphere;
     world.rules.stepsPerSecond = 60;
