@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -71,19 +72,32 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
 }
 
 void Measurements::printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
-                                 bool last, std::int64_t nowNs) {
+                                 bool last, std::int64_t nowNs, Reader reader) {
     if (!last && nowNs - lastProgress_ < kSecondNs) {
         return;
     }
     const double seconds = static_cast<double>(nowNs - lastProgress_) * 1e-9;
     fps_ = lastProgress_ == 0 ? 0 : static_cast<double>(frame - lastProgressFrame_) / seconds;
-    fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame, step, of, fps_,
-               lastSkewUs_, hand);
+    if (reader == Reader::digs) {
+        printFrameRate(last);
+    } else {
+        fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame, step, of, fps_,
+                   lastSkewUs_, hand);
+    }
     std::fflush(stdout);
     host::emitEvent("progress",
                     {{"frame", frame}, {"step", step}, {"fps", fps_}, {"skew_us", lastSkewUs_}, {"hand", hand}});
     lastProgress_ = nowNs;
     lastProgressFrame_ = frame;
+}
+
+/// Leaves out the first second, which has the start, and the last frames, which are too few for a rate.
+void Measurements::printFrameRate(bool last) {
+    constexpr double kNoticed = 0.1;  // share of the printed rate
+    if (!last && lastProgressFrame_ > 1 && std::abs(fps_ - printedFps_) > kNoticed * printedFps_) {
+        fmt::print("{:.0f} pictures a second\n", fps_);
+        printedFps_ = fps_;
+    }
 }
 
 lockstep::WallFigures Measurements::figures(const Incidents& incidents) const {

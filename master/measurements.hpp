@@ -44,10 +44,13 @@ public:
         framesWithHand_ += handed ? 1 : 0;
     }
 
-    /// Prints the line of progress and emits the event `progress`, at most once per second, and always if `last` is
-    /// true.
+    /// Whom the lines of progress are for: an operator reads all figures each second. A person at a desktop reads a
+    /// line only if the number of frames per second has changed by more than a tenth.
+    enum class Reader : std::uint8_t { operates, digs };
+    /// Prints the line of progress and emits the event `progress`, at most once per second. The last frame always has
+    /// an event, and a line for an operator.
     void printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
-                       std::int64_t nowNs);
+                       std::int64_t nowNs, Reader reader = Reader::operates);
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
     /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.
@@ -59,6 +62,7 @@ public:
     void fill(Summary& summary) const;
 
 private:
+    void printFrameRate(bool last);
     void addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals);
     void addLatency(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
                     const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset);
@@ -76,6 +80,7 @@ private:
     double fps_ = 0;                 // over about the last second
     std::int64_t lastProgress_ = 0;  // [ns]
     std::uint64_t lastProgressFrame_ = 0;
+    double printedFps_ = 0;  // in the last line for a person who digs
 };
 
 }  // namespace master

@@ -256,7 +256,8 @@ nlohmann::json Session::status() const {
 
 void Session::printProgress(bool last) {
     const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
-    measure_.printProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs());
+    measure_.printProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs(),
+                           options_.pointer ? Measurements::Reader::digs : Measurements::Reader::operates);
 }
 
 int Session::run() {

@@ -9,7 +9,7 @@ namespace render_node {
 namespace {
 
 constexpr float kThickness = 0.015F;  // of boards and floor [share of the field's longer side]
-constexpr std::size_t kQuadsOfRun = 64;
+constexpr int kQuadsOfRun = 64, kVerticesOfRun = 6 * kQuadsOfRun;
 
 /// Appends a quad a-b-c-d, counter-clockwise from outside; the grain of wood runs along its longest axis.
 void addQuad(std::vector<SolidVertex>& out, const std::array<glm::vec3, 4>& corners) {
@@ -40,20 +40,25 @@ void addBlock(std::vector<SolidVertex>& out, const glm::vec3& low, const glm::ve
 }  // namespace
 
 SandBox::SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim rim) : cellSize_(cellSize) {
-    float lowestRim = cut.sides[0].front().z;
-    float highestRim = lowestRim;
-    for (const auto& side : cut.sides) {
-        for (const glm::vec3& vertex : side) {
-            lowestRim = std::min(lowestRim, vertex.z);
-            highestRim = std::max(highestRim, vertex.z);
+    float lowestRim = std::numeric_limits<float>::max(), highestRim = std::numeric_limits<float>::lowest();
+    for (const auto& line : cut.cuts) {
+        for (const glm::vec3& vertex : line) {
+            if (vertex.x <= 0 || vertex.y <= 0 || vertex.x >= cut.field.x || vertex.y >= cut.field.y) {
+                lowestRim = std::min(lowestRim, vertex.z);
+                highestRim = std::max(highestRim, vertex.z);
+            }
         }
     }
-    const float length = std::max(cut.width(), cut.depth());
+    if (lowestRim > highestRim) {
+        lowestRim = highestRim = lowest;  // no ground reaches the field's edge
+    }
+    const float length = std::max(cut.field.x, cut.field.y);
     floor_ = lowest - 0.06F * length;
     // The boards are a little higher than the sand at the rim, but low enough not to hide mountains.
     top_ = std::min(highestRim + 0.006F * length, lowestRim + 0.045F * length);
-    width_ = double{cut.width()};
-    depth_ = double{cut.depth()};
+    width_ = double{cut.field.x};
+    depth_ = double{cut.field.y};
+    hasHoles_ = cut.hasHoles;
     const double thick = kThickness * std::max(width_, depth_);
     bounds_ = {{-thick, -thick, floor_ - thick}, {width_ + thick, depth_ + thick, top_}};
     makeSides(cut);
@@ -63,7 +68,8 @@ SandBox::SandBox(const SandRim& cut, float lowest, double cellSize, sand::Rim ri
 bool SandBox::insideRim(const Box& box) const {
     // The outermost quads are lit at their corners, which are half a cell and one cell apart.
     const double edge = 2 * cellSize_;
-    return box.low.x > edge && box.low.y > edge && box.high.x < width_ - edge && box.high.y < depth_ - edge;
+    return !hasHoles_ && box.low.x > edge && box.low.y > edge && box.high.x < width_ - edge &&
+           box.high.y < depth_ - edge;
 }
 
 Box SandBox::withSides(const Box& box) const {
@@ -89,14 +95,17 @@ void SandBox::makeSides(const SandRim& cut) {
     runs_.clear();
     const double margin = 0.01 * cellSize_;  // for rounding of GL's floats
     constexpr double kFar = std::numeric_limits<double>::infinity();
-    for (const auto& side : cut.sides) {
-        for (std::size_t i = 0; i + 1 < side.size(); ++i) {
-            if (i % kQuadsOfRun == 0) {
+    const auto longest = static_cast<float>(kQuadsOfRun * cellSize_);
+    glm::vec2 begin(0);  // of the last run
+    for (const auto& line : cut.cuts) {
+        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+            const glm::vec2 from(line[i]), to(line[i + 1]);
+            if (runs_.empty() || runs_.back().vertices == kVerticesOfRun || glm::distance(begin, to) > longest) {
                 runs_.push_back({static_cast<GLint>(triangles.size()), 0, {glm::dvec3(kFar), glm::dvec3(-kFar)}});
+                begin = from;
             }
-            const glm::vec2 from(side[i]), to(side[i + 1]);
-            const float fromTop = std::max(floor_, side[i].z);
-            const float toTop = std::max(floor_, side[i + 1].z);
+            const float fromTop = std::max(floor_, line[i].z);
+            const float toTop = std::max(floor_, line[i + 1].z);
             addQuad(triangles,
                     {glm::vec3(from, floor_), glm::vec3(to, floor_), glm::vec3(to, toTop), glm::vec3(from, fromTop)});
             Run& run = runs_.back();
@@ -112,8 +121,8 @@ void SandBox::makeSides(const SandRim& cut) {
 }
 
 void SandBox::makeBoards(const SandRim& cut, sand::Rim rim) {
-    const float width = cut.width();
-    const float depth = cut.depth();
+    const float width = cut.field.x;
+    const float depth = cut.field.y;
     std::vector<SolidVertex> triangles;
     const float thick = kThickness * std::max(width, depth);
     if (rim == sand::Rim::closed) {

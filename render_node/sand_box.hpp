@@ -21,7 +21,8 @@ public:
 
     /// Makes the sides again from `cut`, the current edge of the sand.
     void update(const SandRim& cut) { makeSides(cut); }
-    /// Returns whether a box lies over the sand, at least two cells from the rim.
+    /// Returns whether a box lies over the sand, at least two cells from all cuts. Returns false for any box if the
+    /// field has holes.
     [[nodiscard]] bool insideRim(const Box& box) const;
     /// Returns `box`, extended by all places whose look depends on its contents. A side is lit at its upper and lower
     /// ends, so that it changes from top to bottom. The floor around a field without boards is visible.
@@ -47,8 +48,9 @@ private:
     };
     Box bounds_;                                   // of the whole box, and of all sand that has ever been at the rim
     double cellSize_ = 0, width_ = 0, depth_ = 0;  // of the field [scene unit]
-    float floor_ = 0;                              // [scene unit]
-    float top_ = 0;                                // upper edge of the boards [scene unit]
+    bool hasHoles_ = false;
+    float floor_ = 0;  // [scene unit]
+    float top_ = 0;    // upper edge of the boards [scene unit]
     SolidMesh sides_, boards_;
     std::vector<Run> runs_;
 };

@@ -10,7 +10,7 @@ std::unique_ptr<DrawnSurface> makeDrawnSurface(const sand::SurfaceData& data, do
     if (const auto* tin = std::get_if<sand::TinData>(&data)) {
         return std::make_unique<TinMesh>(tin->view, cellSize);
     }
-    return std::make_unique<GridMesh>(std::get<sand::GridData>(data).field, sun);
+    return std::make_unique<GridMesh>(std::get<sand::GridData>(data), sun);
 }
 
 }  // namespace render_node

@@ -27,11 +27,12 @@ layout(location = 2) in vec2 aNormal;
 uniform mat4 uSceneToClip;
 uniform float uCell;
 uniform vec2 uCells;
+uniform float uFirst;
 out vec3 vColour;
 void main() {
     vec3 normal = vec3(aNormal, sqrt(max(1.0 - dot(aNormal, aNormal), 0.0)));
     vColour = vec3(0.8, 0.7, 0.5) * max(dot(normal, vec3(-0.6, 0.4, 0.7)), 0.1);
-    gl_Position = uSceneToClip * vec4(clamp(aGrid - 0.5, vec2(0.0), uCells) * uCell, aHeight, 1.0);
+    gl_Position = uSceneToClip * vec4(clamp(aGrid - uFirst, vec2(0.0), uCells) * uCell, aHeight, 1.0);
 })"};
 const render_node::ShaderSource kBareFragment{"bare fragment shader", R"(
 in vec3 vColour;
@@ -42,7 +43,7 @@ void main() { oColour = vec4(vColour, 1.0); })"};
 class BareView {
 public:
     explicit BareView(const scene::Scene& scene)
-        : mesh_(scene.terrain, {0, 0, 1}), program_(kBareVertex, {}, kBareFragment) {}
+        : mesh_(sand::GridData{scene.terrain}, {0, 0, 1}), program_(kBareVertex, {}, kBareFragment) {}
 
     void draw(const glm::dmat4& sceneToClip, const render_node::EyeTarget& target) {
         target.bind();

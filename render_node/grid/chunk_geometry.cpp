@@ -34,12 +34,12 @@ void ChunkGeometry::markStale(const sand::CellRect& vertices) {
     stale_ = stale_.joinedWith(vertices.clippedTo(vertices_));
 }
 
-void ChunkGeometry::refresh(const GridVertices& surface) {
+void ChunkGeometry::refresh(const GridVertices& surface, const HoleEdges* holes) {
     if (stale_.empty()) {
         return;
     }
-    if (level_ > 0 || bytes_ == 0) {
-        sendAll(surface);
+    if (level_ > 0 || bytes_ == 0 || holes != nullptr) {
+        sendAll(surface, holes);
     } else {
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
         std::vector<GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
@@ -53,8 +53,12 @@ void ChunkGeometry::refresh(const GridVertices& surface) {
     stale_ = {};
 }
 
-void ChunkGeometry::sendAll(const GridVertices& surface) {
-    const std::vector<GridVertex> vertices = verticesOf(surface, vertices_, level_);
+void ChunkGeometry::sendAll(const GridVertices& surface, const HoleEdges* holes) {
+    std::vector<GridVertex> vertices = verticesOf(surface, vertices_, level_);
+    if (holes != nullptr) {
+        const std::vector<GridVertex> added = holes->added(vertices);
+        vertices.insert(vertices.end(), added.begin(), added.end());
+    }
     const bool first = bytes_ == 0;
     bytes_ = vertices.size() * sizeof(GridVertex);
     glBindVertexArray(array_.id());

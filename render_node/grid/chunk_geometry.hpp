@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "render_node/gl/gl_handle.hpp"
+#include "render_node/grid/hole_edges.hpp"
 #include "render_node/grid/vertices.hpp"
 
 namespace render_node {
@@ -17,8 +18,8 @@ public:
 
     /// Marks vertices whose look the sand has changed.
     void markStale(const sand::CellRect& vertices);
-    /// Computes the marked vertices and sends them to GL.
-    void refresh(const GridVertices& surface);
+    /// Computes the marked vertices and sends them to GL. `holes` belongs to a chunk with holes, at level 0.
+    void refresh(const GridVertices& surface, const HoleEdges* holes);
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] GLuint array() const { return array_.id(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  // memory in GL; 0 before the first refresh()
@@ -26,7 +27,7 @@ public:
     std::uint64_t used = 0;  // number of the draw() that used it last; the owner sets it
 
 private:
-    void sendAll(const GridVertices& surface);
+    void sendAll(const GridVertices& surface, const HoleEdges* holes);
 
     sand::CellRect vertices_, stale_;  // of the vertex grid
     int level_;

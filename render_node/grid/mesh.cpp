@@ -28,14 +28,14 @@ int sideFor(int quads, int coarsest) {
 
 }  // namespace
 
-GridMesh::GridMesh(const sand::HeightField& field, const glm::vec3& sun)
-    : surface_(field),
+GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
+    : surface_(data.field, data.ground),
       sun_(sun),
-      coarsest_(coarsestLevel(field.columns(), field.rows())),
-      across_(chunksFor(field.columns() + 1, coarsest_)),
-      down_(chunksFor(field.rows() + 1, coarsest_)),
-      quadsAcross_(sideFor(field.columns() + 1, coarsest_)),
-      quadsDown_(sideFor(field.rows() + 1, coarsest_)) {
+      coarsest_(coarsestLevel(surface_.columns(), surface_.rows())),
+      across_(chunksFor(surface_.columns() + 1, coarsest_)),
+      down_(chunksFor(surface_.rows() + 1, coarsest_)),
+      quadsAcross_(sideFor(surface_.columns() + 1, coarsest_)),
+      quadsDown_(sideFor(surface_.rows() + 1, coarsest_)) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -51,6 +51,9 @@ void GridMesh::makeChunks() {
             Chunk& made = chunks_.emplace_back();
             made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
             made.heights = heightsUnder(made.vertices);
+            if (surface_.hasHole(made.vertices)) {
+                made.holes.emplace(surface_, made.vertices);
+            }
         }
     }
 }
@@ -172,6 +175,9 @@ void GridMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visi
 
 int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     Chunk& asked = chunk(x, y);
+    if (asked.holes) {
+        return 0;
+    }
     if (asked.chosenFor != choice_) {
         if (!asked.measured && !rule.needsEveryCell()) {
             asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
@@ -287,7 +293,7 @@ ChunkGeometry& GridMesh::geometryOf(Chunk& chunk, int level) {
         found = chunk.geometries.emplace(found, chunk.vertices, level);
     }
     const std::size_t before = found->bytes();
-    found->refresh(surface_);
+    found->refresh(surface_, chunk.holes ? &*chunk.holes : nullptr);
     bytes_ += found->bytes() - before;
     found->used = choice_;
     return *found;
@@ -298,25 +304,40 @@ const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
     if (found != indices_.end()) {
         return found->second;
     }
-    const std::vector<std::uint16_t> indices = trianglesOf(quadsAcross_, quadsDown_, levels);
-    Indices& made = indices_.try_emplace(levels, Indices{{}, static_cast<int>(indices.size()), {}}).first->second;
-    if (levels.level == 0) {
-        made.blocks = blocksOf(quadsAcross_, quadsDown_);
+    return indices_
+        .try_emplace(levels,
+                     send(trianglesOf(quadsAcross_, quadsDown_, levels),
+                          levels.level == 0 ? blocksOf(quadsAcross_, quadsDown_) : std::vector<TriangleBlock>()))
+        .first->second;
+}
+
+const GridMesh::Indices& GridMesh::indicesOf(Chunk& chunk, const ChunkLevels& levels) {
+    if (!chunk.holes) {
+        return indicesOf(levels);
     }
+    if (!chunk.indices) {
+        chunk.indices = send(chunk.holes->indices(), chunk.holes->blocks());
+    }
+    return *chunk.indices;
+}
+
+GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<TriangleBlock> blocks) {
+    Indices made{{}, static_cast<int>(indices.size()), std::move(blocks)};
     // A core profile binds an element buffer only to a vertex array. Any vertex array will do here.
     const GlVertexArray array;
     glBindVertexArray(array.id());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, made.buffer.id());
-    const std::size_t bytes = indices.size() * sizeof(indices[0]);
+    const std::size_t bytes = indices.size_bytes();
     glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(bytes), indices.data(), GL_STATIC_DRAW);
     bytes_ += bytes;
     return made;
 }
 
 void GridMesh::prepare(const GlProgram& program) const {
-    program.set("uCell", surface_.cellSize());
-    program.set("uCells", glm::vec2(surface_.columns(), surface_.rows()));
-    program.set("uFirst", 0.5F);
+    // Places are in half cells, so that the corners of cells are whole numbers, too.
+    program.set("uCell", surface_.cellSize() / 2);
+    program.set("uCells", glm::vec2(2 * surface_.columns(), 2 * surface_.rows()));
+    program.set("uFirst", 1.0F);
 }
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
@@ -325,7 +346,7 @@ GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, cons
     ++choice_;
     visitSeen(sceneToClip, culling, [&](int x, int y) {
         const ChunkLevels levels = levelsOf(x, y, rule);
-        const Indices& indices = indicesOf(levels);
+        const Indices& indices = indicesOf(chunk(x, y), levels);
         const ChunkGeometry& geometry = geometryOf(chunk(x, y), levels.level);
         if (before) {
             before(boxOf(chunk(x, y).vertices, chunk(x, y).heights));

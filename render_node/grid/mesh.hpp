@@ -4,12 +4,14 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/gl/triangle_pace.hpp"
 #include "render_node/grid/chunk_geometry.hpp"
+#include "render_node/grid/hole_edges.hpp"
 #include "render_node/grid/levels.hpp"
 #include "render_node/grid/vertices.hpp"
 #include "render_node/surface/change_history.hpp"
@@ -37,7 +39,7 @@ struct ChangedVertices {
 class GridMesh final : public DrawnSurface {
 public:
     /// `sun` points towards the sun and has length 1.
-    GridMesh(const sand::HeightField& field, const glm::vec3& sun);
+    GridMesh(const sand::GridData& data, const glm::vec3& sun);
 
     [[nodiscard]] bool update(const sand::SurfaceData& data, const sand::SurfaceChange& change,
                               std::span<const glm::dmat4> cameras) override;
@@ -55,6 +57,11 @@ public:
     [[nodiscard]] std::int64_t placesRead() const override { return surface_.placesRead(); }
 
 private:
+    struct Indices {
+        GlBuffer buffer;
+        int count;
+        std::vector<TriangleBlock> blocks;  // of level 0
+    };
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
         HeightRange heights;
@@ -64,6 +71,8 @@ private:
         std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
         int level = 0;
         std::vector<ChunkGeometry> geometries;
+        std::optional<HoleEdges> holes;  // nullopt if all cells have ground; otherwise the level is 0
+        std::optional<Indices> indices;  // of holes, made when the chunk is first drawn
     };
     /// Neighbouring chunks that are culled together, so that few chunks are tested one by one.
     struct Group {
@@ -71,11 +80,6 @@ private:
         sand::CellRect vertices;
         HeightRange heights;
         std::uint64_t revision = 0;
-    };
-    struct Indices {
-        GlBuffer buffer;
-        int count;
-        std::vector<TriangleBlock> blocks;  // of level 0
     };
     void makeChunks();
     void makeGroups();
@@ -103,6 +107,8 @@ private:
     [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
     [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, int level);
     [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
+    [[nodiscard]] const Indices& indicesOf(Chunk& chunk, const ChunkLevels& levels);
+    [[nodiscard]] Indices send(std::span<const std::uint16_t> indices, std::vector<TriangleBlock> blocks);
     int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
     void dropUnused();
 

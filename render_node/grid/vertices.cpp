@@ -80,7 +80,7 @@ private:
     RangeByLanes before_, now_;
 };
 
-GridVertices::GridVertices(const sand::HeightField& field)
+GridVertices::GridVertices(const sand::HeightField& field, const sand::Ground* ground)
     : columns_(field.columns()),
       rows_(field.rows()),
       cellSize_(static_cast<float>(field.cellSize())),
@@ -89,6 +89,15 @@ GridVertices::GridVertices(const sand::HeightField& field)
       ranges_(static_cast<std::size_t>(blocksAcross_) * static_cast<std::size_t>(blocksFor(rows_))) {
     std::vector<Overwritten> all;
     takeOver(field, field.bounds(), all);
+    for (int row = 0; row < rows_ && ground != nullptr; ++row) {
+        for (int column = 0; column < columns_; ++column) {
+            if (ground->isWall(column, row)) {
+                holes_.resize(heights_.size());
+                holes_[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                       static_cast<std::size_t>(column)] = 1;
+            }
+        }
+    }
 }
 
 std::size_t GridVertices::blockAt(int x, int y) const {
@@ -183,22 +192,6 @@ float GridVertices::height(int column, int row) const {
     return heights_[y * static_cast<std::size_t>(columns_) + x];
 }
 
-SandRim GridVertices::rim() const {
-    SandRim rim;
-    const auto add = [&](std::size_t side, int column, int row) {
-        rim.sides[side].emplace_back(east(column), north(row), height(column - 1, row - 1));
-    };
-    for (int column = 0; column <= columns_ + 1; ++column) {
-        add(0, column, 0);
-        add(2, columns_ + 1 - column, rows_ + 1);
-    }
-    for (int row = 0; row <= rows_ + 1; ++row) {
-        add(1, columns_ + 1, row);
-        add(3, 0, rows_ + 1 - row);
-    }
-    return rim;
-}
-
 float GridVertices::along(int vertex, int cells) const {
     return std::clamp(static_cast<float>(vertex) - 0.5F, 0.0F, static_cast<float>(cells)) * cellSize_;
 }
@@ -210,10 +203,16 @@ glm::vec2 GridVertices::slope(int vertexColumn, int vertexRow) const {
     const auto rise = [this](float low, float high, int cells) {
         return cells == 0 ? 0.0F : (high - low) / (static_cast<float>(cells) * cellSize_);
     };
-    const int west = std::max(x - 1, 0);
-    const int east = std::min(x + 1, columns_ - 1);
-    const int south = std::max(y - 1, 0);
-    const int north = std::min(y + 1, rows_ - 1);
+    int west = std::max(x - 1, 0);
+    int east = std::min(x + 1, columns_ - 1);
+    int south = std::max(y - 1, 0);
+    int north = std::min(y + 1, rows_ - 1);
+    if (!holes_.empty()) {  // the slope is one-sided beside a hole, too
+        west = isHole(west, y) ? x : west;
+        east = isHole(east, y) ? x : east;
+        south = isHole(x, south) ? y : south;
+        north = isHole(x, north) ? y : north;
+    }
     return {rise(height(west, y), height(east, y), east - west),
             rise(height(x, south), height(x, north), north - south)};
 }
@@ -267,8 +266,8 @@ GridVertex GridVertices::vertexUnder(float open, int column, int row) const {
     const float scale = 32767 / std::sqrt(1 + steep.x * steep.x + steep.y * steep.y);
     GridVertex vertex{};
     vertex.height = height(x, y);
-    vertex.column = static_cast<std::uint16_t>(std::min(column, columns_ + 1));
-    vertex.row = static_cast<std::uint16_t>(std::min(row, rows_ + 1));
+    vertex.column = static_cast<std::uint16_t>(2 * std::min(column, columns_ + 1));
+    vertex.row = static_cast<std::uint16_t>(2 * std::min(row, rows_ + 1));
     vertex.normalEast = static_cast<std::int16_t>(-steep.x * scale);
     vertex.normalNorth = static_cast<std::int16_t>(-steep.y * scale);
     vertex.open = static_cast<std::uint16_t>(open * 65535);

@@ -9,6 +9,7 @@
 #include "render_node/surface/height_range.hpp"
 #include "render_node/surface/open_sky.hpp"
 #include "render_node/surface/sand_rim.hpp"
+#include "sand/model/ground.hpp"
 #include "sand/model/height_field.hpp"
 
 namespace render_node {
@@ -16,7 +17,7 @@ namespace render_node {
 /// Vertex of the sand, as the shader reads it.
 struct GridVertex {
     float height;                          // [scene unit]
-    std::uint16_t column, row;             // place in the vertex grid
+    std::uint16_t column, row;             // place in the vertex grid [half a cell]
     std::int16_t normalEast, normalNorth;  // 1/32767
     std::uint16_t open;                    // share of the sky that is visible from the vertex, 1/65535
     std::uint16_t mottling;                // slow change of shade from place to place, 1/65535
@@ -34,7 +35,8 @@ public:
     // [cell], as in the sand's lists of changes, and as many as an AVX2 vector has floats.
     static constexpr int kBlock = 8;
 
-    explicit GridVertices(const sand::HeightField& field);
+    /// `ground` names the cells without ground; null if all have ground.
+    explicit GridVertices(const sand::HeightField& field, const sand::Ground* ground = nullptr);
 
     /// Cells of one block that differed from the drawn ones: the smallest rectangle around them, and their earlier
     /// heights.
@@ -64,12 +66,15 @@ public:
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
 
-    /// Returns the edge of the field.
+    /// Returns whether the nearest cell of the field has no ground. It never changes.
+    [[nodiscard]] bool isHole(int column, int row) const;
+    /// Returns whether a cell under these vertices has no ground.
+    [[nodiscard]] bool hasHole(const sand::CellRect& vertices) const;
+
+    /// Returns the edges of the sand.
     [[nodiscard]] SandRim rim() const;
-    /// Returns whether a change of these cells changes rim().
-    [[nodiscard]] bool touchesRim(const sand::CellRect& cells) const {
-        return !cells.empty() && (cells.x0 <= 0 || cells.y0 <= 0 || cells.x1 >= columns_ || cells.y1 >= rows_);
-    }
+    /// Returns whether a change of these cells may change rim().
+    [[nodiscard]] bool touchesRim(const sand::CellRect& cells) const;
 
     /// Returns a vertex of the grid. A column or row beyond the grid repeats its last one.
     [[nodiscard]] GridVertex vertex(int column, int row) const;
@@ -86,6 +91,9 @@ private:
     class RangeByLanes;
     class BlockWalk;
     void add(const sand::CellRect& cells, RangeByLanes& range) const;
+    void addFieldEdges(SandRim& rim) const;
+    void addHoleEdges(SandRim& rim) const;
+    void addEdgesOf(int column, int row, SandRim& rim) const;
     [[nodiscard]] static int blocksFor(int cells) { return (cells + kBlock - 1) / kBlock; }
     [[nodiscard]] std::size_t blockAt(int x, int y) const;
     [[nodiscard]] float along(int vertex, int cells) const;
@@ -96,6 +104,7 @@ private:
     int blocksAcross_;
     std::vector<float> heights_;       // [scene unit], row by row
     std::vector<HeightRange> ranges_;  // of each block, row by row; they bound the heights of a large part quickly
+    std::vector<std::uint8_t> holes_;  // 1 for a cell without ground; empty if all have ground
     mutable std::int64_t placesRead_ = 0;
 };
 

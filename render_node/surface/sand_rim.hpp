@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
 #include <vector>
 
 namespace render_node {
 
-/// Edge of a field, where its sand is cut.
+/// Edges where the sand is cut: the field's edge, and the outline of ground without data.
 struct SandRim {
-    /// Vertices of the southern, eastern, northern and western side [scene unit], counter-clockwise from the south-west
-    /// corner. Each corner is in both of its sides.
-    std::array<std::vector<glm::vec3>, 4> sides;
-
-    [[nodiscard]] float width() const { return sides[0].back().x; }
-    [[nodiscard]] float depth() const { return sides[1].back().y; }
+    glm::vec2 field{0};  // [scene unit], width and depth
+    /// Lines along the edges [scene unit]. Seen from above, the sand is on their left.
+    std::vector<std::vector<glm::vec3>> cuts;
+    bool hasHoles = false;  // whether a part of the field has no ground
 };
 
 }  // namespace render_node

@@ -26,7 +26,8 @@ Box TinGeometry::boxOf(const TinTriangle& triangle) const {
     return {glm::min(a, glm::min(b, c)) - margin, glm::max(a, glm::max(b, c)) + margin};
 }
 
-TinTriangle TinGeometry::drawnOf(const sand::tin::Triangle& triangle) {
+TinTriangle TinGeometry::drawnOf(const sand::tin::Triangles& mesh, std::int32_t slot) {
+    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(slot)];
     TinTriangle drawn;
     if (!triangle.isGround()) {
         return drawn;
@@ -35,7 +36,9 @@ TinTriangle TinGeometry::drawnOf(const sand::tin::Triangle& triangle) {
     for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t from = (static_cast<std::size_t>(least) + i) % 3;
         drawn.corner[i] = triangle.corner[from];
-        drawn.marked[i] = triangle.constrained[from] && triangle.neighbour[from] != sand::tin::kNoNumber;
+        const std::int32_t beyond = triangle.neighbour[from];
+        drawn.marked[i] = triangle.constrained[from] && beyond != sand::tin::kNoNumber;
+        drawn.cut[i] = beyond == sand::tin::kNoNumber || mesh.triangles[static_cast<std::size_t>(beyond)].hole;
     }
     return drawn;
 }

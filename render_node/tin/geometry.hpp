@@ -32,6 +32,7 @@ static_assert(sizeof(TinVertex) == 20);
 struct TinTriangle {
     std::array<sand::tin::Vertex, 3> corner{sand::tin::kNoNumber, sand::tin::kNoNumber, sand::tin::kNoNumber};
     std::array<bool, 3> marked{};  // whether the edge opposite the corner is a constraint inside the field
+    std::array<bool, 3> cut{};     // whether no ground is beyond the edge opposite the corner
     [[nodiscard]] bool alive() const { return corner[0] != sand::tin::kNoNumber; }
     friend bool operator==(const TinTriangle&, const TinTriangle&) = default;
 };
@@ -78,7 +79,7 @@ struct TinGeometry {
     [[nodiscard]] Box boxOf(const TinTriangle& triangle) const;
 
     /// Returns a triangle of the sand as it is drawn. A triangle that is not ground is not alive.
-    [[nodiscard]] static TinTriangle drawnOf(const sand::tin::Triangle& triangle);
+    [[nodiscard]] static TinTriangle drawnOf(const sand::tin::Triangles& mesh, std::int32_t slot);
     /// Returns a vertex at its place in the sand, with the light that it has here.
     [[nodiscard]] TinVertex placed(const sand::tin::SurfaceView& tin, Vertex number) const;
     /// Returns the vertices among `asked` that are new, removed, or at another place than drawn.

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/tin/vertices.hpp"
 
+#include <algorithm>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 namespace render_node {
@@ -18,7 +21,8 @@ TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSi
       geometry_{.cellSize = cellSize},
       chunks_(width_, depth_, chunkSide),
       light_(width_, depth_, chunkSide),
-      changedBoxes_(width_ * geometry_.probe, depth_ * geometry_.probe) {
+      changedBoxes_(width_ * geometry_.probe, depth_ * geometry_.probe),
+      hasHoles_(std::ranges::any_of(tin.triangles.triangles, [](const auto& one) { return one.alive() && one.hole; })) {
     const Triangles& mesh = tin.triangles;
     grow(mesh);
     std::vector<Vertex> all;
@@ -27,12 +31,13 @@ TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSi
             all.push_back(number);
         }
     }
-    ever_.lowest = ever_.highest =
-        static_cast<float>(tin.heights[static_cast<std::size_t>(all.front())] * geometry_.unit);
+    ever_ = {std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
     (void)move(tin, all);
     elsewhere_ = std::vector<Vertex>();  // frees the room for all vertices
     for (std::size_t slot = 0; slot < mesh.triangles.size(); ++slot) {
-        chunks_.replace(geometry_, static_cast<std::int32_t>(slot), TinGeometry::drawnOf(mesh.triangles[slot]));
+        const auto number = static_cast<std::int32_t>(slot);
+        chunks_.replace(geometry_, number, TinGeometry::drawnOf(mesh, number));
+        keepCuts(number, true);
     }
     light_.lightAll(tin, geometry_, all);
 }
@@ -40,6 +45,7 @@ TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSi
 void TinVertices::grow(const Triangles& mesh) {
     geometry_.grow(mesh);
     chunks_.grow(geometry_.triangles.size());
+    cutsAt_.resize(geometry_.vertices.size());
 }
 
 TinVertices::Change TinVertices::replaceWhole(const SurfaceView& tin) {
@@ -59,9 +65,7 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
-    const auto drawn = [&](std::int32_t slot) {
-        return TinGeometry::drawnOf(mesh.triangles[static_cast<std::size_t>(slot)]);
-    };
+    const auto drawn = [&](std::int32_t slot) { return TinGeometry::drawnOf(mesh, slot); };
     std::vector<std::int32_t> replaced;
     for (const std::int32_t slot : sandChange.triangles) {
         if (geometry_.triangle(slot) != drawn(slot)) {
@@ -77,9 +81,13 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
         }
     }
     addBoxes(reshaped_.all());
-    change.rim = move(tin, others);
+    for (const std::int32_t slot : replaced) {
+        change.rim |= keepCuts(slot, false);
+    }
+    change.rim |= move(tin, others);
     for (const std::int32_t slot : replaced) {
         chunks_.replace(geometry_, slot, drawn(slot));
+        change.rim |= keepCuts(slot, true);
     }
     for (const Vertex number : elsewhere_) {
         aroundVertex(mesh, number, [this](std::int32_t slot, int) {
@@ -125,7 +133,7 @@ void TinVertices::addBoxes(const std::vector<std::int32_t>& slots) {
 
 std::optional<Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
     const TinBounds changed = geometry_.boundsOf(tin, sandChange);
-    if (changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
+    if (hasHoles_ || changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
         return std::nullopt;
     }
     const double probe = geometry_.probe;
@@ -136,12 +144,9 @@ std::optional<Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinC
     return chunks_.withChunksAt(geometry_, {reach.low - margin, reach.high + margin});
 }
 
-/// Copies places and heights of `vertices`. Returns whether the rim has changed.
+/// Copies places and heights of `vertices`. Returns whether one of them is on a cut edge.
 bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices) {
     bool rim = false;
-    for (const Vertex number : vertices) {
-        rim |= keepRim(number, false);
-    }
     elsewhere_.clear();
     for (const Vertex number : vertices) {
         TinVertex& drawn = geometry_.vertex(number);
@@ -154,41 +159,61 @@ bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices)
         }
         if (drawn.x >= 0) {
             drawn.mottling = TinLight::mottlingOf(drawn.x, drawn.y);
-            ever_ = around(ever_, {drawn.height, drawn.height});
-            rim |= keepRim(number, true);
+            widen(tin, number);
+            rim |= cutsAt_[static_cast<std::size_t>(number)] > 0;
         }
     }
     return rim;
 }
 
-/// Adds a vertex to the rim, or removes it, if it lies on the rim. Returns whether it does.
-bool TinVertices::keepRim(Vertex number, bool present) {
-    const TinVertex& drawn = geometry_.vertex(number);
-    if (drawn.x < 0) {
-        return false;
+/// Takes the height of a vertex into the range of all heights, unless the vertex lies in a hole.
+void TinVertices::widen(const SurfaceView& tin, Vertex number) {
+    bool ground = !hasHoles_;
+    if (!ground) {
+        aroundVertex(tin.triangles, number, [&](std::int32_t slot, int) {
+            ground |= !tin.triangles.triangles[static_cast<std::size_t>(slot)].hole;
+        });
     }
-    bool onRim = false;
-    const auto keep = [&](std::size_t side, bool there, std::int32_t along) {
-        if (there && present) {
-            rim_[side][along] = number;
-        } else if (there) {
-            rim_[side].erase(along);
+    if (ground) {
+        const float height = geometry_.vertex(number).height;
+        ever_ = around(ever_, {height, height});
+    }
+}
+
+bool TinVertices::keepCuts(std::int32_t slot, bool present) {
+    constexpr std::int32_t kSquare = 32 * kCell;  // [probe unit]
+    const TinTriangle& triangle = geometry_.triangle(slot);
+    bool any = false;
+    for (std::size_t corner = 0; corner < 3 && triangle.alive(); ++corner) {
+        if (!triangle.cut.at(corner)) {
+            continue;
         }
-        onRim |= there;
-    };
-    keep(0, drawn.y == 0, drawn.x);
-    keep(1, drawn.x == width_, drawn.y);
-    keep(2, drawn.y == depth_, width_ - drawn.x);
-    keep(3, drawn.x == 0, depth_ - drawn.y);
-    return onRim;
+        any = true;
+        const Vertex from = triangle.corner.at((corner + 1) % 3), to = triangle.corner.at((corner + 2) % 3);
+        const TinVertex& begin = geometry_.vertex(from);
+        for (const Vertex end : {from, to}) {
+            cutsAt_[static_cast<std::size_t>(end)] += present ? 1 : -1;
+        }
+        if (present) {
+            cuts_[{slot, corner}] = begin.y / kSquare * (width_ / kSquare + 1) + begin.x / kSquare;
+        } else {
+            cuts_.erase({slot, corner});
+        }
+    }
+    return any;
 }
 
 SandRim TinVertices::rim() const {
-    SandRim rim;
-    for (std::size_t side = 0; side < rim_.size(); ++side) {
-        for (const auto& [along, number] : rim_[side]) {
-            rim.sides[side].emplace_back(geometry_.at(number));
-        }
+    SandRim rim{glm::vec2(width_ * geometry_.probe, depth_ * geometry_.probe), {}, hasHoles_};
+    std::vector<std::tuple<std::int32_t, std::int32_t, std::size_t>> cuts;  // square, slot, corner
+    for (const auto& [edge, square] : cuts_) {
+        cuts.emplace_back(square, edge.first, edge.second);
+    }
+    std::ranges::sort(cuts);  // so that neighbouring edges follow each other
+    for (const auto& [square, slot, corner] : cuts) {
+        const TinTriangle& triangle = geometry_.triangle(slot);
+        rim.cuts.push_back({glm::vec3(geometry_.at(triangle.corner.at((corner + 1) % 3))),
+                            glm::vec3(geometry_.at(triangle.corner.at((corner + 2) % 3)))});
     }
     return rim;
 }

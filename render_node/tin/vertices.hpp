@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base/index_set.hpp"
@@ -76,7 +77,9 @@ private:
     TinVertices(const sand::tin::SurfaceView& tin, double cellSize, double chunkSide);
     void grow(const sand::tin::Triangles& mesh);
     [[nodiscard]] bool move(const sand::tin::SurfaceView& tin, std::span<const Vertex> vertices);
-    [[nodiscard]] bool keepRim(Vertex vertex, bool present);
+    /// Adds the cut edges of the triangle in a slot, or removes them. Returns whether it has any.
+    bool keepCuts(std::int32_t slot, bool present);
+    void widen(const sand::tin::SurfaceView& tin, Vertex vertex);
     [[nodiscard]] std::vector<Vertex> relight(const sand::tin::SurfaceView& tin);
     void addBoxes(const std::vector<std::int32_t>& slots);
 
@@ -86,9 +89,12 @@ private:
     TinLight light_;
     BoxBins changedBoxes_;
     HeightRange ever_{};
-    std::array<std::map<std::int32_t, Vertex>, 4> rim_;  // south, east, north, west, by place along the side
-    std::vector<Vertex> elsewhere_;                      // scratch: vertices that have moved to another place
-    base::IndexList reshaped_, shaded_;                  // scratch: triangles
+    bool hasHoles_;  // never changes
+    // Edges at which the sand is cut: slot and opposite corner, with a square of the field in which the edge was made.
+    std::map<std::pair<std::int32_t, std::size_t>, std::int32_t> cuts_;
+    std::vector<std::int32_t> cutsAt_;   // by vertex: number of its cut edges
+    std::vector<Vertex> elsewhere_;      // scratch: vertices that have moved to another place
+    base::IndexList reshaped_, shaded_;  // scratch: triangles
 };
 
 }  // namespace render_node

@@ -98,7 +98,7 @@ private:
     bool asked_ = false;
 };
 
-/// Returns the field of a source. Cells without data become walls. They are drawn as flats at the lowest height of the
+/// Returns the field of a source. Cells without data become walls. They are felt as flats at the lowest height of the
 /// terrain. Sets `survey` to the raster without heights if it is on a map.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                              std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,

@@ -40,6 +40,11 @@ def windows_of(wall, render_node, check):
     return words
 
 
+def print_greeting(wall, scene):
+    """Tells the person what opens and how to use it, before anything that the programs print."""
+    print_line(f"opening {pathlib.Path(wall).stem} with the scene {pathlib.Path(scene).stem}: dig with the left mouse button; h shows the keys, Escape ends")
+
+
 def session_of(args):
     """Returns the words of `run` for `try`. Replaces the names in `args` by the paths of their files."""
     args.wall, args.scene = layout.found("walls", args.wall), layout.found("scenes", args.scene)

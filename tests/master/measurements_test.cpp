@@ -128,6 +128,26 @@ TEST(Measurements, SayHowManyFramesASecondHas) {
     EXPECT_EQ(status["slowest"], nullptr);
 }
 
+// Frames per second: 30 in the second of the start, which is left out, then 60, 62, 40, 40 and 5 in the end.
+TEST(Measurements, TellAPersonWhoDigsOnlyOfARateThatHasChanged) {
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    testing::internal::CaptureStdout();
+    std::uint64_t frame = 1;
+    std::int64_t now = 1'000'000 * kMs;
+    const auto print = [&](bool last) {
+        measurements.printProgress(frame, frame, "", "hand points", last, now, Measurements::Reader::digs);
+    };
+    print(false);
+    for (const std::uint64_t rate : {30U, 60U, 62U, 40U, 40U}) {
+        frame += rate;
+        now += 1000 * kMs;
+        print(false);
+    }
+    frame += 5;
+    print(true);
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "60 pictures a second\n40 pictures a second\n");
+}
+
 TEST(Measurements, TellTheWallWhatItsRanksCannotKnow) {
     Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
     Wall wall(measurements);

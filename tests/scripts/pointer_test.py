@@ -265,7 +265,10 @@ class PointerSession(unittest.TestCase):
         self.drag([(400, 400), (500, 410), (600, 400)])
         self.keep_picture("try.png")
         self.quit(session)
-        self.assertIn(str(self.out / "session.journal"), self.log.read_text())
+        said = self.log.read_text()
+        self.assertIn(str(self.out / "session.journal"), said)
+        self.assertIn("dig with the left mouse button", said)
+        self.assertNotIn("hashes agree", said, "a line for an operator")
         self.assertEqual(self.replay("--hash"), json.loads((self.out / "summary.json").read_text())["state_hash"])
         self.assertTrue(any(step["engaged"] == "1" for step in self.steps()))
 

@@ -113,7 +113,7 @@ double distanceOf(const GridVertices& surface, const sand::CellRect& chunk, cons
         std::array<glm::dvec3, 3> corner{};
         for (std::size_t j = 0; j < 3; ++j) {
             const GridVertex& vertex = own.at(triangles[i + j]);
-            corner[j] = {surface.east(vertex.column), surface.north(vertex.row), vertex.height};
+            corner[j] = {surface.east(vertex.column / 2), surface.north(vertex.row / 2), vertex.height};
         }
         const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
         for (int row = chunk.y0; row < chunk.y1; ++row) {
