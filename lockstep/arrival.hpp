@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -21,6 +22,8 @@ struct Arrival {
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() after the steps of this frame
     std::uint64_t viewHash = 0;   // ViewProof::hash() of this frame's view
     base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
+    // [pixel], present size of the window that the picture follows (walls::followsWindow); 0 without one
+    std::array<std::int32_t, 2> window{};
 };
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so
