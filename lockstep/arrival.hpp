@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,6 +24,8 @@ struct Arrival {
     base::Keystroke key{};        // key pressed in a window of this rank; without code if none was
     // [ns], durations of the movements and edits of this frame's steps, of their sweeps, and of audit and hash
     std::int64_t dragged = 0, swept = 0, hashed = 0;
+    // [pixel], present size of the window that the picture follows (walls::followsWindow); 0 without one
+    std::array<std::int32_t, 2> window{};
 };
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so

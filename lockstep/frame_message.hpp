@@ -27,6 +27,8 @@ struct ViewState {
     Overlays layers{};         // overlays that are shown with the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
     double humidity = 0;       // scene::Material::humidity, 0 to 1; wet sand is drawn darker
+    // [pixel] of the window that the picture follows; 0: the size in the wall file (walls::shownInWindow)
+    std::array<std::int32_t, 2> window{};
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -38,6 +40,7 @@ struct ViewState {
         visit("layers", it.layers);
         visit("stereo", it.stereo);
         visit("humidity", base::limited(it.humidity, 0, 1));
+        visit("window", it.window);
     }
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };

@@ -35,10 +35,11 @@ constexpr std::array kSave{control('s')};
 constexpr std::array kCapture{named(Keystroke::kF12)};
 constexpr std::array kWireframe{plain('g')}, kHillShade{plain('m')}, kForce{plain('f')}, kStatistics{plain('s')};
 constexpr std::array kPattern{plain('t')};
+constexpr std::array kFullScreen{named(Keystroke::kF11)};
 constexpr std::array kHelp{named(Keystroke::kF1), plain('?'), plain('h')};
 constexpr std::array kQuit{named(Keystroke::kEscape), plain('q'), control('q')};
 
-constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
+constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
                                           {KeyAction::turnLeft, kTurnLeft, "turns the tool to the left", true},
@@ -58,6 +59,7 @@ constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::statistics, kStatistics, "statistics"},
                                           {KeyAction::pattern, kPattern, "next test pattern", false, true},
                                           {KeyAction::help, kHelp, "shows or hides the help"},
+                                          {KeyAction::fullScreen, kFullScreen, "full screen, and back", false, true},
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
 constexpr std::array<MouseEntry, 6> kMouse{{{"left button, finger", "digs"},

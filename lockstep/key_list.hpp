@@ -34,6 +34,7 @@ enum class KeyAction : std::uint8_t {
     statistics,
     pattern,
     help,
+    fullScreen,  // done by the rank, whose window it is
     quit
 };
 

@@ -24,6 +24,7 @@ struct SessionMessage {
     double frameTimeout = 0;      // [s] without a message from the master, after which a rank ends
     std::vector<Fault> faults{};  // of the session's drills
     bool pointer = false;         // whether the hand is the pointer of the ranks' windows
+    std::string sceneName{};      // shown in the titles of windows
     base::Bytes state{};          // sand::Replica::encodeState() of a resumed session; empty for a new one
 
     template <class Self, class Visit>
@@ -33,6 +34,7 @@ struct SessionMessage {
         visit("frame_timeout_s", it.frameTimeout);
         visit("faults", base::upTo(it.faults, kMostFaults));
         visit("pointer", it.pointer);
+        visit("scene_name", base::text(it.sceneName, kMostText));
         visit("state", base::block(it.state));
     }
 };

@@ -129,6 +129,12 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
     return session.recording->scene();
 }
 
+/// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
+std::string sceneName(const Options& options) {
+    const std::filesystem::path scene(options.scene);
+    return !scene.empty() ? scene.stem().string() : std::filesystem::path(options.replay).parent_path().stem().string();
+}
+
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     lockstep::requireStartUpLimit();
     cluster.mayTakeLong(true);  // until broadcastSession()
@@ -170,6 +176,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
     options.session.report = !options.noReport;
     options.session.out = options.out;
     options.session.desk.pointer = options.session.pointer;
+    options.session.desk.film = options.session.film;
     options.session.desk.pattern = lockstep::parsePattern(options.pattern);
     options.session.desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
     for (const std::string& layer : options.layers) {
@@ -186,6 +193,7 @@ World loadWorld(const lockstep::Cluster& cluster, Options& options) {
                      options.session.frameTimeout,
                      {},
                      options.session.pointer,
+                     sceneName(options),
                      options.session.record.resumed ? options.session.record.resumed->state : base::Bytes()};
     const master::FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
                                        options.session.server.has_value()};

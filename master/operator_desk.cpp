@@ -11,6 +11,7 @@
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "walls/stereo_change.hpp"
+#include "walls/window_size.hpp"
 
 namespace master {
 namespace {
@@ -47,7 +48,8 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       captures_(out_),
       force_(options.force),
       lastEdit_(options.lastEdit),
-      pointer_(options.pointer) {
+      pointer_(options.pointer),
+      film_(options.film) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
     }
@@ -262,9 +264,23 @@ void OperatorDesk::shareForce(double share) {
     session_.keepForce(share);
 }
 
-void OperatorDesk::changeStereo(walls::Stereo stereo) {
-    shown_ = walls::shownOnItsOutputs(wall_, stereo);
+void OperatorDesk::changeStereo(walls::Stereo stereo) { showWall(stereo, window_); }
+
+void OperatorDesk::followWindow(const std::vector<lockstep::Arrival>& arrivals) {
+    if (film_ || !walls::followsWindow(wall_) || arrivals.size() < 2) {
+        return;
+    }
+    const glm::ivec2 window(arrivals[1].window[0], arrivals[1].window[1]);
+    if (window != glm::ivec2(0) && window != window_) {
+        showWall(shown_.stereo, window);
+    }
+}
+
+void OperatorDesk::showWall(walls::Stereo stereo, glm::ivec2 window) {
+    shown_ = walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window);
+    window_ = window;
     views_.show(stereo);
+    views_.show(window);
 }
 
 void OperatorDesk::save(const std::string& name, std::optional<Client> client) {

@@ -34,6 +34,7 @@ struct DeskOptions {
     tracking::Source tracker;                             // source of the head's pose
     std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
     std::uint64_t lastEdit = 0;   // last number of an edit in the resumed session; 0 in a new one
+    bool film = false;            // the pictures have the size in the wall file
     bool pointer = false;         // the hand is the pointer, so that all keys of lockstep::keyList() act
 };
 
@@ -71,7 +72,10 @@ public:
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
     [[nodiscard]] ViewSource& views() { return views_; }
-    /// Returns the wall in the stereo mode that was chosen last.
+    /// Makes the picture follow its window, whose rank reports its size in `arrivals`. Ignored unless
+    /// walls::followsWindow(), and for films.
+    void followWindow(const std::vector<lockstep::Arrival>& arrivals);
+    /// Returns the wall in the stereo mode that was chosen last, and in the size of its window.
     [[nodiscard]] const walls::Wall& shownWall() const { return shown_; }
     /// Returns whether pictures of the next frame are wanted.
     [[nodiscard]] bool needsCapture() const { return captures_.wanted(jobs_); }
@@ -103,6 +107,7 @@ private:
     void askMaterial(const scene::Material& material, std::optional<Client> client);
     void shareForce(double share);
     void changeStereo(walls::Stereo stereo);
+    void showWall(walls::Stereo stereo, glm::ivec2 window);
     void save(const std::string& name, std::optional<Client> client);
     void load(const std::string& name, std::optional<Client> client);
     void finishJobs(bool wait);
@@ -113,6 +118,7 @@ private:
 
     const walls::Wall& wall_;
     walls::Wall shown_;
+    glm::ivec2 window_{0};  // [pixel], size of the window that the picture follows; 0: none, or not known yet
     const SandPlace place_;
     const scene::MaterialGrid grid_;
     const scene::Material sceneMaterial_;  // as the scene file has it
@@ -128,7 +134,7 @@ private:
     Captures captures_;
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
-    const bool pointer_;
+    const bool pointer_, film_;
     double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
     int savesByKey_ = 0;          // number of the last file that a key has asked for
     bool paused_ = false;

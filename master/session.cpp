@@ -157,6 +157,7 @@ void Session::reportLeftOut(const Steps& steps) {
 bool Session::showFrame(bool& more) {
     waitForFrame();
     desk_.obey(barrier_.arrivals());
+    desk_.followWindow(barrier_.arrivals());
     if (options_.pointer) {
         std::vector<haptic_bridge::PointerReport> pointers = barrier_.pointers();
         desk_.moveView(pointers);

@@ -30,6 +30,8 @@ public:
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
     [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
     void show(walls::Stereo stereo) { state_.stereo = static_cast<std::uint8_t>(stereo); }
+    /// Sets the size of the window that the picture follows [pixel].
+    void show(glm::ivec2 window) { state_.window = {window.x, window.y}; }
     void show(lockstep::Overlays layers) { state_.layers = layers; }
     void show(lockstep::Overlay layer, bool shown) { state_.layers.set(layer, shown); }
     [[nodiscard]] lockstep::Overlays layers() const { return state_.layers; }

@@ -43,8 +43,8 @@ public:
     TilePainter(const walls::Wall& wall, const walls::Tile& tile, const scene::Scene& scene, std::string host,
                 const sand::SurfaceData& start);
 
-    /// Changes the stereo mode: `wall` and `tile` are the same wall and tile in another mode, on the same outputs. They
-    /// must outlive the painter. Throws as the constructor does.
+    /// Changes the stereo mode or the size: `wall` and `tile` are the same wall and tile in another mode or with other
+    /// pixels, on the same outputs. They must outlive the painter. Throws as the constructor does.
     void showAs(const walls::Wall& wall, const walls::Tile& tile);
 
     /// Makes the next paint() draw every eye whole. Called when the sand that was drawn may have been wrong.

@@ -28,6 +28,7 @@
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
 #include "walls/stereo_change.hpp"
+#include "walls/window_size.hpp"
 
 namespace render_node {
 namespace {
@@ -46,7 +47,7 @@ public:
           shown_(wall_),
           tile_(wall_.tiles.at(static_cast<std::size_t>(cluster.rank() - 1))),
           viewProof_(wall_.encode()),
-          context_(makeContext(backend, wall_, tile_, message.pointer)),
+          context_(makeContext(backend, wall_, tile_, message.pointer, message.sceneName)),
           otherFloats_(base::repairFloats()),
           pointer_(shown_, cluster.rank()) {
         if (faults_.spoilsShader()) {
@@ -85,7 +86,7 @@ public:
             barrier.watchdog().setLimit(message_.frameTimeout);  // longer after pictures
             applyFaults(frame);
             applySteps(frame);
-            changeStereo(frame.view);
+            changeWall(frame.view);
             const std::int64_t start = monotonicNs();
             figures.wall = std::move(frame.figures).value_or(lockstep::WallFigures{});
             draw(frame, figures);
@@ -102,9 +103,18 @@ public:
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
-            const lockstep::Arrival mine{
-                frame.frame, arrived - clockAhead, lastSwap,      drawn - start, hash, viewProof_.hash(frame.view),
-                nextKey(),   cost_.dragNs,         cost_.sweepNs, cost_.hashNs};
+            const glm::ivec2 window = context_->followedWindow();
+            const lockstep::Arrival mine{frame.frame,
+                                         arrived - clockAhead,
+                                         lastSwap,
+                                         drawn - start,
+                                         hash,
+                                         viewProof_.hash(frame.view),
+                                         nextKey(),
+                                         cost_.dragNs,
+                                         cost_.sweepNs,
+                                         cost_.hashNs,
+                                         {window.x, window.y}};
             if (!agree(barrier, mine, frame, figures)) {
                 (void)lockstep::gatherReports(barrier, report());
                 return;
@@ -176,11 +186,14 @@ private:
         return verdict == lockstep::Verdict::equal;
     }
 
-    /// Changes the stereo mode to the operator's choice. The master has checked that the outputs can show it.
-    void changeStereo(const lockstep::ViewState& view) {
+    /// Changes the stereo mode to the operator's choice, and the picture to the size of its window. The master has
+    /// checked that the outputs can show the mode.
+    void changeWall(const lockstep::ViewState& view) {
         const auto stereo = static_cast<walls::Stereo>(view.stereo);
-        if (stereo != shown_.stereo) {
-            shown_ = walls::shownOnItsOutputs(wall_, stereo);
+        const glm::ivec2 window(view.window[0], view.window[1]);
+        if (stereo != shown_.stereo || window != window_) {
+            window_ = window;
+            shown_ = walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window);
             painter_->showAs(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster_.rank() - 1)));
         }
     }
@@ -244,7 +257,8 @@ private:
     lockstep::FaultsOfRank faults_;
     lockstep::SandTime cost_;  // of the frame
     walls::Wall wall_;         // at the start of the session
-    walls::Wall shown_;        // in the mode of the last frame; the painter refers to it
+    walls::Wall shown_;        // in the mode and the size of the last frame; the painter refers to it
+    glm::ivec2 window_{0};     // [pixel], lockstep::ViewState::window of the last frame
     const walls::Tile& tile_;
     lockstep::ViewProof viewProof_;
     std::unique_ptr<GlContext> context_;  // declared before all owners of GL objects

@@ -22,12 +22,12 @@ libraries=(
     libgtest-dev libbenchmark-dev libcgal-dev               # tests and benchmarks
 )
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
-# events of sessions against the schemas, make and check a Debian package, and move the pointer with xdotool. The report
+# events of sessions against the schemas, make and check a Debian package, and move pointer and windows with xdotool and openbox. The report
 # draws its curves with matplotlib. Of packages with a bar between them, one is enough: the first that this Debian has.
 cross=''
 for option in "$@"; do
     case "$option" in
-        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
+        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool) ;;
         --with-web) tools+=(emscripten nodejs npm) ;;                     # the web page; docs/web.md
         --with-browsers) tools+=(chromium firefox-esr xauth libgl1-mesa-dri) ;; # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;

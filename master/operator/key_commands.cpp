@@ -55,6 +55,7 @@ std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& s
         case KeyAction::reset:
             return {{.verb = Verb::reset}};
         case KeyAction::frameView:
+        case KeyAction::fullScreen:
             return {};
         case KeyAction::pause:
             return {{.verb = state.paused ? Verb::resume : Verb::pause}};

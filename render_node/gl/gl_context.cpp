@@ -11,6 +11,7 @@
 #include "render_node/gl/compiler_memory.hpp"
 #include "render_node/gl/gl_module.hpp"
 #include "render_node/gl/window_context.hpp"
+#include "walls/window_size.hpp"
 
 namespace render_node {
 namespace {
@@ -51,6 +52,15 @@ std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& req
 /// Returns whether `automatic` has chosen EGL to draw in memory, and the wall file names no device.
 bool isSoftware(Backend backend, const walls::Tile& tile) {
     return backend == Backend::automatic && backendFor(backend, tile) == Backend::egl && tile.place.device < 0;
+}
+
+/// Returns the title of an output's window, such as "dunes, tile r1c2, left eye - Sandwall".
+std::string titleOf(const std::string& sceneName, const walls::Tile& tile, const walls::Output& output) {
+    std::string eyes;
+    for (const walls::Eye eye : output.eyes) {
+        eyes += (eyes.empty() ? "" : " and ") + std::string(walls::eyeName(eye));
+    }
+    return (sceneName.empty() ? "" : sceneName + ", ") + "tile " + tile.name + ", " + eyes + " eye - Sandwall";
 }
 
 }  // namespace
@@ -94,7 +104,8 @@ void GlContext::finishFrame() {
     }
 }
 
-PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile) {
+PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
+                                const std::string& sceneName) {
     PlatformRequest request;
     request.processName = "rank " + std::to_string(tile.rank) + " (" + tile.name + ")";
     request.display = tile.place.display;
@@ -105,15 +116,16 @@ PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const 
     request.onDesk = wall.onDesk;
     if (backendFor(backend, tile) == Backend::glfw) {
         for (const walls::Output& output : tile.outputs) {
-            request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels)});
+            request.windows.push_back({output, walls::outputPixels(wall.stereo, tile.pixels),
+                                       walls::followsWindow(wall), titleOf(sceneName, tile, output)});
         }
     }
     return request;
 }
 
-std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
-                                       bool pointer) {
-    PlatformRequest request = platformRequest(backend, wall, tile);
+std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile, bool pointer,
+                                       const std::string& sceneName) {
+    PlatformRequest request = platformRequest(backend, wall, tile, sceneName);
     request.pointer = pointer;
     if (pointer && request.windows.empty()) {
         throw base::InputError("--gl " + std::string(base::nameOf(backendFor(backend, tile))) +

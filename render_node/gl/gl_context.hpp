@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <span>
@@ -63,7 +64,8 @@ public:
     /// screen, only waits until GL has drawn them. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     ///
-    /// @param outputs  Pictures in the order of tile.outputs.
+    /// @param outputs  Pictures in the order of tile.outputs. A picture that follows its window may have another size
+    ///                 than the window, which may have changed since. It then begins at the window's top left corner.
     /// @param changed  Pixels that differ from the last call's pictures, in any output. A software renderer copies only
     ///                 these. The first call copies everything.
     /// @param frame    Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
@@ -79,6 +81,8 @@ public:
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
     /// Waits for an event of the window system, at most `seconds` [s].
     virtual void awaitEvents(double /* seconds */) {}
+    /// Returns the present size of the window that the picture follows [pixel], or 0 × 0 without such a window.
+    [[nodiscard]] virtual glm::ivec2 followedWindow() const { return {}; }
     /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     /// Returns how hardware locks the swaps of the windows:
@@ -107,10 +111,11 @@ private:
 /// Makes a context for the outputs of `tile`, current on this thread, and loads the GL functions. Throws
 /// base::InputError, whose line names the package to install or the backend to choose.
 ///
-/// @param pointer  Whether the windows show the pointer and report its events. Throws base::InputError if it is true
-///                 and the backend has no windows.
+/// @param pointer    Whether the windows show the pointer and report its events. Throws base::InputError if it is true
+///                   and the backend has no windows.
+/// @param sceneName  Shown in the titles of the windows.
 [[nodiscard]] std::unique_ptr<GlContext> makeContext(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
-                                                     bool pointer = false);
+                                                     bool pointer = false, const std::string& sceneName = {});
 
 /// Makes a context without outputs, as makeContext() does, for tests and measurements.
 [[nodiscard]] std::unique_ptr<GlContext> makeOffscreenContext(Backend backend);

@@ -21,6 +21,8 @@ using GlFunction = void (*)();
 struct WindowRequest {
     walls::Output output;
     glm::ivec2 pixels{1, 1};
+    bool follows = false;  // the window may change its size, and the picture follows it (walls::followsWindow)
+    std::string title = "Sandwall";
 };
 
 /// Event of the pointer in a window. The pointer is a mouse, a pen, or a finger on a touch screen, as the window system
@@ -76,12 +78,18 @@ public:
 
     // The functions below are for windows. They are not called off screen.
     [[nodiscard]] virtual bool quadBuffers(std::size_t /* window */) const { return false; }
+    /// Returns the present size of a window that the picture follows [pixel].
+    [[nodiscard]] virtual glm::ivec2 size(std::size_t /* window */) const { return {}; }
+    /// Makes the driver give the back buffer of a window the present size of the window.
+    virtual void resizeBuffer(std::size_t /* window */) {}
     /// Processes the events of the window system. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     virtual void check() {}
     /// Returns whether the back buffer of a window keeps its picture when the window is swapped. Then only pixels that
     /// change must be drawn into it.
     [[nodiscard]] virtual bool keepsPicture(std::size_t /* window */) const { return false; }
+    /// Returns whether a window has lost pixels since the last call, because it was hidden or has grown.
+    [[nodiscard]] virtual bool takeExposed(std::size_t /* window */) { return false; }
     /// Swaps all windows. `frame` is the number of the wall's frame, for eyes in turn. `changed` has the pixels of each
     /// window's back buffer that have changed since the last swap.
     virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}

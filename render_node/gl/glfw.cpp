@@ -64,7 +64,7 @@ public:
         }
         glfwPollEvents();
         for (const GlfwWindow& window : windows_) {
-            if (glfwWindowShouldClose(window.handle()) != 0 && mayClose_) {
+            if (glfwWindowShouldClose(window.handle()) != 0 && (mayClose_ || !window.isPlaced())) {
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
                 input_->keys.push_back({base::Keystroke::kEscape, 0, 0});
             } else if (glfwWindowShouldClose(window.handle()) != 0) {
@@ -74,14 +74,20 @@ public:
         }
     }
 
+    [[nodiscard]] glm::ivec2 size(std::size_t window) const override { return windows_.at(window).pixels(); }
+    // Without a swap, Mesa's software renderer asks for the size of a window only when its context is bound again.
+    void resizeBuffer(std::size_t window) override {
+        glfwMakeContextCurrent(nullptr);
+        makeCurrent(window);
+    }
+    [[nodiscard]] bool takeExposed(std::size_t window) override { return windows_.at(window).takeExposed(); }
     [[nodiscard]] bool keepsPicture(std::size_t window) const override { return parts_.at(window).has_value(); }
 
     void swap(std::uint64_t frame, std::span<const PixelRect> changed) override {
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             if (parts_[i]) {
-                const PixelRect part = windows_[i].takeExposed() ? allPixels(windows_[i].pixels()) : changed[i];
-                if (!part.empty()) {
-                    parts_[i]->show(part);
+                if (!changed[i].empty()) {
+                    parts_[i]->show(changed[i]);
                 }
             } else if (!eyes_[i] || !eyes_[i]->swap(frame)) {
                 glfwSwapBuffers(windows_[i].handle());

@@ -7,6 +7,7 @@
 #include <GLFW/glfw3native.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "render_node/gl/screen_cover.hpp"
+#include "render_node/gl/window_icon.hpp"
 
 namespace render_node {
 namespace {
@@ -106,6 +108,36 @@ void hintContext(bool visible) {
     glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
 }
 
+/// Returns the first size of a window that the picture follows: `wanted` times the monitor's scale, and at most 90 % of
+/// the first monitor's area for windows.
+glm::ivec2 firstSize(glm::ivec2 wanted) {
+    constexpr double kMost = 0.9;
+    GLFWmonitor* monitor = glfwGetPrimaryMonitor();
+    const ScreenRect area = workArea();
+    glm::vec2 scale(1);
+    if (monitor != nullptr) {
+        glfwGetMonitorContentScale(monitor, &scale.x, &scale.y);
+    }
+    const glm::dvec2 scaled = glm::dvec2(wanted) * glm::dvec2(scale);
+    const glm::dvec2 most = kMost * glm::dvec2(area.high - area.low);
+    return glm::max(glm::ivec2(scaled * std::min({1.0, most.x / scaled.x, most.y / scaled.y})), 1);
+}
+
+/// Returns the monitor that shows the middle of the window, or else the first one; null if there is none.
+GLFWmonitor* monitorOf(GLFWwindow* window) {
+    glm::ivec2 low, size;
+    glfwGetWindowPos(window, &low.x, &low.y);
+    glfwGetWindowSize(window, &size.x, &size.y);
+    const glm::ivec2 middle = low + size / 2;
+    for (GLFWmonitor* monitor : monitors()) {
+        const ScreenRect area = areaOf(monitor);
+        if (glm::all(glm::greaterThanEqual(middle, area.low)) && glm::all(glm::lessThan(middle, area.high))) {
+            return monitor;
+        }
+    }
+    return glfwGetPrimaryMonitor();
+}
+
 }  // namespace
 
 GlfwLibrary::GlfwLibrary() {
@@ -135,8 +167,12 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
     : wanted_(wanted), refreshHz_(request.eyesInTurn ? request.refreshHz : 0) {
     GLFWmonitor* monitor = nullptr;
     hintContext(false);
-    if (request.pointer && !wanted.output.window) {
+    if (!isPlaced()) {
         glfwWindowHint(GLFW_DECORATED, GLFW_TRUE);
+    }
+    if (wanted.follows) {
+        glfwWindowHint(GLFW_RESIZABLE, GLFW_TRUE);
+        wanted_.pixels = firstSize(wanted.pixels);
     }
     if (!wanted.output.monitor.empty()) {
         monitor = monitorNamed(wanted, display);
@@ -145,7 +181,7 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
     }
     if (request.eyesInTurn) {
         glfwWindowHint(GLFW_STEREO, GLFW_TRUE);
-        window_.reset(glfwCreateWindow(wanted.pixels.x, wanted.pixels.y, "Sandwall", monitor, share));
+        window_.reset(glfwCreateWindow(wanted_.pixels.x, wanted_.pixels.y, wanted_.title.c_str(), monitor, share));
         quadBuffers_ = window_ != nullptr;
         glfwWindowHint(GLFW_STEREO, GLFW_FALSE);
     }
@@ -153,6 +189,9 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
         open(library, display, monitor, share);
     }
     if (monitor == nullptr) {
+        if (!isPlaced()) {
+            setIcon(handle());
+        }
         if (wanted.output.window) {
             glfwSetWindowPos(handle(), wanted.output.window->x, wanted.output.window->y);
         }
@@ -162,7 +201,7 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
 }
 
 void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GLFWmonitor* monitor, GLFWwindow* share) {
-    window_.reset(glfwCreateWindow(wanted_.pixels.x, wanted_.pixels.y, "Sandwall", monitor, share));
+    window_.reset(glfwCreateWindow(wanted_.pixels.x, wanted_.pixels.y, wanted_.title.c_str(), monitor, share));
     if (window_ == nullptr) {
         throw InputError((name().empty() ? "--gl glfw" : "output " + name()) +
                          ": no window with OpenGL 3.3 on display " + display + ": " + library.complaint());
@@ -170,13 +209,43 @@ void GlfwWindow::open(const GlfwLibrary& library, const std::string& display, GL
 }
 
 void GlfwWindow::sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer) {
-    listener_ = std::make_unique<Listener>(Listener{input, index});
+    listener_ = std::make_unique<Listener>(Listener{.input = input, .window = index, .pixels = wanted_.pixels});
     glfwSetWindowUserPointer(handle(), listener_.get());
     followKeys();
     glfwSetWindowRefreshCallback(
         handle(), [](GLFWwindow* window) { static_cast<Listener*>(glfwGetWindowUserPointer(window))->exposed = true; });
     if (pointer) {
         followPointer();
+    }
+    if (wanted_.follows) {
+        followSize();
+    }
+}
+
+/// The window manager may already have chosen another size.
+void GlfwWindow::followSize() {
+    glfwGetFramebufferSize(handle(), &listener_->pixels.x, &listener_->pixels.y);
+    glfwSetFramebufferSizeCallback(handle(), [](GLFWwindow* window, int width, int height) {
+        auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
+        listener->pixels = {width, height};
+        listener->exposed = true;
+    });
+}
+
+/// GLFW switches to a window by itself if the monitor goes away.
+void GlfwWindow::toggleFullScreen(GLFWwindow* window) {
+    auto* listener = static_cast<Listener*>(glfwGetWindowUserPointer(window));
+    glm::ivec2 &place = listener->placeBefore, &size = listener->sizeBefore;
+    if (glfwGetWindowMonitor(window) != nullptr) {
+        glfwSetWindowMonitor(window, nullptr, place.x, place.y, size.x, size.y, GLFW_DONT_CARE);
+        return;
+    }
+    GLFWmonitor* monitor = monitorOf(window);
+    const GLFWvidmode* mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (mode != nullptr) {
+        glfwGetWindowPos(window, &place.x, &place.y);
+        glfwGetWindowSize(window, &size.x, &size.y);
+        glfwSetWindowMonitor(window, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
     }
 }
 
@@ -186,6 +255,9 @@ void GlfwWindow::followKeys() {
         if (action != GLFW_RELEASE) {
             auto& listener = *static_cast<Listener*>(glfwGetWindowUserPointer(window));
             const char* name = glfwGetKeyName(key, scancode);
+            if (key == GLFW_KEY_F11 && action == GLFW_PRESS && glfwGetWindowAttrib(window, GLFW_RESIZABLE) != 0) {
+                toggleFullScreen(window);
+            }
             listener.key = {key, modifiers, action == GLFW_REPEAT, name == nullptr ? "" : name};
             listener.add(pressedKey(listener.key));
         }
@@ -238,7 +310,7 @@ void GlfwWindow::addShortcomings(std::vector<std::string>& lines) const {
     ScreenRect area;
     glfwGetWindowPos(handle(), &area.low.x, &area.low.y);
     area.high = area.low + size;
-    if (size != wanted_.pixels) {
+    if (size != wanted_.pixels && !wanted_.follows) {
         lines.push_back(output + "the window manager made its window " + sizeText(size) + " pixels instead of " +
                         sizeText(wanted_.pixels));
     }

@@ -9,6 +9,7 @@
 
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/gl/key_event.hpp"
+#include "walls/window_size.hpp"
 
 struct GLFWwindow;
 struct GLFWmonitor;
@@ -33,8 +34,11 @@ struct WindowInput {
     std::vector<PointerEvent> pointer;
 };
 
-/// Window of one output, with its OpenGL context. It cannot be resized. It shows a cursor only if the request asks for
-/// the pointer. It then has decorations, too, if the window system chooses its place.
+/// Window of one output, with its OpenGL context. It shows a cursor only if the request asks for the pointer.
+///
+/// A window that the wall file does not place belongs to a desktop: it has a frame, an icon and a title. Its first size
+/// is that of the wall file times the scale of the monitor, and at most 90 % of the monitor. If the picture follows it,
+/// the user may change its size, and F11 switches to full screen and back.
 class GlfwWindow {
 public:
     /// Makes a hidden window, for its context only.
@@ -48,7 +52,11 @@ public:
     [[nodiscard]] GLFWwindow* handle() const { return window_.get(); }
     [[nodiscard]] const std::string& name() const { return wanted_.output.name; }
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
-    [[nodiscard]] glm::ivec2 pixels() const { return wanted_.pixels; }
+    /// Returns whether the wall file gives the window a place.
+    [[nodiscard]] bool isPlaced() const { return walls::isPlaced(wanted_.output); }
+    /// Returns the size of the window [pixel]: the present one if the picture follows it, otherwise the one that was
+    /// asked for.
+    [[nodiscard]] glm::ivec2 pixels() const { return listener_ ? listener_->pixels : wanted_.pixels; }
     /// Appends the input of this window to `input` from now on. `index` is the number of the window in its events. With
     /// `pointer`, the events of the pointer are appended, too.
     void sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer);
@@ -70,9 +78,11 @@ private:
     struct Listener {
         std::shared_ptr<WindowInput> input;
         std::size_t window = 0;
-        glm::dvec2 at{0};     // [pixel], of the pointer's last motion
-        bool exposed = true;  // the window has lost pixels, or has shown none yet
-        KeyEvent key{};       // the last one, which may type a character
+        glm::dvec2 at{0};                          // [pixel], of the pointer's last motion
+        bool exposed = true;                       // the window has lost pixels, or has shown none yet
+        KeyEvent key{};                            // the last one, which may type a character
+        glm::ivec2 pixels{1};                      // size of the window
+        glm::ivec2 placeBefore{0}, sizeBefore{1};  // of the window before it became a full screen
 
         void add(const std::optional<base::Keystroke>& press) {
             if (press) {
@@ -82,7 +92,9 @@ private:
     };
     void followKeys();
     static void addPointer(GLFWwindow* window, PointerEvent::Kind kind, double notches = 0);
+    static void toggleFullScreen(GLFWwindow* window);
     void followPointer();
+    void followSize();
 
     std::unique_ptr<Listener> listener_;  // at an address that stays, because GLFW keeps it
     std::unique_ptr<GLFWwindow, Destroy> window_;

@@ -4,6 +4,7 @@
 #include <glad/gl.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "render_node/gl/compiler_memory.hpp"
 #include "render_node/gl/eye_target.hpp"
@@ -42,6 +43,15 @@ GLenum bufferOf(BackBuffer buffer) {
     return buffer == BackBuffer::left ? GL_BACK_LEFT : buffer == BackBuffer::right ? GL_BACK_RIGHT : GL_BACK;
 }
 
+/// Copies a picture to a buffer of another size. Both keep their top left corners, and the rest is black.
+void copyToTopLeft(glm::ivec2 picture, glm::ivec2 buffer) {
+    glClearColor(0, 0, 0, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    const glm::ivec2 both = glm::min(picture, buffer);
+    glBlitFramebuffer(0, picture.y - both.y, both.x, picture.y, 0, buffer.y - both.y, both.x, buffer.y,
+                      GL_COLOR_BUFFER_BIT, GL_NEAREST);  // GL counts rows from the bottom
+}
+
 class WindowContext final : public GlContext {
 public:
     WindowContext(std::unique_ptr<GlPlatform> platform, const std::vector<WindowRequest>& windows)
@@ -52,6 +62,7 @@ public:
             platform_->makeCurrent(i);
             glGenFramebuffers(1, &readers_[i]);
             changed_[i] = allPixels(windows_[i].pixels);
+            sizes_.push_back(windows_[i].pixels);
         }
         platform_->makeCurrent(0);
     }
@@ -69,8 +80,14 @@ public:
         // From the last window to the first, so that the drawing context is current at the end.
         inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
-            const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr;
-            changed_[i] = around(changed_[i], inPart ? changed : allPixels(windows_[i].pixels));
+            const bool resized = sizeOf(i) != std::exchange(sizes_[i], sizeOf(i));
+            if (resized) {
+                platform_->resizeBuffer(i);
+                platform_->makeCurrent(0);
+            }
+            const bool fits = glm::ivec2(outputs[i].picture->width(), outputs[i].picture->height()) == sizes_[i];
+            const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr && !resized && fits;
+            changed_[i] = around(changed_[i], inPart ? changed : allPixels(sizes_[i]));
             if (!changed_[i].empty()) {
                 show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
             }
@@ -79,6 +96,12 @@ public:
     }
     [[nodiscard]] bool showsEyesInTurn() const override { return inTurn_; }
     void swap() override {
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            if (platform_->takeExposed(i)) {
+                // The window may have grown since present(). Its back buffer has the size of then.
+                changed_[i] = allPixels(sizes_[i]);
+            }
+        }
         platform_->swap(frame_, changed_);
         changed_.assign(windows_.size(), {});
         platform_->check();
@@ -93,12 +116,18 @@ public:
     [[nodiscard]] std::int64_t frameBufferBytes() const override {
         std::int64_t bytes = 0;
         for (std::size_t i = 0; i < windows_.size(); ++i) {
-            bytes += std::int64_t{platform_->quadBuffers(i) ? 8 : 4} * windows_[i].pixels.x * windows_[i].pixels.y;
+            bytes += std::int64_t{platform_->quadBuffers(i) ? 8 : 4} * sizes_[i].x * sizes_[i].y;
         }
         return bytes;
     }
+    [[nodiscard]] glm::ivec2 followedWindow() const override {
+        return windows_.front().follows ? platform_->size(0) : glm::ivec2(0);
+    }
 
 private:
+    [[nodiscard]] glm::ivec2 sizeOf(std::size_t window) const {
+        return windows_[window].follows ? platform_->size(window) : windows_[window].pixels;
+    }
     void show(std::size_t window, const std::vector<Copy>& copies) {
         std::vector<Colours> sources;
         sources.reserve(copies.size());
@@ -116,15 +145,20 @@ private:
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
         for (std::size_t i = 0; i < copies.size(); ++i) {
             const EyeTarget& picture = *copies[i].picture;
-            const glm::ivec2 size = windows_[window].pixels;
-            if (picture.width() != size.x || picture.height() != size.y) {
+            const glm::ivec2 size = sizes_[window];
+            const glm::ivec2 pictureSize(picture.width(), picture.height());
+            if (pictureSize != size && !windows_[window].follows) {
                 throw std::logic_error("output " + windows_[window].output.name + " got a picture of " +
                                        std::to_string(picture.width()) + " x " + std::to_string(picture.height()));
             }
             attach(sources[i]);
             glDrawBuffer(bufferOf(copies[i].to));
-            const auto& [x0, y0, x1, y1] = changed_[window];
-            glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            if (pictureSize == size) {
+                const auto& [x0, y0, x1, y1] = changed_[window];
+                glBlitFramebuffer(x0, y0, x1, y1, x0, y0, x1, y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            } else {
+                copyToTopLeft(pictureSize, size);
+            }
         }
         if (scissor == GL_TRUE) {
             glEnable(GL_SCISSOR_TEST);
@@ -137,6 +171,7 @@ private:
 
     std::unique_ptr<GlPlatform> platform_;
     std::vector<WindowRequest> windows_;
+    std::vector<glm::ivec2> sizes_;   // [pixel], of each window at the last present()
     std::vector<GLuint> readers_;     // one frame buffer object in each window's context, which destroys it
     std::vector<PixelRect> changed_;  // of each window, since its last swap
     std::uint64_t frame_ = 0;

@@ -27,9 +27,10 @@ struct Copy {
 /// odd frames the right one. So all tiles show the same eye, even if some have missed frames.
 [[nodiscard]] std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::uint64_t frame);
 
-/// Returns the request for the backend of `tile`. It has windows if `backend` shows windows. With eyes in turn it has
-/// the wall's refresh rate for its monitors.
-[[nodiscard]] PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile);
+/// Returns the request for the backend of `tile`. It has windows if `backend` shows windows; their titles have
+/// `sceneName`. With eyes in turn it has the wall's refresh rate for its monitors.
+[[nodiscard]] PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
+                                              const std::string& sceneName = {});
 
 /// Loads OpenGL's functions through `platform`. Its context 0 must be current. Throws base::InputError if one is
 /// missing.

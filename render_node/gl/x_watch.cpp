@@ -42,6 +42,11 @@ std::string chosenDisplay(const std::string& display, const char* other) {
     }
     const char* fromEnvironment = std::getenv("DISPLAY");
     if (fromEnvironment == nullptr || *fromEnvironment == '\0') {
+        if (const char* wayland = std::getenv("WAYLAND_DISPLAY"); wayland != nullptr && *wayland != '\0') {
+            throw base::InputError(
+                "--gl glfw: no X display (DISPLAY is not set); on this Wayland desktop windows need Xwayland: install "
+                "Xwayland (Debian's xwayland), and log in again");
+        }
         throw base::InputError(
             std::string("--gl glfw: no X display; set DISPLAY, give the tile's place in the wall file one (display = "
                         "\":0\"), or ") +

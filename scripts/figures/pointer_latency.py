@@ -24,6 +24,7 @@ from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, p
 from x_server import XServer
 
 SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml
+SCREEN = "1600x900"  # the first size of a window is at most 90 % of its screen
 MOTIONS = 125  # a second, as a usual mouse sends them
 REFRESH = 60  # Hz
 
@@ -44,7 +45,7 @@ def circles(display, seconds):
 
 def measure(args):
     """Returns the summary of a session in which the pointer digs all the time."""
-    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer(f"{SIZE[0]}x{SIZE[1]}") as display:
+    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer(SCREEN) as display:
         folder = pathlib.Path(name)
         log, out = folder / "log.txt", folder / "out"
         command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", ROOT / "walls" / "configs" / "desktop.toml",

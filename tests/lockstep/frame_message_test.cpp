@@ -41,7 +41,8 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
                              .pattern = 8,
                              .layers = lockstep::Overlays(9),
                              .stereo = 10,
-                             .humidity = 0.25};
+                             .humidity = 0.25,
+                             .window = {27, 28}};
     for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
         view.sceneToRoom.at(i) = 11 + static_cast<double>(i);
     }

@@ -47,6 +47,9 @@ TEST(ViewAgreement, EveryPartOfAViewCounts) {
     other = seen();
     other.humidity = 0.1;
     EXPECT_NE(proof.hash(other), hash);
+    other = seen();
+    other.window[1] = 720;
+    EXPECT_NE(proof.hash(other), hash);
 }
 
 TEST(ViewAgreement, AnotherWallIsAnotherView) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/x_screen.hpp"
 
+#include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
@@ -118,6 +119,30 @@ std::vector<unsigned long> XScreen::windows() const {
     }
     XFree(children);
     return seen;
+}
+
+std::string XScreen::title(unsigned long window) const {
+    char* name = nullptr;
+    XFetchName(display_.get(), window, &name);
+    const std::string title = name == nullptr ? "" : name;
+    XFree(name);
+    return title;
+}
+
+bool XScreen::hasIcon(unsigned long window) const {
+    Atom type = None;
+    int format = 0;
+    unsigned long count = 0, left = 0;
+    unsigned char* data = nullptr;
+    XGetWindowProperty(display_.get(), window, XInternAtom(display_.get(), "_NET_WM_ICON", False), 0, 2, False,
+                       XA_CARDINAL, &type, &format, &count, &left, &data);
+    XFree(data);
+    return type == XA_CARDINAL && count == 2 && left > 0;  // width, height, and the pixels
+}
+
+void XScreen::resize(unsigned long window, int width, int height) const {
+    XResizeWindow(display_.get(), window, static_cast<unsigned>(width), static_cast<unsigned>(height));
+    XSync(display_.get(), False);
 }
 
 void XScreen::destroy(unsigned long window) const {

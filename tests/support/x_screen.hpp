@@ -29,6 +29,9 @@ public:
 
     /// Returns the visible windows, the lowest one first.
     [[nodiscard]] std::vector<unsigned long> windows() const;
+    [[nodiscard]] std::string title(unsigned long window) const;
+    [[nodiscard]] bool hasIcon(unsigned long window) const;
+    void resize(unsigned long window, int width, int height) const;
     void destroy(unsigned long window) const;
     /// Hides the window and shows it again. The server forgets its pixels.
     void hideForAMoment(unsigned long window) const;
