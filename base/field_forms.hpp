@@ -3,6 +3,8 @@
 
 #include <array>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,7 +24,16 @@ template <class Number>
 [[nodiscard]] std::string digitsOf(Number number) {
     if constexpr (std::is_floating_point_v<Number>) {
         std::array<char, 32> text{};
+#if defined(__cpp_lib_to_chars)
         return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+#else  // as in the library of emscripten 3
+        for (int digits = 1;; ++digits) {
+            const int length = std::snprintf(text.data(), text.size(), "%.*g", digits, static_cast<double>(number));
+            if (digits == 17 || static_cast<Number>(std::strtod(text.data(), nullptr)) == number) {
+                return {text.data(), static_cast<std::size_t>(length)};
+            }
+        }
+#endif
     } else {
         return std::to_string(number);
     }

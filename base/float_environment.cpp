@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/float_environment.hpp"
 
+#if defined(__wasm__)
+// WebAssembly always rounds to nearest, keeps subnormal numbers and has no traps.
+namespace base {
+
+bool needDefaultFloats() { return false; }
+std::string unusualFloats() { return {}; }
+std::string repairFloats() { return {}; }
+
+}  // namespace base
+#else
 #include <cfenv>
 
 #include "base/float_register.hpp"
@@ -61,3 +71,4 @@ std::string repairFloats() {
 }
 
 }  // namespace base
+#endif

@@ -11,8 +11,9 @@
 namespace haptic_bridge {
 
 bool PointerReport::touches() const {
-    return pressed != 0 ||
-           std::ranges::any_of(taken(), [](const PointerSample& sample) { return sample.pressed != 0; });
+    const auto samplesNow = taken();
+    return pressed != 0 || std::any_of(samplesNow.begin(), samplesNow.end(),
+                                       [](const PointerSample& sample) { return sample.pressed != 0; });
 }
 
 bool PointerReport::movesView() const {

@@ -11,7 +11,8 @@ std::optional<std::size_t> PointerArbiter::hand(std::span<const PointerReport> r
                reports[touch.rank].touch != touch.number;
     });
     for (std::size_t rank = 0; rank < reports.size(); ++rank) {
-        const bool known = std::ranges::any_of(touches_, [&](const Touch& touch) { return touch.rank == rank; });
+        const bool known =
+            std::any_of(touches_.begin(), touches_.end(), [&](const Touch& touch) { return touch.rank == rank; });
         if (reports[rank].touches() && !known) {
             touches_.push_back({rank, reports[rank].touch});
         }
@@ -20,7 +21,8 @@ std::optional<std::size_t> PointerArbiter::hand(std::span<const PointerReport> r
         last_ = touches_.front().rank;
         return last_;
     }
-    const auto moved = std::ranges::find_if(reports, [](const auto& report) { return report.count > 0; });
+    const auto moved =
+        std::find_if(reports.begin(), reports.end(), [](const auto& report) { return report.count > 0; });
     if (moved != reports.end()) {
         last_ = static_cast<std::size_t>(moved - reports.begin());
     }

@@ -37,7 +37,7 @@ bool overlap(const std::array<tin::LatticePoint, 3>& corner, const std::array<st
     }
     const std::array<tin::LatticePoint, 4> ends{{{west, south}, {east, south}, {east, north}, {west, north}}};
     for (std::size_t k = 0; k < 3; ++k) {
-        if (std::ranges::all_of(ends, [&](const tin::LatticePoint& end) {
+        if (std::all_of(ends.begin(), ends.end(), [&](const tin::LatticePoint& end) {
                 return doubledArea(corner[k], corner[(k + 1) % 3], end) < 0;
             })) {
             return false;
@@ -149,7 +149,7 @@ std::size_t Facets::startOf(double x, double y) const {
 
 void Facets::levelHoles(const tin::SurfaceView& tin) {
     const auto isHole = [&](std::int32_t slot) { return tin.triangles.triangles[at(slot)].hole; };
-    if (std::ranges::none_of(slots_, isHole) || std::ranges::all_of(slots_, isHole)) {
+    if (std::none_of(slots_.begin(), slots_.end(), isHole) || std::all_of(slots_.begin(), slots_.end(), isHole)) {
         return;
     }
     double lowest = kMaxHeight;  // [unit]
@@ -194,7 +194,7 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::LatticePoint& midd
 void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::LatticePoint& middle) {
     const tin::Triangle& triangle = tin.triangles.triangles[at(slot)];
     // Begins with the smallest vertex, so that the order of the corners in the mesh does not affect rounding.
-    const auto first = static_cast<std::size_t>(std::ranges::min_element(triangle.corner) - triangle.corner.begin());
+    const auto first = static_cast<std::size_t>(std::min_element(triangle.corner.begin(), triangle.corner.end()) - triangle.corner.begin());
     std::array<std::int64_t, 3> x{}, y{};  // from the middle of the square [part]
     std::array<double, 3> height{};
     Facet facet{};

@@ -45,8 +45,12 @@ struct DualIteration {
 namespace baseline {
 void iterateDual(const DualIteration& iteration);
 }
+#if defined(__wasm__)
+namespace v3 = baseline;  // one version, for WebAssembly
+#else
 namespace v3 {
 void iterateDual(const DualIteration& iteration);
 }
+#endif
 
 }  // namespace sand::grid

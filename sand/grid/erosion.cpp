@@ -192,8 +192,9 @@ bool Erosion::amiss(const CellRect& cells) const {
     const auto rests = [this](int x, int y) {
         const int column = x / blockSize_, row = y / blockSize_;
         // The last run that begins at this block or before it.
-        const auto after = std::ranges::upper_bound(active_, std::pair(row, column), {},
-                                                    [](const CellRect& run) { return std::pair(run.y0, run.x0); });
+        const auto after = std::upper_bound(
+            active_.begin(), active_.end(), std::pair(row, column),
+            [](const std::pair<int, int>& block, const CellRect& run) { return block < std::pair(run.y0, run.x0); });
         return after == active_.begin() || std::prev(after)->y0 != row || std::prev(after)->x1 <= column;
     };
     for (int x = cells.x0; cells.y0 == 0 && x < cells.x1; ++x) {  // over the southern rim

@@ -51,7 +51,7 @@ void Erosion::markAroundMoved() {
 
 std::vector<CellRect> Erosion::takeMoved() {
     std::vector<CellRect> runs = moved_.takeRuns();
-    std::ranges::transform(runs, runs.begin(), [this](const CellRect& run) { return cellsOf(run); });
+    std::transform(runs.begin(), runs.end(), runs.begin(), [this](const CellRect& run) { return cellsOf(run); });
     return runs;
 }
 

@@ -5,6 +5,9 @@
 #include <array>
 
 #include "sand/grid/erosion_loops.hpp"
+#if defined(__wasm_simd128__)
+#include "sand/grid/erosion_loops_wasm.hpp"
+#endif
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 

@@ -91,8 +91,13 @@ struct BlockRow {
     void markSliding(const Sweep& sweep, std::span<const Run> runs, int y, Sliding* sliding);      \
     }
 SANDWALL_DECLARE_KERNEL(baseline)
+#if defined(__wasm__)
+namespace v3 = baseline;  // one version, for WebAssembly
+namespace v4 = baseline;
+#else
 SANDWALL_DECLARE_KERNEL(v3)
 SANDWALL_DECLARE_KERNEL(v4)
+#endif
 #undef SANDWALL_DECLARE_KERNEL
 
 }  // namespace sand::grid

@@ -39,6 +39,7 @@ std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
     return 0;
 }
 
+#if !defined(__wasm_simd128__)  // erosion_loops_wasm.hpp has these three loops for WebAssembly
 /// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` hold each cell's sum of two
 /// differences along the faces.
 template <class Law>
@@ -89,6 +90,7 @@ void eastwardsAndNorthwards(const Law eastLaw, const Law northLaw, const std::in
         copy[i] = ahead;
     }
 }
+#endif
 
 /// Limits each flux to the room of the cell that receives it.
 inline void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,

@@ -82,7 +82,7 @@ inline void reportShortRun(const RowBuffers& buffers, int northOfFirst, int from
         std::array<std::uint8_t, kShortBlock> columns;
         joinRows(buffers.flowed[0] + x, buffers.flowed[1] + x, buffers.flowed[2] + x, northOfFirst, kShortBlock,
                  columns.data());
-        const auto bits = std::bit_cast<std::uint64_t>(columns);
+        const auto bits = __builtin_bit_cast(std::uint64_t, columns);
         std::uint64_t joined = bits | bits >> 32;
         joined |= joined >> 16;
         joined |= joined >> 8;

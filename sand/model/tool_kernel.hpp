@@ -20,9 +20,13 @@ void undersidesOfSphere(const SphereRow& row, std::int32_t* undersides);
 /// Returns the sum of the sand above the undersides [unit]. Heights must be within ±kMaxHeight.
 std::int64_t sandAbove(const std::int32_t* undersides, const std::int32_t* heights, int count);
 }  // namespace baseline
+#if defined(__wasm__)
+namespace v3 = baseline;  // one version, for WebAssembly
+#else
 namespace v3 {
 void undersidesOfSphere(const SphereRow& row, std::int32_t* undersides);
 std::int64_t sandAbove(const std::int32_t* undersides, const std::int32_t* heights, int count);
 }  // namespace v3
+#endif
 
 }  // namespace sand

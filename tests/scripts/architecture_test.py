@@ -12,9 +12,18 @@ from launcher_fixture import ROOT
 NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-64-v3 and v4",
          "base/float_register.hpp": "reads and writes the register of the float arithmetic",
          "CMakeLists.txt": "the flags of x86-64-v3 and v4, for the inner loops",
-         "cmake/Arm64.cmake": "the cross compiler"}
-KNOWS = re.compile(r"[<\"][a-z]*intrin\.h|\b_mm[0-9]*_|__m(128|256|512)|__builtin_(cpu_|ia32_)|\basm\b|__(x86_64|aarch64|i386|arm|amd64|SSE|AVX)\w*\b|"
-                   r"-m(arch|tune|fma|avx|sse|cpu)\b|aarch64|cpuid")
+         "cmake/Arm64.cmake": "the cross compiler",
+         "base/float_environment.cpp": "WebAssembly has no such register",
+         "sand/grid/dual_kernel.hpp": "WebAssembly has one version of each kernel",
+         "sand/grid/erosion_kernel.hpp": "the same",
+         "sand/model/tool_kernel.hpp": "the same",
+         "sand/tin/flow/sweep_kernel.hpp": "the same",
+         "sand/CMakeLists.txt": "the same",
+         "sand/grid/erosion_fluxes.hpp": "chooses the loops for WebAssembly",
+         "sand/grid/erosion_loops.hpp": "leaves out the loops that it replaces",
+         "sand/grid/erosion_loops_wasm.hpp": "the loops for WebAssembly"}
+KNOWS = re.compile(r"[<\"][a-z]*intrin\.h|\b_mm[0-9]*_|__m(128|256|512)|__builtin_(cpu_|ia32_)|\basm\b|__(x86_64|aarch64|i386|arm|amd64|SSE|AVX|wasm)\w*\b|\bwasm_\w+|EMSCRIPTEN|"
+                   r"-m(simd128|arch|tune|fma|avx|sse|cpu)\b|aarch64|cpuid")
 
 
 def sources():

@@ -3,7 +3,6 @@
 #include "sand/tin/flow/sweep_kernel.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -237,10 +236,10 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
     std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double inflow = sums[2 * i], flow = sums[2 * i + 1];
-        const auto bits = std::bit_cast<std::uint64_t>(inflow + 0.0);  // minus zero counts as 0
+        const auto bits = __builtin_bit_cast(std::uint64_t, inflow + 0.0);  // minus zero counts as 0
         moved |= bits;
         beyond |= bits & unwatched[i];
-        met |= std::bit_cast<std::uint64_t>(flow) & unwatched[i];
+        met |= __builtin_bit_cast(std::uint64_t, flow) & unwatched[i];
         resting += flow > 0 ? 0 : 1;
         volumes[i] += inflow;
         levels[i] = {volumes[i] / stars[i], flow};

@@ -106,10 +106,14 @@ std::size_t slideFacets(const SweepFacets& sweep);  // returns the number of sli
 void flowOverEdges(const SweepEdges& sweep);
 SweepResult moveSand(const SweepSand& sand);
 }  // namespace baseline
+#if defined(__wasm__)
+namespace v3 = baseline;  // one version, for WebAssembly
+#else
 namespace v3 {
 std::size_t slideFacets(const SweepFacets& sweep);
 void flowOverEdges(const SweepEdges& sweep);
 SweepResult moveSand(const SweepSand& sand);
 }  // namespace v3
+#endif
 
 }  // namespace sand::tin

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -92,8 +93,10 @@ public:
     struct Piece {
         std::array<Vertex, 3> corner{};
         std::array<LatticePoint, 3> place{};
-        // clang-tidy 14 reports the 0 in the generated code. NOLINTNEXTLINE(modernize-use-nullptr)
-        friend auto operator<=>(const Piece&, const Piece&) = default;
+        friend bool operator==(const Piece&, const Piece&) = default;
+        friend bool operator<(const Piece& a, const Piece& b) {
+            return std::tie(a.corner, a.place) < std::tie(b.corner, b.place);
+        }
     };
     /// Triangles that were removed and triangles that were added since the last call, whatever their slots are. Both
     /// lists are in ascending order and cover the same ground. Recording begins with the first call, which returns an
