@@ -28,9 +28,11 @@ cross=''
 for option in "$@"; do
     case "$option" in
         --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian xdotool) ;;
+        --with-web) tools+=(emscripten nodejs npm) ;;                     # the web page; docs/web.md
+        --with-browsers) tools+=(chromium firefox-esr xauth libgl1-mesa-dri) ;; # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;
         --for-arm64) cross=arm64; tools+=(g++-aarch64-linux-gnu qemu-user) ;; # for cmake/Arm64.cmake; docs/testing.md
-        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-report] [--for-arm64]" >&2; exit 2 ;;
+        *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-web] [--with-browsers] [--with-report] [--for-arm64]" >&2; exit 2 ;;
     esac
 done
 packages=("${tools[@]}" "${libraries[@]/%/${cross:+:$cross}}")
@@ -42,6 +44,13 @@ is_installed() {
     [[ $1 != *:* ]] || architecture=${1#*:}
     dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "${1%:*}" 2>/dev/null | grep -Eqx "($architecture|all) installed"
 }
+
+# Node may have come from elsewhere with its own npm. Debian's packages would conflict with it.
+if command -v node >/dev/null && command -v npm >/dev/null; then
+    for i in "${!packages[@]}"; do
+        [[ ${packages[i]} != nodejs && ${packages[i]} != npm ]] || unset "packages[i]"
+    done
+fi
 
 missing=()
 for package in "${packages[@]}"; do

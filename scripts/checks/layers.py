@@ -233,7 +233,7 @@ def fingerprint(project):
     return hashlib.sha256(repr(sorted(project.drawn_edges())).encode()).hexdigest()[:16]
 
 
-COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#dfe8c6", "journal": "#e6dce0", "haptic_bridge": "#f2cfc4",
+COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#dfe8c6", "journal": "#e6dce0", "web": "#c9e4e4", "haptic_bridge": "#f2cfc4",
            "lockstep": "#cfdcef", "master": "#d9d0ea", "render_node": "#c9e4e4"}
 
 

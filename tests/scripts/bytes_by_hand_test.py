@@ -15,7 +15,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. base/ has the reader, the writer, and the forms of members.
 FOLDERS = ("bench", "examples", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene",
-           "tracking", "walls")
+           "tracking", "walls", "web")
 RECORD = "docs/decisions/values_described_once.md"
 MOST = 15
 

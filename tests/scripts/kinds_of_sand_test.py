@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that few files know whether sand is a height field or a TIN, and that a further file is found.
 
-Sand is read as sand::SurfaceData. The four files in PLACES select one of its two alternatives, to make something of the
+Sand is read as sand::SurfaceData. The five files in PLACES select one of its two alternatives, to make something of the
 sand or to take something from it. All other code calls Surface, Replica, Start, FieldSize, Rules or DrawnSurface.
 
 Outside sand/ and the two folders that draw it, a file knows a kind if it names something of one kind: a folder, a
@@ -18,14 +18,15 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
-FOLDERS = ("base", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls")
+FOLDERS = ("base", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls", "web")
 
-# The four places that may ask for the kind.
+# The five places that may ask for the kind.
 PLACES = {
     "sand/surface_factory.cpp": "makes the sand that a replica starts with, and a start of sand",
     "render_node/surface_factory.cpp": "makes the object that draws it",
     "sand/force/surface_patch.cpp": "takes the part that a hand feels",
     "scene/export/results.cpp": "takes rasters and triangles from it",
+    "web/drawn_sand.cpp": "takes heights or triangles for a page",
 }
 # Code of one kind of sand. It may use its own alternative, and throws if it gets the other one.
 KINDS = {
@@ -63,8 +64,9 @@ KNOWING = {
     "scene/relax/steepness.cpp": "slopes by the flux limits of a height field",
     "scene/relax/tin_sand.cpp": "makes a TIN of a file",
     "scene/relax/tin_sand.hpp": "declares this",
+    "web/drawn_sand.cpp": "takes heights or triangles for a page",
 }
-MOST_KNOWING = 22
+MOST_KNOWING = 23
 
 ALTERNATIVE = re.compile(r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Grid|Tin)(?:Data|Change)\b|"
                          r"\b(?:get|get_if|holds_alternative|in_place_type)\s*<\s*(?:sand::)?(Cell)Change\b")
@@ -121,7 +123,7 @@ def knowing(files):
 class KindsOfSand(unittest.TestCase):
     files = sources()
 
-    def test_four_places_tell_a_height_field_from_a_tin(self):
+    def test_five_places_tell_a_height_field_from_a_tin(self):
         found = {path: questions(path, text) for path, text in self.files.items() if questions(path, text)}
         more = {path: asked for path, asked in found.items() if path not in PLACES}
         self.assertEqual(more, {}, "call Surface, Replica or DrawnSurface, which know the kind of sand")

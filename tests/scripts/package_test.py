@@ -71,7 +71,7 @@ class Package(unittest.TestCase):
 
     def test_every_command_has_a_man_page(self):
         pages = self.prefix / "share" / "man" / "man1"
-        for name in ("sandwall", "sandwall-run", "sandwall-try", "sandwall-ctl", "sandwall-film", "sandwall-doctor", "sandwall-replay", "sandwall-master"):
+        for name in ("sandwall", "sandwall-run", "sandwall-try", "sandwall-ctl", "sandwall-film", "sandwall-doctor", "sandwall-web", "sandwall-replay", "sandwall-master"):
             text = called("gzip", "-dc", pages / f"{name}.1.gz").stdout
             for part in (".SH NAME", "SYNOPSIS", "--help"):
                 self.assertIn(part, text.replace("\\-", "-"), name)

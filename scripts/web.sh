@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Builds the web page as static files in build/web/page. docs/web.md
+#
+# usage: scripts/web.sh             installs what web/package-lock.json names, and builds all
+#        scripts/web.sh --replica   builds only the replica for WebAssembly; fetches nothing
+#        scripts/web.sh --missing   prints what --replica would miss and succeeds; fails if nothing is missing
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+missing() {
+    command -v emcmake >/dev/null || { echo "emscripten is missing; scripts/install_dependencies.sh --with-web"; return; }
+    command -v node >/dev/null || { echo "node is missing; scripts/install_dependencies.sh --with-web"; return; }
+    [[ -d web/node_modules/zstd-napi/deps/zstd/lib ]] || { echo "web/node_modules is missing; scripts/web.sh"; return; }
+    return 1
+}
+
+build_replica() {
+    local launcher=()
+    if command -v ccache >/dev/null; then
+        # ccache does not know em++ by its name. Its flags are those of clang.
+        export CCACHE_COMPILERTYPE=clang CCACHE_BASEDIR=$PWD CCACHE_NOHASHDIR=1
+        launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+    fi
+    # Debian's emscripten finds its JavaScript parser here.
+    export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
+    emcmake cmake -S . -B build/web -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "${launcher[@]}" >/dev/null
+    cmake --build build/web --parallel "$(nproc)" --target replica
+}
+
+case ${1:-} in
+    --missing) missing ;;
+    --replica) build_replica ;;
+    '')
+        (cd web && npm ci --ignore-scripts)
+        build_replica
+        page=build/web/page
+        mkdir -p "$page"
+        (cd web && node build.mjs "../$page")
+        cp build/web/bin/replica.mjs build/web/bin/replica.wasm "$page"
+        echo "$page: the page"
+        ;;
+    *) echo "usage: scripts/web.sh [--replica|--missing]" >&2; exit 2 ;;
+esac

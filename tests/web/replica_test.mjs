@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Replays sessions with the page's replica in node, and compares their hashes with those that the native program wrote.
+// usage: node replica_test.mjs REPLICA_FOLDER SESSIONS LIST. Prints a line for each session; fails at a difference.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import { pathToFileURL } from "node:url";
+
+const [build, folder, list] = process.argv.slice(2);
+const makeReplica = (await import(pathToFileURL(path.resolve(build, "replica.mjs")))).default;
+const wasmBinary = fs.readFileSync(path.join(build, "replica.wasm"));
+const replica = await makeReplica({ wasmBinary });
+const textAt = (address) => replica.UTF8ToString(address);
+
+function withText(text, call) {
+    const bytes = new TextEncoder().encode(text + "\0");
+    const at = replica._malloc(bytes.length);
+    replica.HEAPU8.set(bytes, at);
+    const result = call(at);
+    replica._free(at);
+    return result;
+}
+
+/** Opens parts. Returns "" or the sentence of the refusal. */
+function open(name, parts) {
+    replica._sw_begin();
+    for (const part of parts) {
+        const at = replica._sw_add_part(part.length);
+        replica.HEAPU8.set(part, at);
+    }
+    return withText(name, (at) => replica._sw_open(at)) === 0 ? "" : textAt(replica._sw_problem());
+}
+
+function partsOf(file, count) {
+    const names = [file, ...Array.from({ length: count - 1 }, (_, i) => `${file}.${i + 2}`)];
+    return names.map((name) => fs.readFileSync(path.join(folder, name)));
+}
+
+function keep() {
+    const length = replica._sw_state();
+    assert.ok(length > 0, textAt(replica._sw_problem()));
+    return replica.HEAPU8.slice(replica._sw_state_bytes(), replica._sw_state_bytes() + length);
+}
+
+function restore(state) {
+    replica.HEAPU8.set(state, replica._sw_room_for_state(state.length));
+    assert.equal(replica._sw_restore(), 0, textAt(replica._sw_problem()));
+}
+
+function replay(file, count, steps, hashes, hash) {
+    assert.equal(open(file, partsOf(file, count)), "");
+    assert.equal(textAt(replica._sw_shortcoming()), "");
+    assert.equal(replica._sw_last_step(), steps, file);
+    assert.equal(replica._sw_hashes(), hashes, file);
+    const started = process.cpuUsage();
+    let middle = null;
+    while (replica._sw_advance() === 1) {
+        if (middle === null && replica._sw_step() >= steps / 2) {
+            middle = { step: replica._sw_step(), hash: textAt(replica._sw_hash()), state: keep() };
+        }
+    }
+    const spent = process.cpuUsage(started), ms = (spent.user + spent.system) / 1000 / steps;
+    assert.equal(replica._sw_mismatches(), 0, file);
+    assert.equal(replica._sw_matches(), hashes, file);
+    assert.equal(replica._sw_step(), steps, file);
+    assert.equal(textAt(replica._sw_hash()), hash, file);
+    // Back to the middle and forwards again. The hashes are compared again, and counted once.
+    restore(middle.state);
+    assert.equal(replica._sw_step(), middle.step);
+    assert.equal(textAt(replica._sw_hash()), middle.hash);
+    while (replica._sw_step_on() === 1) {}
+    assert.equal(textAt(replica._sw_hash()), hash, `${file}, from the middle`);
+    assert.deepEqual([replica._sw_matches(), replica._sw_mismatches()], [hashes, 0], file);
+    console.log(`${file}: ${hashes} of ${hashes} hashes, ${hash}, ${ms.toFixed(2)} ms of processor a step`);
+}
+
+const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" "));
+assert.ok(sessions.length > 5);
+for (const [file, count, steps, hashes, hash] of sessions) {
+    replay(file, Number(count), Number(steps), Number(hashes), hash);
+}
+
+// Bad files leave the session before open.
+const [file, count, steps] = sessions.at(-1);
+const last = textAt(replica._sw_hash());
+const good = partsOf(file, Number(count));
+const changed = (at, to) => { const bytes = Buffer.from(good[0]); bytes[at] = to; return [bytes]; };
+assert.match(open("x", [Buffer.alloc(0)]), /^x: is empty/);
+assert.match(open("x", [Buffer.from("no journal at all")]), /^x: not a Sandwall journal file/);
+assert.match(open("x", changed(4, 77)), /^x: written by sandwall 1\.2\.3 .* A page cannot run another release/);
+assert.match(open("x", changed(60, good[0][60] ^ 1)), /^x: its header is cut off or damaged/);
+assert.equal(textAt(replica._sw_hash()), last);
+// A torn tail and damage in the middle open up to there.
+assert.equal(open(file, [good[0].subarray(0, good[0].length - 3)]), "");
+assert.match(textAt(replica._sw_shortcoming()), /bytes are an incomplete write/);
+const middle = Math.floor(good[0].length * 0.98);
+assert.equal(open(file, changed(middle, good[0][middle] ^ 1)), "");
+assert.match(textAt(replica._sw_shortcoming()), /damaged at byte [0-9]+ of/);
+assert.ok(replica._sw_last_step() > 0 && replica._sw_last_step() < Number(steps), "some steps are intact");
+while (replica._sw_advance() === 1) {}
+assert.equal(replica._sw_mismatches(), 0);
+
+
+console.log(`${sessions.length} sessions equal the native program's`);

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes sessions for the test of the page's replica: the sample scenes, rock with walls, and every tool and edit.
+// usage: session_files FOLDER. Prints a line for each: FILE PARTS STEPS HASHES HASH.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "sand/grid/dunes.hpp"
+#include "sand/surface_factory.hpp"
+#include "scene/load/scene_file.hpp"
+#include "tests/journal/journal_in_memory.hpp"
+
+namespace {
+
+/// A session that is computed as it is written.
+class Written {
+public:
+    explicit Written(const scene::Scene& scene) : scene_(scene), sand_(scene_), journal_(scene_) {}
+
+    /// Adds a frame with `count` steps.
+    void frame(int count, const std::function<sand::Step(std::uint64_t)>& make) {
+        journal::JournalFrame frame{++frame_, sand_.stateHash(), {}};
+        ++hashes_;
+        for (int i = 0; i < count; ++i) {
+            frame.steps.push_back(make(sand_.stepNumber() + 1));
+            frame.steps.back().epoch = 1;
+            sand_.apply(frame.steps.back());
+        }
+        journal_.add(frame);
+    }
+    void resume() {
+        journal_.add(journal::JournalResumed{frame_, here(), 0, "a test"});
+        ++hashes_;
+    }
+    void beginPart() { journal_.beginPart(here()); }
+    void end(const std::filesystem::path& file) {
+        journal_.add(here());
+        ++hashes_;
+        for (std::size_t part = 0; part < journal_.parts().size(); ++part) {
+            std::ofstream stream(part == 0 ? file.string() : fmt::format("{}.{}", file.string(), part + 1),
+                                 std::ios::binary);
+            const base::Bytes& bytes = journal_.parts()[part];
+            stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        }
+        fmt::print("{} {} {} {} {:016x}\n", file.filename().string(), journal_.parts().size(), sand_.stepNumber(),
+                   hashes_, sand_.stateHash());
+    }
+    [[nodiscard]] sand::Replica& sand() { return sand_; }
+    [[nodiscard]] const scene::Scene& scene() const { return scene_; }
+
+private:
+    [[nodiscard]] journal::JournalEnd here() { return {sand_.stepNumber(), sand_.stateHash()}; }
+
+    scene::Scene scene_;
+    sand::Replica sand_;
+    test::JournalInMemory journal_;
+    std::uint64_t frame_ = 0, hashes_ = 0;
+};
+
+/// A hand that draws loops through the middle of the field, half a radius deep. It lifts the tool every two seconds.
+sand::Step loops(Written& session, std::uint64_t number) {
+    sand::Step step{.number = number, .engaged = number % 120 < 100, .path = {}};
+    const sand::Rules& rules = session.sand().rules();
+    const auto heights = sand::startHeights(session.scene());
+    for (int i = 1; i <= 4; ++i) {
+        const double t = (static_cast<double>(number) + 0.25 * i) / 60;
+        const double x = rules.columns * (0.5 + 0.3 * std::cos(1.1 * t)),
+                     y = rules.rows * (0.5 + 0.3 * std::sin(1.7 * t));
+        sand::ProbePoint point{sand::probeCoordinate(x), sand::probeCoordinate(y), 0};
+        point.z = static_cast<std::int32_t>(heights(point.x, point.y) / sand::kUnitsPerCell * sand::kProbePerCell) +
+                  rules.tuning.tool.radius / 2;
+        step.path.push_back(point);
+    }
+    return step;
+}
+
+/// Adds one of every edit in turn.
+void edit(Written& session, sand::Step& step, base::Bytes& saved) {
+    switch (step.number % 60) {
+        case 15:
+            step.edit = sand::Edit::settle;
+            break;
+        case 25:
+            saved = session.sand().copySand()->encode();
+            step.edit = sand::Edit::undo;
+            break;
+        case 40:
+            step.edit = sand::Edit::loaded(saved);
+            break;
+        case 50: {
+            sand::Tuning tuning = session.sand().rules().tuning;
+            tuning.tool.radius = tuning.tool.radius * 3 / 4;
+            step.edit = sand::Edit::tuned(tuning);
+            break;
+        }
+        case 55:
+            step.edit = sand::Edit::reset;
+            break;
+        default:
+            return;
+    }
+    step.edit.number = step.number;
+}
+
+void sampleScene(const std::string& name, const std::filesystem::path& folder) {
+    Written session(scene::loadScene("scenes/" + name + ".toml"));
+    for (int frame = 0; frame < 45; ++frame) {
+        session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
+    }
+    session.end(folder / (name + ".journal"));
+}
+
+void everyEdit(const std::string& name, const scene::Scene& scene, const std::filesystem::path& folder) {
+    Written session(scene);
+    base::Bytes saved;
+    for (int frame = 0; frame < 60; ++frame) {
+        session.frame(1 + frame % 2, [&](std::uint64_t number) {
+            sand::Step step = loops(session, number);
+            edit(session, step, saved);
+            return step;
+        });
+        if (frame == 20 || frame == 40) {
+            session.beginPart();
+        }
+        if (frame == 30) {
+            session.resume();
+        }
+    }
+    session.end(folder / (name + ".journal"));
+}
+
+/// Rock that is bare in places, walls, a band, long cells and an open rim, with every tool.
+void everyTool(const std::filesystem::path& folder) {
+    scene::Scene scene = samples::flatScene(97, 61, 6);
+    sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
+    auto ground = std::make_shared<sand::Ground>(scene.terrain.columns(), scene.terrain.rows());
+    for (int y = 0; y < scene.terrain.rows(); ++y) {
+        for (int x = 0; x < scene.terrain.columns(); ++x) {
+            if (x > 30 && x < 42 && y > 20 && y < 25) {
+                ground->setWall(x, y);
+            } else {
+                ground->setBedrock(x, y, std::min(scene.terrain.height(x, y), (x - 20) * sand::kUnitsPerCell / 8));
+            }
+        }
+    }
+    scene.ground = ground;
+    scene.rules.ground = ground->digest();
+    scene.rules.aspect = 3 * sand::kUnitsPerCell / 4;
+    scene.rules.tuning.startThreshold = sand::kUnitsPerCell + sand::kUnitsPerCell / 10;
+    scene.rules.rim = sand::Rim::open;
+    Written session(scene);
+    std::mt19937 random(73);
+    for (int frame = 0; frame < 200; ++frame) {
+        session.frame(1, [&](std::uint64_t number) { return samples::wildStep(number, scene.rules, random); });
+    }
+    session.end(folder / "every_tool.journal");
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    if (count != 2) {
+        fmt::print(stderr, "usage: session_files FOLDER\n");
+        return 2;
+    }
+    const std::filesystem::path folder = arguments[1];
+    for (const char* const name : {"writing", "dunes", "gis_tin", "footprints"}) {
+        sampleScene(name, folder);
+    }
+    everyEdit("edits_of_a_grid", scene::loadScene("scenes/stroke.toml"), folder);
+    everyEdit("edits_of_a_tin", scene::loadScene("scenes/gis_tin.toml"), folder);
+    everyTool(folder);
+    return 0;
+}

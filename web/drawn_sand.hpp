@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sand/model/surface.hpp"
+
+namespace web {
+
+/// The sand as a page draws it: a grid's heights, or a TIN's triangles.
+struct DrawnSand {
+    bool meshed = false;
+    std::vector<std::int32_t> heights;  // of a grid, row by row from the south-west [unit]
+    std::vector<float> places;          // of a TIN's vertices: x, y, z [cell]
+    std::vector<std::int32_t> corners;  // of a TIN's triangles
+
+    /// Takes all of `surface`.
+    void take(const sand::Surface& surface);
+};
+
+}  // namespace web

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What page and worker tell each other. All buffers are transferred.
+
+export type ToWorker =
+    | { open: { name: string; parts: ArrayBuffer[] } }
+    | { seek: number }
+    | { play: number }     // steps per second; negative: backwards; 0: stop
+    | { shown: true };     // the page has drawn a frame, and may get the next
+
+export interface SessionMessage {
+    kind: "session";
+    file: string;
+    name: string;
+    shortcoming: string;
+    tin: boolean;
+    columns: number;
+    rows: number;
+    cell: number;              // scene unit
+    stepsPerSecond: number;
+    lastStep: number;
+    hashes: number;
+    marks: Int32Array;         // pairs of a step and its kind: 0 is a stroke, 1 to 5 are edits, 6 is a resume
+    look: Float32Array;        // RGB of sand and background, direction to the sun
+}
+
+export interface FrameMessage {
+    kind: "frame";
+    step: number;
+    tool: Float32Array;        // x, y, z, radius [cell], engaged
+    heights?: Int32Array;      // of a grid [unit]
+    places?: Float32Array;     // of a TIN [cell]
+    corners?: Uint32Array;
+}
+
+/** `step` and `hash` are of the newest step that was computed. */
+export interface ProgressMessage {
+    kind: "progress";
+    step: number;
+    hash: string;
+    matches: number;
+    mismatches: number;
+    passed: boolean;           // whether the first pass has ended
+    keyframes: number;
+    keyframeBytes: number;
+    heapBytes: number;
+}
+
+export interface ProblemMessage {
+    kind: "problem";
+    text: string;
+}
+
+export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage;

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "web/page_session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "journal/journal.hpp"
+#include "web/memory_parts.hpp"
+
+namespace web {
+namespace {
+
+constexpr double kMebibyte = 1 << 20;
+
+/// Throws base::InputError if the sand cannot fit, before any height is made.
+void requireMemory(const journal::JournalReader& reader, std::int64_t memory) {
+    const sand::FieldSize size = sand::FieldSize::of(journal::rulesOf(reader));
+    if (size.leastBytes() > memory) {
+        throw base::InputError(
+            fmt::format("{}: {} need at least {:.0f} MiB, and a page has {:.0f} MiB; use sandwall-replay on a computer",
+                        reader.place().journal, size.text(), static_cast<double>(size.leastBytes()) / kMebibyte,
+                        static_cast<double>(memory) / kMebibyte));
+    }
+}
+
+/// Throws base::InputError, with what a page can do, if another release wrote the journal.
+void requireOurs(const std::string& name, const std::vector<base::Bytes>& parts, std::string_view release) {
+    try {
+        base::ByteReader reader(parts.at(0));
+        std::uint64_t chain = 0;
+        (void)journal::decodeHeader(reader, release, chain);
+    } catch (const journal::ForeignFile& error) {
+        const std::string why = error.what();
+        const std::size_t advice = why.rfind(": ");
+        throw base::InputError(
+            advice == std::string::npos
+                ? fmt::format("{}: {}", name, why)
+                : fmt::format("{}: {}. A page cannot run another release; open it with the page of that release", name,
+                              why.substr(0, advice)));
+    } catch (const base::FormatError&) {
+        return;  // the reader says more about it
+    }
+}
+
+}  // namespace
+
+PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::string_view release,
+                         std::int64_t memory)
+    : name_(std::move(name)) {
+    if (parts.empty()) {
+        throw base::InputError(name_ + ": has no part");
+    }
+    requireOurs(name_, parts, release);
+    journal::JournalReader reader(std::make_unique<MemoryParts>(name_, std::move(parts)), release);
+    requireMemory(reader, memory);
+    scene_ = journal::sceneOf(reader);
+    read(reader);
+    verification_.emplace(name_, sand::Replica(scene_));
+}
+
+void PageSession::read(journal::JournalReader& reader) {
+    bool ended = false;
+    try {
+        while (auto record = reader.next()) {
+            ended = std::holds_alternative<journal::JournalEnd>(*record);
+            note(*record);
+        }
+        if (reader.tornBytes() > 0) {
+            shortcoming_ =
+                fmt::format("The last {} bytes are an incomplete write and were left out", reader.tornBytes());
+        } else if (!ended) {
+            shortcoming_ = "It has no orderly end: the session was cut off, or still runs";
+        }
+    } catch (const base::InputError& error) {
+        shortcoming_ = error.what();
+    }
+}
+
+void PageSession::note(journal::JournalRecord& record) {
+    if (auto* const ticks = std::get_if<journal::JournalTicks>(&record)) {
+        ticks->piece = {};  // a page shows no forces
+    }
+    records_.push_back(std::move(record));
+    const journal::JournalRecord& kept = records_.back();
+    if (const auto* const frame = std::get_if<journal::JournalFrame>(&kept)) {
+        noteSteps(*frame);
+    } else if (std::holds_alternative<journal::JournalResumed>(kept)) {
+        ++hashes_;
+        marks_.push_back({lastStep_, Mark::Kind::resumed});
+    } else if (std::holds_alternative<journal::JournalEnd>(kept) ||
+               std::holds_alternative<journal::JournalChecked>(kept)) {
+        ++hashes_;
+    }
+}
+
+void PageSession::noteSteps(const journal::JournalFrame& frame) {
+    if (frame.steps.empty()) {
+        return;
+    }
+    hashes_ += frame.doubted ? 0 : 1;
+    frames_.push_back({frame.steps.front().number, records_.size() - 1});
+    for (const sand::Step& step : frame.steps) {
+        if (step.engaged && !engaged_) {
+            marks_.push_back({step.number, Mark::Kind::stroke});
+        }
+        engaged_ = step.engaged;
+        if (step.edit.kind != sand::Edit::none) {
+            marks_.push_back({step.number, static_cast<Mark::Kind>(step.edit.kind)});
+        }
+        lastStep_ = step.number;
+    }
+}
+
+bool PageSession::advance() {
+    if (passed()) {
+        return false;
+    }
+    verification_->take(records_[next_++]);
+    return true;
+}
+
+std::uint64_t PageSession::matches() const { return counts().hashes - mismatches(); }
+
+std::uint64_t PageSession::mismatches() const { return counts().differing + differedAgain_.size(); }
+
+bool PageSession::stepOn() {
+    const std::uint64_t step = replica().stepNumber() + 1;
+    const auto after =
+        std::upper_bound(frames_.begin(), frames_.end(), step,
+                         [](std::uint64_t number, const FirstStep& frame) { return number < frame.step; });
+    if (step > lastStep_ || after == frames_.begin()) {
+        return false;
+    }
+    const auto& frame = std::get<journal::JournalFrame>(records_[std::prev(after)->record]);
+    const std::uint64_t first = frame.steps.front().number;
+    if (step == first && !frame.doubted) {
+        compareAgain(frame.hashBefore);
+    }
+    replica().apply(frame.steps.at(static_cast<std::size_t>(step - first)));
+    if (counts().end && counts().end->step == step) {
+        compareAgain(counts().end->hash);
+    }
+    return true;
+}
+
+void PageSession::compareAgain(std::uint64_t hash) {
+    const std::uint64_t step = replica().stepNumber();
+    const bool known = std::find(differedAgain_.begin(), differedAgain_.end(), step) != differedAgain_.end();
+    if (replica().stateHash() != hash && counts().differing == 0 && !known) {
+        differedAgain_.push_back(step);
+    }
+}
+
+}  // namespace web

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions that web/worker.ts calls: one session at a time. Functions that can fail return -1, and sw_problem()
+// then has the sentence for the user. Pointers stay valid until the next call that changes what they name.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "web/drawn_sand.hpp"
+#include "web/page_session.hpp"
+
+#if defined(__EMSCRIPTEN__)
+#include <emscripten.h>
+#define API extern "C" EMSCRIPTEN_KEEPALIVE
+#else  // only compiled
+#define API extern "C"
+#endif
+
+namespace {
+
+// A 32-bit heap that may grow to 2 GiB, less what journal and states take.
+constexpr std::int64_t kMemory = std::int64_t{1536} << 20;
+
+std::vector<base::Bytes> parts;
+std::unique_ptr<web::PageSession> session;
+std::vector<std::int32_t> marks;
+web::DrawnSand drawn;
+base::Bytes state;
+std::string problem, text;
+
+template <class Work>
+int guarded(Work&& work) {
+    try {
+        return work();
+    } catch (const std::bad_alloc&) {
+        problem = "This page has no more memory";
+    } catch (const std::exception& error) {
+        problem = error.what();
+    }
+    return -1;
+}
+
+}  // namespace
+
+API const char* sw_problem() { return problem.c_str(); }
+
+/// Drops the parts of a journal that was not opened.
+API void sw_begin() { parts.clear(); }
+/// Adds the next part of a journal. Returns where its bytes go.
+API std::uint8_t* sw_add_part(std::uint32_t size) {
+    parts.emplace_back(size);
+    return parts.back().data();
+}
+/// Opens the journal of all parts. If it fails, the session before stays open.
+API int sw_open(const char* name) {
+    return guarded([name] {
+        auto opened =
+            std::make_unique<web::PageSession>(name, std::exchange(parts, {}), SANDWALL_RELEASE_NAME, kMemory);
+        session = std::move(opened);
+        marks.clear();
+        for (const web::Mark& mark : session->marks()) {
+            marks.push_back(static_cast<std::int32_t>(mark.step));
+            marks.push_back(static_cast<std::int32_t>(mark.kind));
+        }
+        return 0;
+    });
+}
+
+API const char* sw_name() { return session->scene().name.c_str(); }
+API const char* sw_shortcoming() { return session->shortcoming().c_str(); }
+API int sw_columns() { return session->scene().rules.columns; }
+API int sw_rows() { return session->scene().rules.rows; }
+API double sw_cell_size() { return session->replica().cellSize(); }  // [scene unit]
+API int sw_steps_per_second() { return session->scene().rules.stepsPerSecond; }
+API int sw_last_step() { return static_cast<int>(session->lastStep()); }
+API int sw_hashes() { return static_cast<int>(session->hashes()); }
+/// Pairs of a step and a web::Mark::Kind.
+API const std::int32_t* sw_marks() { return marks.data(); }
+API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
+/// Linear-light RGB of sand and of background, and the direction to the sun.
+API const float* sw_look() {
+    static std::vector<float> look;
+    look.clear();
+    const scene::Look& from = session->scene().look;
+    for (const auto* triple : {&from.sandColour, &from.backgroundColour, &from.sunDirection}) {
+        look.insert(look.end(), triple->begin(), triple->end());
+    }
+    return look.data();
+}
+
+/// Takes the next record of the first pass. Returns 1, or 0 behind the last one.
+API int sw_advance() {
+    return guarded([] { return session->advance() ? 1 : 0; });
+}
+/// Applies the next step after the first pass. Returns 1, or 0 behind the last one.
+API int sw_step_on() {
+    return guarded([] { return session->stepOn() ? 1 : 0; });
+}
+API int sw_step() { return static_cast<int>(session->replica().stepNumber()); }
+API int sw_matches() { return static_cast<int>(session->matches()); }
+API int sw_mismatches() { return static_cast<int>(session->mismatches()); }
+API const char* sw_hash() {
+    text = fmt::format("{:016x}", session->replica().stateHash());
+    return text.c_str();
+}
+
+/// Encodes the whole state. Returns its length [byte]; the bytes are at sw_state_bytes().
+API int sw_state() {
+    return guarded([] {
+        state = session->replica().encodeState();
+        return static_cast<int>(state.size());
+    });
+}
+API const std::uint8_t* sw_state_bytes() { return state.data(); }
+/// Makes room for a state, which sw_restore() then puts back.
+API std::uint8_t* sw_room_for_state(std::uint32_t size) {
+    state.resize(size);
+    return state.data();
+}
+API int sw_restore() {
+    return guarded([] {
+        session->replica().decodeState(state);
+        return 0;
+    });
+}
+
+/// Takes the present sand to draw it. Returns 1 for a TIN, 0 for a grid.
+API int sw_draw() {
+    drawn.take(session->replica().surface());
+    return drawn.meshed ? 1 : 0;
+}
+API const std::int32_t* sw_heights() { return drawn.heights.data(); }
+API const float* sw_places() { return drawn.places.data(); }
+API int sw_vertices() { return static_cast<int>(drawn.places.size() / 3); }
+API const std::int32_t* sw_corners() { return drawn.corners.data(); }
+API int sw_triangles() { return static_cast<int>(drawn.corners.size() / 3); }
+/// Centre x, y, z and radius of the tool [cell], and 1 if it is engaged.
+API const float* sw_tool() {
+    static float tool[5];
+    const sand::ProbePoint probe = session->replica().probe();
+    const double numbers[5]{probe.x / double{sand::kProbePerCell}, probe.y / double{sand::kProbePerCell},
+                            probe.z / double{sand::kProbePerCell},
+                            session->replica().tool().radius / double{sand::kProbePerCell},
+                            session->replica().engaged() ? 1.0 : 0.0};
+    std::copy(numbers, numbers + 5, tool);
+    return tool;
+}

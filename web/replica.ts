@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// The replica's C functions (replica.cpp) as a class.
+
+type Module = Record<string, any>;
+
+export class Replica {
+    private constructor(private readonly wasm: Module) {}
+
+    static async load(): Promise<Replica> {
+        // The glue is not bundled, because it finds replica.wasm beside itself.
+        const address = new URL("./replica.mjs", self.location.href).href;
+        const made = await import(/* @vite-ignore */ address);
+        return new Replica(await made.default());
+    }
+
+    private text(address: number): string { return this.wasm.UTF8ToString(address); }
+    private require(result: number): number {
+        if (result < 0) {
+            throw new Error(this.text(this.wasm._sw_problem()));
+        }
+        return result;
+    }
+    private floats(at: number, count: number): Float32Array { return this.wasm.HEAPF32.slice(at >> 2, (at >> 2) + count); }
+    private ints(at: number, count: number): Int32Array { return this.wasm.HEAP32.slice(at >> 2, (at >> 2) + count); }
+
+    /** Opens a journal. If it cannot be read, throws the sentence for the user, and the session before stays open. */
+    open(name: string, parts: ArrayBuffer[]): void {
+        this.wasm._sw_begin();
+        for (const part of parts) {
+            const at = this.wasm._sw_add_part(part.byteLength);
+            this.wasm.HEAPU8.set(new Uint8Array(part), at);
+        }
+        const bytes = new TextEncoder().encode(name + "\0");
+        const at = this.wasm._malloc(bytes.length);
+        this.wasm.HEAPU8.set(bytes, at);
+        const result = this.wasm._sw_open(at);
+        this.wasm._free(at);
+        this.require(result);
+    }
+    session() {
+        const w = this.wasm;
+        return {
+            name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
+            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(),
+            marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()), look: this.floats(w._sw_look(), 9),
+        };
+    }
+    advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
+    stepOn(): boolean { return this.require(this.wasm._sw_step_on()) === 1; }
+    get step(): number { return this.wasm._sw_step(); }
+    get hash(): string { return this.text(this.wasm._sw_hash()); }
+    get matches(): number { return this.wasm._sw_matches(); }
+    get mismatches(): number { return this.wasm._sw_mismatches(); }
+    get heapBytes(): number { return this.wasm.HEAPU8.length; }
+
+    state(): ArrayBuffer {
+        const length = this.require(this.wasm._sw_state());
+        const at = this.wasm._sw_state_bytes();
+        return this.wasm.HEAPU8.slice(at, at + length).buffer;
+    }
+    restore(state: ArrayBuffer): void {
+        const at = this.wasm._sw_room_for_state(state.byteLength);
+        this.wasm.HEAPU8.set(new Uint8Array(state), at);
+        this.require(this.wasm._sw_restore());
+    }
+    sand(columns: number, rows: number): { heights?: Int32Array; places?: Float32Array; corners?: Uint32Array } {
+        const w = this.wasm;
+        if (w._sw_draw() === 0) {
+            return { heights: this.ints(w._sw_heights(), columns * rows) };
+        }
+        return {
+            places: this.floats(w._sw_places(), 3 * w._sw_vertices()),
+            corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
+        };
+    }
+    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 5); }
+}
