@@ -18,7 +18,7 @@ let wanted = 0;               // step to show, after the first pass
 let rate = 0;                 // steps per second
 let playedAt = 0, playedFrom = 0;
 let mayShow = true, shownStep = -1;
-let lastProgress = -kProgressMs;
+let lastProgress = -kProgressMs, toldStep = -1;
 let working = false;
 
 function tell(message: FromWorker, buffers: Transferable[] = []): void {
@@ -28,6 +28,7 @@ function tell(message: FromWorker, buffers: Transferable[] = []): void {
 function tellProgress(now: number): void {
     const it = replica!;
     lastProgress = now;
+    toldStep = passed ? it.step : -1;
     tell({ kind: "progress", step: it.step, hash: it.hash, matches: it.matches, mismatches: it.mismatches, passed,
            keyframes: keyframes.count, keyframeBytes: keyframes.bytes, heapBytes: it.heapBytes });
 }
@@ -105,7 +106,7 @@ function work(): void {
             }
         }
         const now = performance.now();
-        if (now - lastProgress >= kProgressMs || (passed && rests)) {
+        if (toldStep !== replica.step && ((passed && rests) || now - lastProgress >= kProgressMs)) {
             tellProgress(now);
         }
         if (!rests || replica.step !== shownStep) {
@@ -142,7 +143,7 @@ async function open(name: string, parts: ArrayBuffer[]): Promise<void> {
     keyframes.passed(0, 0, () => replica!.state());
     passed = false;
     rate = 0;
-    shownStep = -1;
+    shownStep = toldStep = -1;
     mayShow = true;
     const sand = replica.sand(opened.columns, opened.rows);
     tell({ kind: "session", file: name, tin: sand.heights === undefined, ...opened });
