@@ -75,6 +75,11 @@ public:
     }
 
     [[nodiscard]] glm::ivec2 size(std::size_t window) const override { return windows_.at(window).pixels(); }
+    // Without a swap, Mesa's software renderer asks for the size of a window only when its context is bound again.
+    void resizeBuffer(std::size_t window) override {
+        glfwMakeContextCurrent(nullptr);
+        makeCurrent(window);
+    }
     [[nodiscard]] bool takeExposed(std::size_t window) override { return windows_.at(window).takeExposed(); }
     [[nodiscard]] bool keepsPicture(std::size_t window) const override { return parts_.at(window).has_value(); }
 

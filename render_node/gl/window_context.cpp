@@ -81,6 +81,10 @@ public:
         inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
         for (std::size_t i = windows_.size(); i-- > 0;) {
             const bool resized = sizeOf(i) != std::exchange(sizes_[i], sizeOf(i));
+            if (resized) {
+                platform_->resizeBuffer(i);
+                platform_->makeCurrent(0);
+            }
             const bool fits = glm::ivec2(outputs[i].picture->width(), outputs[i].picture->height()) == sizes_[i];
             const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr && !resized && fits;
             changed_[i] = around(changed_[i], inPart ? changed : allPixels(sizes_[i]));
@@ -139,8 +143,6 @@ private:
         glDisable(GL_SCISSOR_TEST);
         glBindFramebuffer(GL_READ_FRAMEBUFFER, readers_[window]);
         glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
-        // Mesa's software renderer asks for the size of a window only when the viewport is set.
-        glViewport(0, 0, sizes_[window].x, sizes_[window].y);
         for (std::size_t i = 0; i < copies.size(); ++i) {
             const EyeTarget& picture = *copies[i].picture;
             const glm::ivec2 size = sizes_[window];

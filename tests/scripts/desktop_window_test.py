@@ -42,6 +42,7 @@ z = "0.2 + 1.0*exp(-8*((x-1)^2 + (y-1.7)^2))"
 x = [0.0, 2.0]
 y = [0.0, 2.0]
 [material]
+talus_deg = 80  # the mountain does not slide
 [tool]
 radius = 0.05
 """
