@@ -3,6 +3,7 @@
 // usage: session_files FOLDER. Prints a line for each: FILE PARTS STEPS HASHES HASH.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -67,6 +68,8 @@ private:
 sand::Step loops(Written& session, std::uint64_t number) {
     sand::Step step{.number = number, .engaged = number % 120 < 100, .path = {}};
     const sand::Rules& rules = session.sand().rules();
+    // Some steps owe half of their sweeps, and later ones pay them.
+    step.sweeps = std::min(rules.tuning.sweepsPerStep / (number % 3 == 0 ? 2 : 1), rules.sweepRange().most);
     const auto heights = sand::startHeights(session.scene());
     for (int i = 1; i <= 4; ++i) {
         const double t = (static_cast<double>(number) + 0.25 * i) / 60;
