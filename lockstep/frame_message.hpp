@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/field_forms.hpp"
@@ -42,6 +43,24 @@ struct ViewState {
     friend bool operator==(const ViewState&, const ViewState&) = default;
 };
 
+/// A sentence for the people at one window, such as the answer to a key.
+///
+/// It is not part of the view that the ranks prove, so that a wall whose tiles show different answers agrees.
+struct Answer {
+    static constexpr std::size_t kLongest = 200;  // [byte]
+
+    std::int32_t rank = 0;  // rank whose windows show it; 0: all tiles of the wall's lowest row
+    std::string text;       // in UTF-8
+
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("rank", base::varint(it.rank));
+        visit("text", base::text(it.text, kLongest));
+    }
+    friend bool operator==(const Answer&, const Answer&) = default;
+};
+inline constexpr std::size_t kMostAnswers = 64;  // in one frame message
+
 /// Message that begins a frame: the master sends it to every rank once per frame.
 struct FrameMessage {
     std::uint64_t frame = 0;
@@ -50,6 +69,7 @@ struct FrameMessage {
     bool capture = false;                // each render rank sends its pictures of this frame to the master
     bool stop = false;                   // this is the last frame
     std::vector<sand::Step> steps;       // to be applied before the frame is drawn
+    std::vector<Answer> answers{};       // at most one for each rank; none in a frame with pictures
     std::optional<WallFigures> figures;  // only while Overlay::statistics is shown; the barrier does not compare them
 
     template <class Self, class Visit>
@@ -59,6 +79,7 @@ struct FrameMessage {
         visit("audit_tiles", base::varint(it.auditTiles));
         visit("flags", base::flags(it.capture, it.stop));
         visit("steps", base::upTo(it.steps, sand::kMostStepsOfAFrame));
+        visit("answers", base::upTo(it.answers, kMostAnswers));
         visit("figures", it.figures);
     }
     friend bool operator==(const FrameMessage&, const FrameMessage&) = default;

@@ -41,31 +41,31 @@ constexpr std::array kQuit{named(Keystroke::kEscape), plain('q'), control('q')};
 constexpr std::array<KeyEntry, 21> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
-                                          {KeyAction::turnLeft, kTurnLeft, "turns the tool to the left", true},
-                                          {KeyAction::turnRight, kTurnRight, "turns the tool to the right", true},
-                                          {KeyAction::sceneTool, kScene, "tool, depth and humidity of the scene"},
+                                          {KeyAction::turnLeft, kTurnLeft, "turns tool left", true},
+                                          {KeyAction::turnRight, kTurnRight, "turns tool right", true},
+                                          {KeyAction::sceneTool, kScene, "tool of the scene"},
                                           {KeyAction::wetter, kWetter, "wetter sand", true},
                                           {KeyAction::drier, kDrier, "drier sand", true},
                                           {KeyAction::undo, kUndo, "undoes the last stroke"},
-                                          {KeyAction::reset, kReset, "resets the sand, without undo"},
-                                          {KeyAction::frameView, kFrame, "brings the whole terrain into view"},
+                                          {KeyAction::reset, kReset, "resets, without undo"},
+                                          {KeyAction::frameView, kFrame, "frames the terrain"},
                                           {KeyAction::pause, kPause, "pauses or resumes"},
                                           {KeyAction::save, kSave, "saves the sand"},
                                           {KeyAction::capture, kCapture, "saves a picture"},
                                           {KeyAction::wireframe, kWireframe, "wireframe"},
-                                          {KeyAction::hillShade, kHillShade, "light and dark, as on maps"},
+                                          {KeyAction::hillShade, kHillShade, "hill-shade"},
                                           {KeyAction::force, kForce, "force as an arrow"},
                                           {KeyAction::statistics, kStatistics, "statistics"},
                                           {KeyAction::pattern, kPattern, "next test pattern", false, true},
-                                          {KeyAction::help, kHelp, "shows or hides the help"},
+                                          {KeyAction::help, kHelp, "this help"},
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
-constexpr std::array<MouseEntry, 6> kMouse{{{"left button, finger", "digs"},
-                                            {"wheel", "zooms, or depth of the tool if the view is fixed"},
+constexpr std::array<MouseEntry, 6> kMouse{{{"left button", "digs"},
+                                            {"wheel", "zooms, or sets depth"},
                                             {"Shift+wheel", "depth of the tool"},
                                             {"Ctrl+wheel", "size of the tool"},
-                                            {"right button", "turns and tilts the sand"},
-                                            {"middle button, Shift+right button", "moves the sand"}}};
+                                            {"right button", "turns the sand"},
+                                            {"middle, Shift+right", "moves the sand"}}};
 
 }  // namespace
 
@@ -87,6 +87,11 @@ std::optional<KeyFound> findKey(base::Keystroke key) {
 }
 
 bool isQuitKey(base::Keystroke key) { return std::ranges::find(kQuit, key.once()) != kQuit.end(); }
+
+std::string hint() {
+    return fmt::format("Dig with the left button · {} shows all keys · {} ends", keyName(kHelp.front()),
+                       keyName(kQuit.front()));
+}
 
 std::string keyName(base::Keystroke key) {
     std::string name;

@@ -71,4 +71,7 @@ struct MouseEntry {
 };
 [[nodiscard]] std::span<const MouseEntry> mouseList();
 
+/// Returns the sentence with which a session with a pointer begins.
+[[nodiscard]] std::string hint();
+
 }  // namespace lockstep

@@ -14,6 +14,16 @@
 #include "master/wall_pictures.hpp"
 
 namespace master {
+namespace {
+
+/// Returns the name of the only picture of the whole wall in a capture's folder, or that of the folder.
+std::string pictureOf(const walls::Wall& wall, const std::filesystem::path& folder) {
+    const bool one = walls::eyesOf(wall.stereo).size() == 1 && fitsOnePicture(wall);
+    return one ? (folder / "wall.png").string() : folder.string() + "/";
+}
+
+}  // namespace
+
 CaptureFolder::CaptureFolder(const std::filesystem::path& out) {
     errno = EEXIST;
     for (int number = 1; !made_ && errno == EEXIST; ++number) {
@@ -38,7 +48,8 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
                                                   {"step", sand.replica().stepNumber()},
                                                   {"state_hash", fmt::format("{:016x}", sand.hash())}})
                                       .dump(),
-                                  {}};
+                                  {},
+                                  fmt::format("picture saved as {}", pictureOf(wall, folder->path().filename()))};
     std::function<void()> write;
     if (mayBeHeld(wall)) {
         auto held = std::make_shared<const HeldPictures>(holdWallPictures(barrier, wall));
@@ -62,7 +73,7 @@ void Captures::take(std::uint64_t frame, const MasterSand& sand, const walls::Wa
             folder->keep();
             return answer;
         },
-        std::exchange(clients_, {}), BackgroundJobs::Kind::capture);
+        std::exchange(askers_, {}), BackgroundJobs::Kind::capture);
 }
 
 }  // namespace master

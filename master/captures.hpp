@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "lockstep/frame_barrier.hpp"
@@ -33,16 +32,16 @@ private:
     bool made_ = false, whole_ = false;
 };
 
-/// Pictures of a running session that a client asks for. Each capture gets a folder of its own: OUT/capture_001,
+/// Pictures of a running session that an operator asks for. Each capture gets a folder of its own: OUT/capture_001,
 /// OUT/capture_002 and so on. Main thread only.
 class Captures {
 public:
     explicit Captures(std::filesystem::path out) : out_(std::move(out)) {}
 
-    void ask(std::optional<ControlSocket::Client> client) { clients_.push_back(client); }
+    void ask(const Asker& asker) { askers_.push_back(asker); }
     /// Returns whether pictures of the next frame are wanted. Only one capture is written at a time.
-    [[nodiscard]] bool wanted(const BackgroundJobs& jobs) const { return !clients_.empty() && !jobs.capturing(); }
-    /// Receives the pictures of frame `frame`, which the ranks are sending, and starts a job that answers the clients.
+    [[nodiscard]] bool wanted(const BackgroundJobs& jobs) const { return !askers_.empty() && !jobs.capturing(); }
+    /// Receives the pictures of frame `frame`, which the ranks are sending, and starts a job that answers the askers.
     /// If the pictures fit into memory, the job also writes them, while the next frames are shown. Otherwise this
     /// function writes them at once.
     void take(std::uint64_t frame, const MasterSand& sand, const walls::Wall& wall, lockstep::FrameBarrier& barrier,
@@ -50,7 +49,7 @@ public:
 
 private:
     const std::filesystem::path out_;
-    Clients clients_;
+    Askers askers_;
 };
 
 }  // namespace master

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "walls/stereo_change.hpp"
@@ -66,47 +67,58 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
     const std::vector<std::string> lines = input_.takeLines();
     if (control_) {
         for (const std::string& typed : lines) {
-            obeyLine(typed, std::nullopt);
+            obeyLine(typed, {});
         }
         for (const ControlSocket::Asked& asked : control_->take()) {
-            obeyLine(asked.line, asked.client);
+            obeyLine(asked.line, {.client = asked.client});
         }
     }
     finishJobs(false);
-    for (const lockstep::Arrival& arrival : arrivals) {
-        if (arrival.key.code != 0) {
-            obeyKey(arrival.key);
+    for (std::size_t rank = 0; rank < arrivals.size(); ++rank) {
+        if (arrivals[rank].key.code != 0) {
+            obeyKey(arrivals[rank].key, static_cast<int>(rank));
         }
     }
 }
 
-void OperatorDesk::obeyKey(base::Keystroke key) {
+void OperatorDesk::obeyKey(base::Keystroke key, int rank) {
     const std::optional<lockstep::KeyFound> found = lockstep::findKey(key);
     if (!found || !(pointer_ || found->entry.everySession)) {
         return;
     }
     using lockstep::KeyAction;
     const KeyAction action = found->entry.action;
+    if (action == KeyAction::frameView && !views_.moves()) {
+        answerWindow(rank, kFixedView);
+        return;
+    }
+    if (action == KeyAction::undo && !session_.sand.replica().canUndo()) {
+        answerWindow(rank, "nothing to undo");
+        return;
+    }
     if (action == KeyAction::frameView) {
-        if (views_.moves()) {
-            frameView();
-        } else {
-            refuse(kFixedView, {std::nullopt});
-        }
+        frameView();
     } else if (action == KeyAction::sceneTool) {
         depth_ = kUsualDepth;
     }
     try {
-        KeyState state{material_, sceneMaterial_, toolLimits_, views_.layers(), paused_, {}};
-        if (action == KeyAction::save) {
-            state.saveName = freeSaveName();
+        for (const Command& command : commandsOf(*found, keyState(action == KeyAction::save))) {
+            (void)carryOut(command, Asker::at(rank));
         }
-        for (const Command& command : commandsOf(*found, state)) {
-            (void)carryOut(command, std::nullopt);
-        }
+        answerWindow(rank, answerOf(*found, keyState(false)));
     } catch (const base::InputError& error) {
-        refuse(error.what(), {std::nullopt});
+        refuse(error.what(), {Asker::at(rank)});
     }
+}
+
+KeyState OperatorDesk::keyState(bool saves) {
+    return {material_,
+            sceneMaterial_,
+            toolLimits_,
+            views_.layers(),
+            views_.pattern(),
+            paused_,
+            saves ? freeSaveName() : std::string()};
 }
 
 std::string OperatorDesk::freeSaveName() {
@@ -117,8 +129,7 @@ std::string OperatorDesk::freeSaveName() {
     return name;
 }
 
-std::optional<int> OperatorDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
-    std::optional<int> refused;
+void OperatorDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
     for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
         haptic_bridge::PointerReport& pointer = pointers[rank];
         if (views_.moves()) {
@@ -127,70 +138,81 @@ std::optional<int> OperatorDesk::moveView(std::span<haptic_bridge::PointerReport
         }
         pointer.depth += std::exchange(pointer.wheel, 0.0F);
         if (pointer.movesView()) {
-            refused = static_cast<int>(rank);
+            answerWindow(static_cast<int>(rank), kFixedView);
         }
     }
-    return refused;
 }
 
 void OperatorDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointers) {
-    for (const haptic_bridge::PointerReport& pointer : pointers) {
+    for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
+        const haptic_bridge::PointerReport& pointer = pointers[rank];
         if (pointer.depth != 0) {
             depth_ = deepened(depth_, static_cast<double>(pointer.depth));
+            answerWindow(static_cast<int>(rank), depthInWords(depth_));
         }
         if (pointer.size != 0) {
-            resizeTool(-static_cast<double>(pointer.size));
+            resizeTool(-static_cast<double>(pointer.size), static_cast<int>(rank));
         }
     }
 }
 
-void OperatorDesk::resizeTool(double notches) {
+void OperatorDesk::resizeTool(double notches, int rank) {
+    const double radius = toolLimits_.resized(material_.toolRadius, notches);
     try {
-        (void)carryOut({.verb = Verb::tool, .tool = {.radius = toolLimits_.resized(material_.toolRadius, notches)}},
-                       {});
+        (void)carryOut({.verb = Verb::tool, .tool = {.radius = radius}}, Asker::at(rank));
+        answerWindow(rank, sizeInWords(keyState(false)));
     } catch (const base::InputError& error) {
-        refuse(error.what(), {std::nullopt});
+        refuse(error.what(), {Asker::at(rank)});
     }
 }
 
-void OperatorDesk::obeyLine(const std::string& text, std::optional<Client> client) {
+void OperatorDesk::answerWindow(int rank, const std::string& text) { answers_.show(rank, text, host::monotonicNs()); }
+
+std::vector<lockstep::Answer> OperatorDesk::answers(std::int64_t nowNs) {
+    if (pointer_ && !std::exchange(hinted_, true) && !views_.layers().shows(lockstep::Overlay::help)) {
+        answers_.show(Answers::kLowestRow, lockstep::hint(), nowNs, Answers::kHintLife);
+    }
+    return answers_.at(nowNs);
+}
+
+void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     try {
-        if (carryOut(parseCommand(text), client) && client) {
-            control_->answer(*client, line({{"ok", true}}));
+        if (carryOut(parseCommand(text), asker) && asker.client) {
+            control_->answer(*asker.client, line({{"ok", true}}));
         }
     } catch (const base::InputError& error) {
-        refuse(error.what(), {client});
+        refuse(error.what(), {asker});
     }
 }
 
-bool OperatorDesk::carryOut(const Command& command, std::optional<Client> client) {
+bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
     switch (command.verb) {
         case Verb::status:
-            answerClient(client, status());
+            answerClient(asker, status());
             return false;
         case Verb::reset:
-            askEdit(sand::Edit::reset, client);
+            askEdit(sand::Edit::reset, asker);
             return false;
         case Verb::undo:
-            askEdit(sand::Edit::undo, client);
+            askEdit(sand::Edit::undo, asker);
             return false;
         case Verb::settle:
-            askEdit(sand::Edit::settle, client);
+            askEdit(sand::Edit::settle, asker);
             return false;
         case Verb::tool:
-            askMaterial(scene::withTool(material_, command.tool, grid_), client);
+            askMaterial(scene::withTool(material_, command.tool, grid_), asker);
             return false;
         case Verb::material:
-            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), client);
+            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), asker);
             return false;
         case Verb::save:
-            save(command.word, client);
+            save(command.word, asker);
             return false;
         case Verb::load:
-            load(command.word, client);
+            load(command.word, asker);
             return false;
         case Verb::capture:
-            captures_.ask(client);
+            captures_.ask(asker);
             return false;
         case Verb::pause:
         case Verb::resume:
@@ -219,8 +241,7 @@ bool OperatorDesk::carryOut(const Command& command, std::optional<Client> client
     return true;
 }
 
-void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
-                           const std::optional<scene::Material>& material) {
+void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
     if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
         throw base::InputError("there is no stroke to undo");
     }
@@ -238,6 +259,7 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
             "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
             "try again");
     }
+    std::optional<Client> client = asker.client;
     if (paused_ && client) {
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
@@ -248,8 +270,8 @@ void OperatorDesk::askEdit(sand::Edit edit, std::optional<Client> client,
 }
 
 /// Changes the material only if the edit was accepted. Later changes start from this material.
-void OperatorDesk::askMaterial(const scene::Material& material, std::optional<Client> client) {
-    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), client, material);
+void OperatorDesk::askMaterial(const scene::Material& material, const Asker& asker) {
+    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), asker, material);
     material_ = material;
     views_.setHumidity(material_.humidity);
 }
@@ -267,7 +289,7 @@ void OperatorDesk::changeStereo(walls::Stereo stereo) {
     views_.show(stereo);
 }
 
-void OperatorDesk::save(const std::string& name, std::optional<Client> client) {
+void OperatorDesk::save(const std::string& name, const Asker& asker) {
     jobs_.requireRoom();
     // Copying takes a fraction of a frame. A thread compresses and writes the copy while frames continue.
     auto copy = session_.sand.replica().copySand();
@@ -282,32 +304,33 @@ void OperatorDesk::save(const std::string& name, std::optional<Client> client) {
                                                 {"bytes", saved.sand.size()},
                                                 {"step", saved.step},
                                                 {"state_hash", fmt::format("{:016x}", saved.stateHash)}}),
-                                          {}};
+                                          {},
+                                          fmt::format("sand saved as saves/{}", file.filename().string())};
         },
-        {client});
+        {asker});
 }
 
-void OperatorDesk::load(const std::string& name, std::optional<Client> client) {
+void OperatorDesk::load(const std::string& name, const Asker& asker) {
     jobs_.requireRoom();
     jobs_.start(
         [file = saveFile(out_, name), place = place_, read = session_.sand.replica().sandReader()] {
             return BackgroundJobs::Result{{}, sand::Edit::loaded(readSavedSand(file, place, read).sand)};
         },
-        {client});
+        {asker});
 }
 
 void OperatorDesk::finishJobs(bool wait) {
     for (BackgroundJobs::Done& done : jobs_.finished(wait)) {
         try {
             if (!done.error.empty()) {
-                refuse(done.error, done.clients);
+                refuse(done.error, done.askers);
             } else if (done.result.edit.any()) {
-                askEdit(std::move(done.result.edit), done.clients.front());
+                askEdit(std::move(done.result.edit), done.askers.front());
             } else {
-                answerAll(done.clients, done.result.json);
+                answerAll(done.askers, done.result);
             }
         } catch (const base::InputError& error) {
-            refuse(error.what(), done.clients);
+            refuse(error.what(), done.askers);
         }
     }
 }
@@ -348,27 +371,31 @@ std::string OperatorDesk::status() const {
     return line(status);
 }
 
-void OperatorDesk::answerClient(std::optional<Client> client, const std::string& json) {
-    if (client) {
-        control_->answer(*client, json);
+void OperatorDesk::answerClient(const Asker& asker, const std::string& json) {
+    if (asker.client) {
+        control_->answer(*asker.client, json);
     } else {
         fmt::print("{}\n", json);
         std::fflush(stdout);
     }
 }
 
-void OperatorDesk::answerAll(const Clients& clients, const std::string& json) {
-    for (const auto& client : clients) {
-        if (client) {
-            control_->answer(*client, json);
+void OperatorDesk::answerAll(const Askers& askers, const BackgroundJobs::Result& result) {
+    for (const Asker& asker : askers) {
+        if (asker.client) {
+            control_->answer(*asker.client, result.json);
+        } else if (asker.window) {
+            answerWindow(*asker.window, result.words);
         }
     }
 }
 
-void OperatorDesk::refuse(const std::string& why, const Clients& clients) {
-    for (const auto& client : clients) {
-        if (client) {
-            control_->answer(*client, line({{"ok", false}, {"error", why}}));
+void OperatorDesk::refuse(const std::string& why, const Askers& askers) {
+    for (const Asker& asker : askers) {
+        if (asker.client) {
+            control_->answer(*asker.client, line({{"ok", false}, {"error", why}}));
+        } else if (asker.window) {
+            answerWindow(*asker.window, why);
         } else {
             host::printLine("{}", why);
             host::emitEvent("command_refused", {{"error", why}});

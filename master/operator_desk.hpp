@@ -16,6 +16,7 @@
 #include "master/captures.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "master/master_sand.hpp"
+#include "master/operator/answers.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/edit_queue.hpp"
 #include "master/operator/key_commands.hpp"
@@ -57,16 +58,21 @@ public:
                  std::filesystem::path out, const DeskOptions& options, Session session);
 
     /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
-    /// windows. Answers the clients of jobs that have ended.
+    /// windows. Answers the askers of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
     /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. Where the view
-    /// is fixed, the wheels count as PointerReport::depth instead. Returns the rank in whose window a person has tried
-    /// to move a fixed view; the answer to it is kFixedView.
-    std::optional<int> moveView(std::span<haptic_bridge::PointerReport> pointers);
+    /// is fixed, the wheels count as PointerReport::depth instead. An attempt to move a fixed view is answered in
+    /// its window.
+    void moveView(std::span<haptic_bridge::PointerReport> pointers);
     /// Changes depth and size of the tool as the wheels have turned. Call it after moveView().
     void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
     /// Returns the depth of the pointer's tool [tool radius].
     [[nodiscard]] double depth() const { return depth_; }
+    /// Shows an answer in the windows of a rank.
+    void answerWindow(int rank, const std::string& text);
+    /// Returns the answers that the windows show at `nowNs`. The first call of a session with a pointer begins the
+    /// hint.
+    [[nodiscard]] std::vector<lockstep::Answer> answers(std::int64_t nowNs);
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -89,27 +95,28 @@ public:
 private:
     using Client = ControlSocket::Client;
 
-    void obeyKey(base::Keystroke key);
+    void obeyKey(base::Keystroke key, int rank);
+    void resizeTool(double notches, int rank);
+    /// Returns the state from which a key starts, with a name for a file if it `saves`.
+    [[nodiscard]] KeyState keyState(bool saves);
     void frameView() { views_.frame(session_.sand.replica().surface().heights()); }
-    void resizeTool(double notches);
     /// Returns a name that no file has, and that no earlier key has got: a thread may still be writing those files.
     [[nodiscard]] std::string freeSaveName();
-    void obeyLine(const std::string& line, std::optional<Client> client);
+    void obeyLine(const std::string& line, const Asker& asker);
     /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
     /// or has been sent.
-    [[nodiscard]] bool carryOut(const Command& command, std::optional<Client> client);
-    void askEdit(sand::Edit edit, std::optional<Client> client,
-                 const std::optional<scene::Material>& material = std::nullopt);
-    void askMaterial(const scene::Material& material, std::optional<Client> client);
+    [[nodiscard]] bool carryOut(const Command& command, const Asker& asker);
+    void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
+    void askMaterial(const scene::Material& material, const Asker& asker);
     void shareForce(double share);
     void changeStereo(walls::Stereo stereo);
-    void save(const std::string& name, std::optional<Client> client);
-    void load(const std::string& name, std::optional<Client> client);
+    void save(const std::string& name, const Asker& asker);
+    void load(const std::string& name, const Asker& asker);
     void finishJobs(bool wait);
     [[nodiscard]] std::string status() const;
-    void answerClient(std::optional<Client> client, const std::string& json);
-    void answerAll(const Clients& clients, const std::string& json);
-    void refuse(const std::string& why, const Clients& clients);
+    void answerClient(const Asker& asker, const std::string& json);
+    void answerAll(const Askers& askers, const BackgroundJobs::Result& result);
+    void refuse(const std::string& why, const Askers& askers);
 
     const walls::Wall& wall_;
     walls::Wall shown_;
@@ -129,6 +136,8 @@ private:
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool pointer_;
+    Answers answers_;
+    bool hinted_ = false;         // whether the hint was shown
     double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
     int savesByKey_ = 0;          // number of the last file that a key has asked for
     bool paused_ = false;

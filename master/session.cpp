@@ -119,6 +119,9 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     const bool last = ends() || shownThen >= options_.steps;
     frame.stop = last && check_.mayEnd(now, shownThen);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
+    if (!frame.capture) {  // pictures show no answers
+        frame.answers = desk_.answers(now);
+    }
     // The last frame compares the whole sand, because no later frame finds what is wrong now.
     frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
     return frame;

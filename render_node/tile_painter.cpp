@@ -17,6 +17,18 @@ walls::Viewer viewerOf(const lockstep::ViewState& view) {
 
 }  // namespace
 
+std::string answerFor(const walls::Wall& wall, const walls::Tile& tile, std::span<const lockstep::Answer> answers) {
+    if (answers.empty()) {
+        return {};
+    }
+    const auto of = [&](int rank) {
+        const auto found = std::ranges::find(answers, rank, &lockstep::Answer::rank);
+        return found == answers.end() ? std::string() : found->text;
+    };
+    const std::string own = of(tile.rank);
+    return own.empty() && helpPlaceOf(wall, tile) ? of(0) : own;
+}
+
 void ViewCounts::add(std::int64_t drawn, const EyeTarget& target) {
     const std::int64_t all = std::int64_t{target.width()} * target.height();
     (drawn == 0 ? skipped : drawn < all ? inPart : whole) += 1;
@@ -44,7 +56,8 @@ void TilePainter::makeTargets() {
     memories_.assign(eyes, {});
     shown_.assign(eyes, lockstep::Pattern::none);
     covered_.assign(eyes, {});
-    helped_.assign(eyes, false);
+    help_.drawn.assign(eyes, false);
+    answer_.drawn.assign(eyes, false);
 }
 
 void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
@@ -54,7 +67,9 @@ void TilePainter::showAs(const walls::Wall& wall, const walls::Tile& tile) {
     composer_ = StereoComposer(wall.stereo, tile);
     patterns_.reset();
     overlay_.reset();
-    help_.reset();
+    help_.panel.reset();
+    answer_.panel.reset();
+    answerText_.clear();
 }
 
 void TilePainter::drawAgain() {
@@ -63,7 +78,7 @@ void TilePainter::drawAgain() {
 }
 
 void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye,
-                        const TileFigures& figures) {
+                        const TileFigures& figures, std::span<const lockstep::Answer> answers) {
     scenePainter_.setLayers(view.layers);
     scenePainter_.setHumidity(view.humidity);
     scenePainter_.setSceneToRoom(glm::make_mat4(view.sceneToRoom.data()));
@@ -90,7 +105,8 @@ void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view,
         }
         overlay_->add(figures, frame);
     }
-    showHelp(view.layers.shows(lockstep::Overlay::help) && tile_->rank == 1);
+    showHelp(view.layers.shows(lockstep::Overlay::help));
+    showAnswer(answerFor(*wall_, *tile_, answers));
     PixelRect changed =
         pattern == lockstep::Pattern::none ? paintSand(cameras, range) : paintPattern(pattern, frame, range);
     std::fill(shown_.begin() + static_cast<std::ptrdiff_t>(range.from),
@@ -101,22 +117,40 @@ void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view,
         paintOverlay(range);
         changed = around(changed, overlay_->pixels());
     }
-    if (help_ && pattern == lockstep::Pattern::none) {
-        paintHelp(range, changed);
+    if (pattern == lockstep::Pattern::none) {
+        paintStill(help_, range, changed);
+        paintStill(answer_, range, changed);
     }
 }
 
 void TilePainter::showHelp(bool shown) {
-    if (shown && !help_) {
-        help_.emplace(tile_->pixels);
+    if (!shown) {
+        hide(help_);
+    } else if (const auto place = helpPlaceOf(*wall_, *tile_); place && !help_.panel) {
+        const Sheet sheet = helpSheet(*place, tile_->pixels);
+        help_.panel.emplace(sheet, glm::ivec2(0, tile_->pixels.y - sheet.size().y), tile_->pixels.y);
     }
-    if (!shown && help_) {
-        for (std::size_t i = 0; i < helped_.size(); ++i) {
-            memories_[i].covered = around(memories_[i].covered, helped_[i] ? help_->pixels() : PixelRect{});
-            helped_[i] = false;
+}
+
+void TilePainter::showAnswer(const std::string& text) {
+    const int below = help_.panel ? help_.panel->pixels().y1 : 0;
+    if (text != answerText_ || below != answerBelow_) {
+        hide(answer_);
+        answerText_ = text;
+        answerBelow_ = below;
+        if (!text.empty()) {
+            const Sheet sheet = answerSheet(tile_->pixels, text);
+            answer_.panel.emplace(sheet, answerCorner(tile_->pixels, sheet.size(), below), tile_->pixels.y);
         }
-        help_.reset();
     }
+}
+
+void TilePainter::hide(Still& still) {
+    for (std::size_t i = 0; still.panel && i < still.drawn.size(); ++i) {
+        memories_[i].covered = around(memories_[i].covered, still.drawn[i] ? still.panel->pixels() : PixelRect{});
+    }
+    still.drawn.assign(targets_.size(), false);
+    still.panel.reset();
 }
 
 /// Composes the outputs where the eyes have changed.
@@ -124,14 +158,23 @@ void TilePainter::compose(const PixelRect& changed) {
     changed_ = around(changed_, composer_.compose(targets_, changed));
 }
 
-/// Draws the help again where anything has been drawn over it, because still sand must cost nothing.
-void TilePainter::paintHelp(EyeRange range, const PixelRect& changed) {
+/// Draws a panel again where anything has been drawn over it, because still sand must cost nothing. Adds its pixels to
+/// `changed`, because a later panel may cover them.
+void TilePainter::paintStill(Still& still, EyeRange range, PixelRect& changed) {
+    if (!still.panel) {
+        return;
+    }
+    if (!panels_) {
+        panels_.emplace();
+    }
+    const PixelRect before = changed;
     for (std::size_t i = range.from; i < range.end; ++i) {
-        const PixelRect lost = helped_[i] ? overlap(changed, help_->pixels()) : help_->pixels();
+        const PixelRect lost = still.drawn[i] ? overlap(before, still.panel->pixels()) : still.panel->pixels();
         if (!lost.empty()) {
-            help_->draw(std::span<const EyeTarget>(targets_).subspan(i, 1));
-            helped_[i] = true;
+            panels_->draw(*still.panel, targets_[i]);
+            still.drawn[i] = true;
             compose(lost);
+            changed = around(changed, still.panel->pixels());
         }
     }
 }
@@ -183,7 +226,7 @@ PixelRect TilePainter::paintPattern(lockstep::Pattern pattern, std::uint64_t fra
             patterns_->draw(pattern, walls::eyesOf(wall_->stereo)[i], frame, targets_[i]);
             memories_[i].drawn = false;  // the sand must be drawn whole after the pattern
             covered_[i] = {};
-            helped_[i] = false;
+            help_.drawn[i] = answer_.drawn[i] = false;
             changed = allPixels({targets_[i].width(), targets_[i].height()});
         }
     }

@@ -13,6 +13,7 @@
 #include "render_node/overlay/help.hpp"
 #include "render_node/overlay/statistics.hpp"
 #include "render_node/overlay/test_pattern.hpp"
+#include "render_node/overlay/text_panel.hpp"
 #include "render_node/scene_painter.hpp"
 #include "render_node/stereo_composer.hpp"
 #include "render_node/tool/force.hpp"
@@ -30,6 +31,11 @@ struct ViewCounts {
     /// Counts one view in `target`. `drawn` pixels of it were drawn.
     void add(std::int64_t drawn /* [pixel] */, const EyeTarget& target);
 };
+
+/// Returns the answer that the windows of a tile show: that of its rank, or otherwise that of the lowest row, if the
+/// tile is in this row. Returns an empty text if it has none.
+[[nodiscard]] std::string answerFor(const walls::Wall& wall, const walls::Tile& tile,
+                                    std::span<const lockstep::Answer> answers);
 
 /// Painter of one tile: draws the picture of each eye that the wall shows, and makes the pictures of the outputs.
 ///
@@ -58,8 +64,9 @@ public:
     /// @param view     Eyes and overlays of this frame. If it has a test pattern, the pattern is drawn instead.
     /// @param oneEye   With two eyes, draws only the eye of this frame: the left one in even frames.
     /// @param figures  Figures that are shown over the sand if the view has Overlay::statistics.
+    /// @param answers  Answers of this frame, of which the tile shows its own (answerFor()).
     void paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,
-               const TileFigures& figures = {});
+               const TileFigures& figures = {}, std::span<const lockstep::Answer> answers = {});
     /// Returns the picture of each output, in the order of tile.outputs. Valid until the next paint().
     [[nodiscard]] std::vector<OutputPicture> outputs() const { return composer_.shown(targets_); }
     /// Returns the pixels of the outputs that the last paint() may have changed.
@@ -84,9 +91,16 @@ private:
     PixelRect paintSand(std::span<const Camera> cameras, EyeRange range);
     [[nodiscard]] PixelRect paintPattern(lockstep::Pattern pattern, std::uint64_t frame, EyeRange range);
     void uncover(EyeRange range);
-    /// Shows or hides the help. After hiding it, makes the next drawing restore the sand under it.
+    /// A panel over the sand, and for each target, whether it shows the panel.
+    struct Still {
+        std::optional<TextPanel> panel;
+        std::vector<bool> drawn;
+    };
     void showHelp(bool shown);
-    void paintHelp(EyeRange range, const PixelRect& changed);
+    void showAnswer(const std::string& text);
+    /// Removes a panel. The next drawing restores the sand under it.
+    void hide(Still& still);
+    void paintStill(Still& still, EyeRange range, PixelRect& changed);
     void paintOverlay(EyeRange range);
     void compose(const PixelRect& changed);
 
@@ -105,8 +119,11 @@ private:
     std::vector<lockstep::Pattern> shown_;      // for each target, the pattern that it shows
     std::optional<StatisticsOverlay> overlay_;  // only while Overlay::statistics is shown
     std::vector<PixelRect> covered_;            // for each target, the pixels under the statistics
-    std::optional<HelpOverlay> help_;           // only while Overlay::help is shown, on the tile of rank 1
-    std::vector<bool> helped_;                  // for each target, whether it shows the help
+    std::optional<PanelPainter> panels_;        // made when the first panel is shown
+    Still help_;                                // only while Overlay::help is shown, in the lowest row of tiles
+    Still answer_;                              // only while there is an answer for this tile
+    std::string answerText_;                    // that answer_ shows
+    int answerBelow_ = 0;                       // [pixel], height of the help below it
     PixelRect changed_;                         // of the outputs, by the last paint()
     ViewCounts counts_;
 };

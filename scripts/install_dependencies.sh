@@ -7,6 +7,7 @@ tools=(
     g++ cmake ninja-build pkg-config python3 python3-glad   # build and launcher
     openmpi-bin                                             # the cluster
     xvfb iproute2                                           # tests; an emulated cluster
+    libstb-dev fonts-dejavu-core                            # letters, which the build draws
 )
 libraries=(
     libopenmpi-dev                                          # the cluster

@@ -17,8 +17,8 @@ void BackgroundJobs::requireRoom() const {
     }
 }
 
-void BackgroundJobs::start(std::function<Result()> work, Clients clients, Kind kind) {
-    jobs_.push_back({std::async(std::launch::async, std::move(work)), std::move(clients), kind});
+void BackgroundJobs::start(std::function<Result()> work, Askers askers, Kind kind) {
+    jobs_.push_back({std::async(std::launch::async, std::move(work)), std::move(askers), kind});
 }
 
 bool BackgroundJobs::capturing() const {
@@ -34,7 +34,7 @@ std::vector<BackgroundJobs::Done> BackgroundJobs::finished(bool wait) {
             continue;
         }
         Done& ended = done.emplace_back();
-        ended.clients = std::move(job.clients);
+        ended.askers = std::move(job.askers);
         try {
             ended.result = job.work.get();
         } catch (const std::exception& error) {  // frames continue after every error of a job

@@ -4,32 +4,29 @@
 #include <cstddef>
 #include <functional>
 #include <future>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "master/operator/control_socket.hpp"
+#include "master/operator/asker.hpp"
 #include "sand/model/step.hpp"
 
 namespace master {
 
-/// Clients that wait for one answer. nullopt stands for a command from standard input.
-using Clients = std::vector<std::optional<ControlSocket::Client>>;
-
 /// Work that no frame waits for, such as writing and reading files. Each job has a thread of its own. A later frame
-/// answers its clients. Only the main thread calls this class.
+/// answers its askers. Only the main thread calls this class.
 class BackgroundJobs {
 public:
     static constexpr std::size_t kMost = 4;  // at once, because each save holds a copy of the sand
 
-    /// Result of a job: an answer as a line of JSON, or an edit to ask for.
+    /// Result of a job: an answer as a line of JSON and in words for a window, or an edit to ask for.
     struct Result {
         std::string json;
         sand::Edit edit;
+        std::string words{};
     };
     /// A job that has ended. `error` is empty if it succeeded.
     struct Done {
-        Clients clients;
+        Askers askers;
         Result result;
         std::string error;
     };
@@ -37,7 +34,7 @@ public:
 
     /// Throws base::InputError if kMost jobs are running.
     void requireRoom() const;
-    void start(std::function<Result()> work, Clients clients, Kind kind = Kind::file);
+    void start(std::function<Result()> work, Askers askers, Kind kind = Kind::file);
     /// Returns whether pictures are being written.
     [[nodiscard]] bool capturing() const;
     /// Returns the jobs that have ended since the last call. With `wait`, waits until all jobs have ended.
@@ -46,7 +43,7 @@ public:
 private:
     struct Job {
         std::future<Result> work;
-        Clients clients;
+        Askers askers;
         Kind kind;
     };
     std::vector<Job> jobs_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/operator/key_commands.hpp"
 
+#include <fmt/format.h>
+
 namespace master {
 namespace {
 
@@ -76,6 +78,71 @@ std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& s
             return {{.verb = Verb::pattern}};
         case KeyAction::quit:
             return {{.verb = Verb::stop}};
+    }
+    return {};
+}
+
+std::string sizeInWords(const KeyState& after) {
+    const double radius = after.material.toolRadius;
+    const char* end = after.limits.resized(radius, 1) <= radius    ? ", the largest"
+                      : after.limits.resized(radius, -1) >= radius ? ", the smallest"
+                                                                   : "";
+    return fmt::format("radius {:.3g}{}", radius, end);
+}
+
+std::string depthInWords(double depth) {
+    const char* end = depth >= kDeepest ? ", the deepest" : depth <= kShallowest ? ", the shallowest" : "";
+    return fmt::format("depth {:.0f} % of the radius{}", 100 * depth, end);
+}
+
+std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
+    const std::string_view tool = base::nameOf(after.material.toolKind);
+    const auto layer = [&](Overlay which) {
+        return fmt::format("{} {}", lockstep::kOverlayNames.at(static_cast<std::size_t>(which)),
+                           after.layers.shows(which) ? "shown" : "hidden");
+    };
+    const auto edited = [&](std::string words) {
+        return words + (after.paused ? "; the sand waits until Space resumes" : "");
+    };
+    switch (key.entry.action) {
+        case KeyAction::tool:
+            return edited(fmt::format("tool: {}", tool));
+        case KeyAction::larger:
+        case KeyAction::smaller:
+            return edited(sizeInWords(after));
+        case KeyAction::turnLeft:
+        case KeyAction::turnRight:
+            return edited(sand::isRound(after.material.toolKind)
+                              ? fmt::format("a {} is round: its heading shows in no furrow", tool)
+                              : fmt::format("heading {:.0f}°", after.material.toolHeading));
+        case KeyAction::sceneTool:
+            return edited("tool, depth and humidity of the scene");
+        case KeyAction::wetter:
+        case KeyAction::drier:
+            return edited(fmt::format("humidity {:.0f} %", 100 * after.material.humidity));
+        case KeyAction::undo:
+            return edited("undone");
+        case KeyAction::reset:
+            return edited("reset");
+        case KeyAction::frameView:
+            return "the terrain is framed";
+        case KeyAction::pause:
+            return after.paused ? "paused; Space resumes" : "resumed";
+        case KeyAction::wireframe:
+            return layer(Overlay::wireframe);
+        case KeyAction::hillShade:
+            return layer(Overlay::hillShade);
+        case KeyAction::force:
+            return layer(Overlay::force);
+        case KeyAction::statistics:
+            return layer(Overlay::statistics);
+        case KeyAction::pattern:
+            return fmt::format("test pattern: {}", lockstep::patternName(after.pattern));
+        case KeyAction::save:
+        case KeyAction::capture:  // answered when the files are written
+        case KeyAction::help:
+        case KeyAction::quit:
+            return {};
     }
     return {};
 }

@@ -6,6 +6,7 @@
 
 #include "lockstep/key_list.hpp"
 #include "lockstep/overlays.hpp"
+#include "lockstep/test_pattern.hpp"
 #include "master/operator/operator_command.hpp"
 #include "master/operator/tool_keys.hpp"
 
@@ -19,6 +20,7 @@ struct KeyState {
     scene::Material ofScene{};   // as the scene file has it
     ToolLimits limits{};
     lockstep::Overlays layers{};
+    lockstep::Pattern pattern{};
     bool paused = false;
     std::string saveName{};  // name of a file that does not exist
 };
@@ -26,5 +28,13 @@ struct KeyState {
 /// Returns the operator's commands that a key stands for, in the order in which they are to be carried out. The keys
 /// that move the view have none.
 [[nodiscard]] std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& state);
+
+/// Returns the answer to a key whose commands were carried out, in words for its window, from the state after it.
+/// Returns an empty text if the key shows its effect itself, or if the answer comes later.
+[[nodiscard]] std::string answerOf(const lockstep::KeyFound& key, const KeyState& after);
+
+// Answers to the wheel.
+[[nodiscard]] std::string sizeInWords(const KeyState& after);
+[[nodiscard]] std::string depthInWords(double depth /* [tool radius] */);
 
 }  // namespace master

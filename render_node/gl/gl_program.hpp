@@ -51,6 +51,7 @@ public:
     // The program must be in use. As in GL, a name that the shader does not have is ignored.
     void set(const char* name, int value) const { glUniform1i(find(name), value); }
     void set(const char* name, float value) const { glUniform1f(find(name), value); }
+    void set(const char* name, const glm::ivec2& value) const { glUniform2iv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::vec2& value) const { glUniform2fv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::vec3& value) const { glUniform3fv(find(name), 1, &value[0]); }
     void set(const char* name, const glm::vec4& value) const { glUniform4fv(find(name), 1, &value[0]); }

@@ -2,88 +2,144 @@
 #include "render_node/overlay/help.hpp"
 
 #include <algorithm>
-#include <array>
+#include <span>
 
-#include "render_node/overlay/dot_font.hpp"
+#include "lockstep/key_list.hpp"
 
 namespace render_node {
 namespace {
 
-constexpr std::array<HelpEntry, 13> kPointer{{{"LEFT BUTTON", "DIG"},
-                                              {"WHEEL", "ZOOM"},
-                                              {"SHIFT WHEEL", "DEPTH"},
-                                              {"RIGHT BUTTON", "TURN THE SAND"},
-                                              {"MIDDLE BUTTON", "MOVE IT"},
-                                              {"HOME", "ALL IN VIEW"},
-                                              {"1 - 6", "TOOL"},
-                                              {"+ -", "SIZE"},
-                                              {"W D", "WETTER, DRIER"},
-                                              {"U", "UNDO"},
-                                              {"SHIFT R", "RESET"},
-                                              {"H", "HIDE THIS"},
-                                              {"ESC", "QUIT"}}};
+constexpr glm::u8vec3 kHelpBack{18, 20, 26}, kHelpEdge{158, 128, 84}, kHelpKeys{242, 204, 133},
+    kHelpText{224, 227, 232};
 
-// Sizes [dot].
-constexpr int kHelpPadding = 6, kHelpPitch = kGlyphHeight + 5, kHelpGap = 4 * kGlyphPitch;
-constexpr int kHelpUsualWidth = 640;  // of a tile whose letters have dots of one pixel
+// Heights of tiles over the sizes of letters.
+constexpr int kLinesOfHelp = 45, kLinesOfAnswers = 30;
 
-constexpr glm::vec3 kHelpBack{0.07F, 0.08F, 0.10F}, kHelpEdge{0.62F, 0.50F, 0.33F}, kHelpKey{0.95F, 0.80F, 0.52F},
-    kHelpText{0.88F, 0.89F, 0.91F};
+/// Columns of the help: the entries go down the first column, then down the second one.
+struct HelpColumns {
+    int keys = 0, effects = 0;  // [pixel], widths of the longest texts
+    int count = 1, rows = 0;
+    int padding = 0;  // [pixel]
+    [[nodiscard]] int height(const Face& face) const { return rows * face.lineHeight + 2 * padding; }
+};
 
-int lettersInEntry(const HelpEntry& entry) { return static_cast<int>(entry.key.size() + 1 + entry.effect.size()); }
+HelpColumns columnsOf(std::span<const HelpEntry> entries, const Face& face, int width) {
+    HelpColumns columns;
+    for (const HelpEntry& entry : entries) {
+        columns.keys = std::max(columns.keys, textWidth(face, entry.keys));
+        columns.effects = std::max(columns.effects, textWidth(face, entry.effect));
+    }
+    columns.padding = face.size / 2;
+    const int pitch = columns.keys + columns.effects + 3 * face.size;
+    columns.count = std::max(1, (width - 2 * columns.padding + 2 * face.size) / pitch);
+    columns.rows = (static_cast<int>(entries.size()) + columns.count - 1) / columns.count;
+    return columns;
+}
+
+bool fits(std::span<const HelpEntry> entries, const Face& face, glm::ivec2 tile) {
+    const HelpColumns columns = columnsOf(entries, face, tile.x);
+    return columns.keys + columns.effects + face.size + 2 * columns.padding <= tile.x &&
+           5 * columns.height(face) <= 3 * tile.y;
+}
+
+/// Returns the largest face up to the usual one in which the entries take at most three fifths of a tile; null if there
+/// is none.
+const Face* faceToFit(std::span<const HelpEntry> entries, glm::ivec2 tile) {
+    const Face* best = nullptr;
+    for (const Face& face : faces()) {
+        if (face.size <= faceFor(tile.y / kLinesOfHelp).size && fits(entries, face, tile)) {
+            best = &face;
+        }
+    }
+    return best;
+}
+
+bool sameHeight(const walls::Tile& a, const walls::Tile& b) {
+    const auto low = [](const walls::Tile& tile) {
+        return std::min(tile.screen.lowerLeft.y, tile.screen.lowerRight.y);
+    };
+    return std::abs(low(a) - low(b)) < 0.1 * a.screen.height();
+}
 
 }  // namespace
 
-std::span<const HelpEntry> pointerHelp() { return kPointer; }
-
-HelpLayout helpLayout(glm::ivec2 tile, std::span<const HelpEntry> entries) {
-    HelpLayout layout;
-    layout.dot = std::max(1, tile.x / kHelpUsualWidth);
-    const int width = tile.x / layout.dot - 2 * kHelpPadding;
-    glm::ivec2 at(0);
-    std::vector<glm::ivec2> places;  // [dot], from the top left of the text
-    for (const HelpEntry& entry : entries) {
-        const int length = lettersInEntry(entry) * kGlyphPitch - 1;
-        if (at.x > 0 && at.x + length > width) {
-            at = {0, at.y + kHelpPitch};
-        }
-        if (length > width) {
-            return layout;
-        }
-        places.push_back(at);
-        at.x += length + kHelpGap;
+std::vector<HelpEntry> helpEntries() {
+    std::vector<HelpEntry> entries;
+    for (const lockstep::MouseEntry& entry : lockstep::mouseList()) {
+        entries.push_back({std::string(entry.input), std::string(entry.effect)});
     }
-    layout.height = (at.y + kGlyphHeight + 2 * kHelpPadding) * layout.dot;
-    if (3 * layout.height > tile.y) {  // the bar would hide too much of the sand
-        layout.height = 0;
-        return layout;
+    for (const lockstep::KeyEntry& entry : lockstep::keyList()) {
+        entries.push_back({keyNames(entry), std::string(entry.effect)});
     }
-    for (const glm::ivec2 place : places) {
-        layout.places.push_back((place + kHelpPadding) * layout.dot + glm::ivec2(0, tile.y - layout.height));
-    }
-    return layout;
+    return entries;
 }
 
-HelpOverlay::HelpOverlay(glm::ivec2 tile)
-    : tile_(tile), layout_(helpLayout(tile, pointerHelp())), pixels_{0, 0, tile.x, layout_.height} {}
-
-void HelpOverlay::draw(std::span<const EyeTarget> targets) {
-    if (pixels_.empty()) {
-        return;
-    }
-    for (const EyeTarget& target : targets) {
-        const int top = tile_.y - layout_.height;
-        painter_.addBox({0, top}, {tile_.x, layout_.height}, kHelpBack);
-        painter_.addBox({0, top}, {tile_.x, layout_.dot}, kHelpEdge);
-        for (std::size_t i = 0; i < layout_.places.size(); ++i) {
-            const HelpEntry& entry = pointerHelp()[i];
-            const glm::ivec2 place = layout_.places[i];
-            const int indent = static_cast<int>(entry.key.size() + 1) * kGlyphPitch * layout_.dot;
-            painter_.addText(entry.key, place, layout_.dot, kHelpKey);
-            painter_.addText(entry.effect, place + glm::ivec2(indent, 0), layout_.dot, kHelpText);
+std::optional<HelpPlace> helpPlaceOf(const walls::Wall& wall, const walls::Tile& tile) {
+    const auto lower = [&](const walls::Tile& a, const walls::Tile& b) {
+        return wall.grid ? a.row > b.row : a.screen.lowerLeft.y < b.screen.lowerLeft.y;
+    };
+    const walls::Tile& lowest = *std::ranges::min_element(wall.tiles, lower);
+    HelpPlace place{0, 0, lowest.pixels};
+    bool found = false;
+    for (const walls::Tile& other : wall.tiles) {
+        if (wall.grid ? other.row == lowest.row : sameHeight(other, lowest)) {
+            if (other.rank == tile.rank) {
+                place.index = place.count;
+                found = true;
+            }
+            ++place.count;
+            place.smallest = glm::min(place.smallest, other.pixels);
         }
-        painter_.paint(target);
     }
+    return found ? std::optional(place) : std::nullopt;
+}
+
+Sheet helpSheet(const HelpPlace& place, glm::ivec2 tile) {
+    const std::vector<HelpEntry> all = helpEntries();
+    std::span<const HelpEntry> entries(all);
+    const Face* face = faceToFit(entries, place.smallest);
+    if (face == nullptr) {
+        const auto share =
+            (all.size() + static_cast<std::size_t>(place.count) - 1) / static_cast<std::size_t>(place.count);
+        const auto first = std::min(all.size(), share * static_cast<std::size_t>(place.index));
+        face = faceToFit(entries.first(share), place.smallest);
+        entries = entries.subspan(first, std::min(share, all.size() - first));
+    }
+    if (face == nullptr || entries.empty()) {
+        return {{tile.x, 0}, kHelpBack};
+    }
+    const HelpColumns columns = columnsOf(entries, *face, tile.x);
+    Sheet sheet({tile.x, columns.height(*face)}, kHelpBack);
+    sheet.fill({0, 0}, {tile.x, std::max(1, face->size / 12)}, kHelpEdge);
+    const int pitch = (tile.x - 2 * columns.padding) / columns.count;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const int column = static_cast<int>(i) / columns.rows, row = static_cast<int>(i) % columns.rows;
+        const glm::ivec2 corner(columns.padding + column * pitch, columns.padding + row * face->lineHeight);
+        sheet.write(*face, entries[i].keys, corner, kHelpKeys);
+        sheet.write(*face, entries[i].effect, corner + glm::ivec2(columns.keys + face->size, 0), kHelpText);
+    }
+    return sheet;
+}
+
+Sheet answerSheet(glm::ivec2 tile, const std::string& text) {
+    const auto width = [&](const Face& face) { return textWidth(face, text) + 2 * face.size; };
+    const Face* best = &faces().front();
+    for (const Face& face : faces()) {
+        if (face.size <= faceFor(tile.y / kLinesOfAnswers).size && width(face) <= tile.x) {
+            best = &face;
+        }
+    }
+    Sheet sheet({std::min(width(*best), tile.x), std::min(best->lineHeight + best->size / 2, tile.y)}, kHelpBack);
+    const int edge = std::max(1, best->size / 12);
+    sheet.fill({0, 0}, sheet.size(), kHelpEdge);
+    sheet.fill({edge, edge}, sheet.size() - 2 * edge, kHelpBack);
+    sheet.write(*best, text, {best->size, best->size / 4}, kHelpText);
+    return sheet;
+}
+
+glm::ivec2 answerCorner(glm::ivec2 tile, glm::ivec2 answer, int below) {
+    const int margin = tile.y / kLinesOfAnswers;
+    return {(tile.x - answer.x) / 2, std::max(0, tile.y - below - margin - answer.y)};
 }
 
 }  // namespace render_node

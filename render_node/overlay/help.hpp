@@ -2,49 +2,38 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <span>
-#include <string_view>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "render_node/gl/eye_target.hpp"
-#include "render_node/gl/pixel_rect.hpp"
-#include "render_node/overlay/flat_painter.hpp"
+#include "render_node/overlay/letters.hpp"
+#include "walls/wall.hpp"
 
 namespace render_node {
 
-/// Entry of the help: a button or key, and its effect.
+/// Entry of the help: a button or keys, and their effect.
 struct HelpEntry {
-    std::string_view key, effect;
+    std::string keys, effect;
 };
-/// Returns the entries for a session whose hand is the pointer (docs/pointer.md).
-[[nodiscard]] std::span<const HelpEntry> pointerHelp();
+/// Returns the uses of the mouse and all keys that windows obey (lockstep::keyList()).
+[[nodiscard]] std::vector<HelpEntry> helpEntries();
 
-/// Place of the help on a tile: a bar along the lower edge, with as many lines as the entries need.
-struct HelpLayout {
-    int dot = 1;  // size of a letter's dot [pixel]
-    std::vector<glm::ivec2>
-        places;      // of each entry, from the top left of the tile [pixel]; empty: the tile is too small
-    int height = 0;  // of the bar [pixel]
+/// Place of a tile in the lowest row of the wall, where people look for the help.
+struct HelpPlace {
+    int index = 0, count = 1;  // among the tiles of this row
+    glm::ivec2 smallest{0};    // [pixel], the smallest sides of these tiles
 };
-[[nodiscard]] HelpLayout helpLayout(glm::ivec2 tile /* [pixel] */, std::span<const HelpEntry> entries);
+/// Returns the place of a tile in the lowest row of `wall`, or nullopt if it is in another row. An explicit screen is
+/// in the lowest row if its lower edge is as low as that of any explicit screen, and the wall has no grid.
+[[nodiscard]] std::optional<HelpPlace> helpPlaceOf(const walls::Wall& wall, const walls::Tile& tile);
 
-/// Bar over a tile's picture that names what buttons and keys do. It hides the picture below it, and changes no depth.
-/// The GL context must be current. Used by one thread.
-class HelpOverlay {
-public:
-    /// Throws std::runtime_error if the shader does not compile.
-    explicit HelpOverlay(glm::ivec2 tile /* [pixel] */);
+/// Returns the help for a tile: a bar as wide as the tile, with the entries in columns. If the tiles of the row are too
+/// small for all entries, each shows its share of them. If even the shares do not fit, the bar has no height.
+[[nodiscard]] Sheet helpSheet(const HelpPlace& place, glm::ivec2 tile /* [pixel] */);
 
-    /// Draws the bar into each target. The targets have the size of the tile.
-    void draw(std::span<const EyeTarget> targets);
-    /// Returns the pixels of a target that the bar covers; empty if the tile is too small.
-    [[nodiscard]] const PixelRect& pixels() const { return pixels_; }
-
-private:
-    glm::ivec2 tile_;
-    HelpLayout layout_;
-    PixelRect pixels_;
-    FlatPainter painter_;
-};
+/// Returns an answer for a tile: a box with one line of text.
+[[nodiscard]] Sheet answerSheet(glm::ivec2 tile /* [pixel] */, const std::string& text);
+/// Returns the place of an answer on a tile: in the middle, above the help, whose height is `below` [pixel].
+[[nodiscard]] glm::ivec2 answerCorner(glm::ivec2 tile /* [pixel] */, glm::ivec2 answer /* [pixel] */, int below);
 
 }  // namespace render_node

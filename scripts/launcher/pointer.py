@@ -43,7 +43,7 @@ def windows_of(wall, render_node, check):
 def session_of(args):
     """Returns the words of `run` for `try`. Replaces the names in `args` by the paths of their files."""
     args.wall, args.scene = layout.found("walls", args.wall), layout.found("scenes", args.scene)
-    return ["run", "--here", "--wall", args.wall, "--scene", args.scene, "--device", DEVICE, "--show", "help", "--out", args.out]
+    return ["run", "--here", "--wall", args.wall, "--scene", args.scene, "--device", DEVICE, "--out", args.out]
 
 
 def print_journal(out, wall):

@@ -13,9 +13,9 @@
 namespace described {
 
 /// Every described type of lockstep/. They are in a list of their own, because their headers need MPI.
-using RankTypes =
-    std::tuple<lockstep::Overlays, lockstep::ViewState, lockstep::FrameMessage, lockstep::Drag, lockstep::WallFigures,
-               lockstep::Fault, lockstep::SessionMessage, lockstep::Readiness, lockstep::RankReport, lockstep::RankHost,
-               lockstep::Remedy, lockstep::Account, lockstep::TileRequest, lockstep::TileValues>;
+using RankTypes = std::tuple<lockstep::Overlays, lockstep::ViewState, lockstep::Answer, lockstep::FrameMessage,
+                             lockstep::Drag, lockstep::WallFigures, lockstep::Fault, lockstep::SessionMessage,
+                             lockstep::Readiness, lockstep::RankReport, lockstep::RankHost, lockstep::Remedy,
+                             lockstep::Account, lockstep::TileRequest, lockstep::TileValues>;
 
 }  // namespace described

@@ -61,6 +61,7 @@ TEST(FrameMessage, TellsAStopFromACapture) {
 
 lockstep::FrameMessage observed() {
     lockstep::FrameMessage message = digging();
+    message.answers = {{0, "F1 shows all keys"}, {7, "heading 35°"}};
     message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, 2, {0, 131, 20571, 4}};
     return message;
 }
@@ -80,8 +81,8 @@ TEST(FrameMessage, TakesNoByteForFiguresThatNobodyAskedFor) {
     EXPECT_GT(base::encoded(message).size(), unobserved);
     lockstep::FrameMessage still;
     still.frame = 1;
-    EXPECT_EQ(base::encoded(still).size(), base::encoded(still.view).size() + 5)
-        << "frame, hash tiles, flags, steps, figures: a byte each";
+    EXPECT_EQ(base::encoded(still).size(), base::encoded(still.view).size() + 6)
+        << "frame, hash tiles, flags, steps, answers, figures: a byte each";
 }
 
 TEST(FrameMessage, EightStepsOfDiggingTravelInOneMessage) {

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "host/clock.hpp"
 #include "tests/support/control_client.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/no_steps.hpp"
@@ -66,6 +67,15 @@ protected:
         std::vector<lockstep::Arrival> arrivals(2);
         arrivals[1].key = key;
         desk_->obey(arrivals);
+    }
+    /// Returns the answer that the windows of a rank show.
+    [[nodiscard]] std::string answerIn(int rank) {
+        for (const lockstep::Answer& answer : desk_->answers(host::monotonicNs())) {
+            if (answer.rank == rank) {
+                return answer.text;
+            }
+        }
+        return {};
     }
     /// Applies two steps with a stroke, so that there is one to undo.
     void stroke() {
@@ -324,6 +334,41 @@ TEST_F(Desk, UndoesTheLastStrokeByControlZAndByU) {
     EXPECT_EQ(requests_.edits.size(), 2U) << "asked for before the first one is shown";
 }
 
+TEST_F(Desk, AnswersEachKeyInTheWindowWhereItWasPressed) {
+    openForPointer();
+    EXPECT_EQ(answerIn(0), lockstep::hint());
+    press(control('z'));
+    EXPECT_EQ(answerIn(1), "nothing to undo");
+    stroke();
+    press(control('z'));
+    EXPECT_EQ(answerIn(1), "undone");
+    press(plain('3'));
+    EXPECT_EQ(answerIn(1), "tool: rectangle");
+    press(plain('.'));
+    EXPECT_EQ(answerIn(1), "heading 355°");
+    press(plain('w'));
+    EXPECT_EQ(answerIn(1), "humidity 10 %");
+    press(plain('0'));
+    EXPECT_EQ(answerIn(1), "tool, depth and humidity of the scene");
+    press(plain(' '));
+    EXPECT_EQ(answerIn(1), "paused; Space resumes");
+    press(plain('1'));
+    EXPECT_EQ(answerIn(1), "tool: sphere; the sand waits until Space resumes");
+    press(plain(' '));
+    EXPECT_EQ(answerIn(1), "resumed");
+    press(plain('m'));
+    EXPECT_EQ(answerIn(1), "hill-shade shown");
+    press({Keystroke::kHome, 0, 0});
+    EXPECT_EQ(answerIn(1), "this wall's view is fixed");
+    press(control('s'));
+    desk_->close();
+    EXPECT_EQ(answerIn(1), "sand saved as saves/save_001.sand");
+    EXPECT_EQ(answerIn(2), "");
+    EXPECT_EQ(answerIn(0), lockstep::hint()) << "answers of one window leave it to the others";
+}
+
+TEST_F(Desk, OfAnotherHandHintsAtNothing) { EXPECT_TRUE(desk_->answers(host::monotonicNs()).empty()); }
+
 TEST_F(Desk, PausesAndResumesBySpace) {
     openForPointer();
     press(plain(' '));
@@ -381,9 +426,11 @@ TEST_F(Desk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
     pointers[1].depth = 2;
     desk_->turnWheels(pointers);
     EXPECT_NEAR(desk_->depth(), 0.7, 1e-12);
+    EXPECT_EQ(answerIn(1), "depth 70 % of the radius");
     pointers[1].depth = -100;
     desk_->turnWheels(pointers);
     EXPECT_EQ(desk_->depth(), master::kShallowest);
+    EXPECT_EQ(answerIn(1), "depth 10 % of the radius, the shallowest");
     press(plain('0'));
     EXPECT_EQ(desk_->depth(), master::kUsualDepth);
     pointers[1] = {};
@@ -397,13 +444,15 @@ TEST_F(Desk, KeepsTheViewOfAWallThatIsNoDesktop) {
     std::array<haptic_bridge::PointerReport, 3> pointers{};
     const auto before = desk_->views().at(0).sceneToRoom;
     pointers[1].wheel = 3;
-    EXPECT_EQ(desk_->moveView(pointers), std::nullopt);
+    desk_->moveView(pointers);
     EXPECT_EQ(pointers[1].wheel, 0);
     EXPECT_EQ(pointers[1].depth, 3) << "the wheel is the depth";
     pointers[2].turnX = 0.25F;
-    EXPECT_EQ(desk_->moveView(pointers), 2) << "answered in the window of rank 2";
+    EXPECT_TRUE(desk_->answers(host::monotonicNs()).empty());
+    desk_->moveView(pointers);
+    EXPECT_EQ(answerIn(2), "this wall's view is fixed");
     pointers[2] = {.pan = {0, 0.1F, 0}};
-    EXPECT_EQ(desk_->moveView(pointers), 2);
+    desk_->moveView(pointers);
     EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
 }
 
@@ -418,7 +467,7 @@ TEST_F(Desk, MovesTheViewOfADesktopAndFramesItAgain) {
     for (const haptic_bridge::PointerReport& move : moves) {
         std::array<haptic_bridge::PointerReport, 2> pointers{haptic_bridge::PointerReport{}, move};
         const auto before = desk_->views().at(0).sceneToRoom;
-        EXPECT_EQ(desk_->moveView(pointers), std::nullopt);
+        desk_->moveView(pointers);
         EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
         EXPECT_EQ(pointers[1].depth, 0);
     }

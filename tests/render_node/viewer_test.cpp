@@ -304,8 +304,8 @@ TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
     for (const std::string& name : walls::stereoNames()) {
         const Stereo stereo = walls::stereoNamed(name);
         walls::Wall wall = gridAndDesk(stereo);
-        wall.tiles[0].pixels = {480, 360};
-        ASSERT_FALSE(render_node::helpLayout(wall.tiles[0].pixels, render_node::pointerHelp()).places.empty());
+        wall.tiles[0].pixels = {640, 480};
+        ASSERT_GT(render_node::helpSheet({0, 1, wall.tiles[0].pixels}, wall.tiles[0].pixels).size().y, 0);
         TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
         sand::Replica replica = dug(0);
         std::vector<Image> before;
@@ -318,7 +318,11 @@ TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
             if (frame % 4 != 0) {
                 dig(replica);
             }
-            painter.paint(replica, state, frame);
+            std::vector<lockstep::Answer> answers;
+            if (frame >= 4 && frame < 20) {
+                answers.push_back({1, frame < 8 ? "tool: sphere" : "humidity 30 %"});
+            }
+            painter.paint(replica, state, frame, false, {}, answers);
             std::vector<Image> now;
             for (const OutputPicture& output : painter.outputs()) {
                 now.push_back(sample::pictureOf(*output.picture));
@@ -333,6 +337,48 @@ TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
         }
         EXPECT_GT(inPart, 6) << name;
         EXPECT_GT(still, 1) << name;
+    }
+}
+
+/// Returns the eyes' pictures of a new painter, which draws all of them whole.
+std::vector<Image> drawnAfresh(const walls::Wall& wall, const scene::Scene& scene, sand::Replica& replica,
+                               const lockstep::ViewState& view) {
+    TilePainter fresh(wall, wall.tiles[0], scene, "host", sand::GridData{scene.terrain});
+    fresh.paint(replica, view, 1);
+    std::vector<Image> pictures;
+    for (const OutputPicture& output : fresh.outputs()) {
+        pictures.push_back(sample::pictureOf(*output.picture));
+    }
+    return pictures;
+}
+
+// An answer comes and goes while sand moves below it, with and without help and statistics.
+TEST_F(Viewer, SeesNothingOfAnAnswerThatHasGone) {
+    for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::passive}) {
+        walls::Wall wall = gridAndDesk(stereo);
+        wall.tiles[0].pixels = {640, 480};
+        TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
+        sand::Replica replica = dug(0);
+        std::vector<Image> hidden, answered;
+        for (std::uint64_t frame = 1; frame <= 12; ++frame) {
+            lockstep::ViewState state = view();
+            state.layers.set(lockstep::Overlay::help, frame >= 7);
+            state.layers.set(lockstep::Overlay::wireframe, frame == 5);
+            const bool answers = frame % 3 == 0;
+            const std::vector<lockstep::Answer> all{{1, frame == 3 ? "undone" : "saved as saves/save_001.sand"}};
+            if (frame % 2 == 0) {
+                dig(replica);
+            }
+            painter.paint(replica, state, frame, false, {}, answers ? std::span(all) : std::span(all).first(0));
+            std::vector<Image> now;
+            for (const OutputPicture& output : painter.outputs()) {
+                now.push_back(sample::pictureOf(*output.picture));
+            }
+            sand::Replica copy(scene_);
+            copy.decodeState(replica.encodeState());
+            EXPECT_EQ(now == drawnAfresh(wall, scene_, copy, state), !answers)
+                << walls::stereoName(stereo) << ", frame " << frame;
+        }
     }
 }
 

@@ -257,7 +257,7 @@ class PointerSession(unittest.TestCase):
         self.assertEqual((ran.returncode, ran.stderr.count("\n")), (2, 1), ran.stderr)
         self.assertIn("--gl osmesa", ran.stderr)
 
-    def test_try_shows_sand_and_help_and_names_its_journal(self):
+    def test_try_shows_sand_and_names_its_journal(self):
         self.server.end()
         self.server = Display("1280x720")
         self.addCleanup(self.server.end)

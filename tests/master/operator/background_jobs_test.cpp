@@ -20,8 +20,8 @@ TEST(BackgroundJobs, AnswerWhenTheyHaveEndedAndNotBefore) {
             gate.get_future().wait();
             return BackgroundJobs::Result{"slow", {}};
         },
-        {1});
-    jobs.start([] { return BackgroundJobs::Result{"quick", sand::Edit::undo}; }, {2, {}});
+        {{.client = 1}});
+    jobs.start([] { return BackgroundJobs::Result{"quick", sand::Edit::undo}; }, {{.client = 2}, {}});
     std::vector<BackgroundJobs::Done> done;
     while (done.empty()) {  // limited by the time-out of the test
         done = jobs.finished(false);
@@ -29,7 +29,7 @@ TEST(BackgroundJobs, AnswerWhenTheyHaveEndedAndNotBefore) {
     ASSERT_EQ(done.size(), 1U);
     EXPECT_EQ(done[0].result.json, "quick");
     EXPECT_EQ(done[0].result.edit.kind, sand::Edit::undo);
-    EXPECT_EQ(done[0].clients, (master::Clients{2, {}}));
+    EXPECT_EQ(done[0].askers, (master::Askers{{.client = 2}, {}}));
     EXPECT_TRUE(jobs.finished(false).empty());
     gate.set_value();
     done = jobs.finished(true);
@@ -39,7 +39,7 @@ TEST(BackgroundJobs, AnswerWhenTheyHaveEndedAndNotBefore) {
 
 TEST(BackgroundJobs, TellWhyOneFailed) {
     BackgroundJobs jobs;
-    jobs.start([]() -> BackgroundJobs::Result { throw std::runtime_error("disk full"); }, {1});
+    jobs.start([]() -> BackgroundJobs::Result { throw std::runtime_error("disk full"); }, {{.client = 1}});
     const std::vector<BackgroundJobs::Done> done = jobs.finished(true);
     ASSERT_EQ(done.size(), 1U);
     EXPECT_EQ(done[0].error, "disk full");

@@ -4,47 +4,143 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 
-#include "render_node/overlay/dot_font.hpp"
+#include "lockstep/key_list.hpp"
+#include "walls/wall_file.hpp"
 
 namespace render_node {
 namespace {
 
-int endOf(const HelpLayout& layout, std::size_t i) {
-    const HelpEntry& entry = pointerHelp()[i];
-    return layout.places[i].x + static_cast<int>(entry.key.size() + 1 + entry.effect.size()) * kGlyphPitch * layout.dot;
+/// Returns how many pixels of a sheet have not the colour of its corner below the edge.
+int inkOf(const Sheet& sheet) {
+    int ink = 0;
+    const std::size_t back = sheet.rgb().size() - 3;
+    for (std::size_t i = 0; i + 2 < sheet.rgb().size(); i += 3) {
+        ink += std::equal(sheet.rgb().begin() + static_cast<std::ptrdiff_t>(i),
+                          sheet.rgb().begin() + static_cast<std::ptrdiff_t>(i) + 3,
+                          sheet.rgb().begin() + static_cast<std::ptrdiff_t>(back))
+                   ? 0
+                   : 1;
+    }
+    return ink;
 }
 
-TEST(Help, IsABarAlongTheLowerEdgeInWhichNoEntriesOverlap) {
-    for (const glm::ivec2 tile : {glm::ivec2(1280, 720), glm::ivec2(640, 480), glm::ivec2(3840, 2160)}) {
-        const HelpLayout layout = helpLayout(tile, pointerHelp());
-        ASSERT_EQ(layout.places.size(), pointerHelp().size()) << tile.x;
-        EXPECT_LE(3 * layout.height, tile.y);
-        for (std::size_t i = 0; i < layout.places.size(); ++i) {
-            EXPECT_GE(layout.places[i].y, tile.y - layout.height);
-            EXPECT_LE(layout.places[i].y + kGlyphHeight * layout.dot, tile.y);
-            EXPECT_LE(endOf(layout, i), tile.x);
-            if (i > 0 && layout.places[i].y == layout.places[i - 1].y) {
-                EXPECT_GT(layout.places[i].x, endOf(layout, i - 1));
-            }
+walls::Wall wallNamed(const std::string& name) {
+    return walls::loadWall(std::string(SANDWALL_SOURCE_DIR "/walls/configs/") + name + ".toml");
+}
+
+TEST(Letters, AreFoundForEveryTextOfTheHelpAndTheHint) {
+    const Face& face = faceFor(16);
+    std::vector<std::string> texts{lockstep::hint(), "heading 35°"};
+    for (const HelpEntry& entry : helpEntries()) {
+        texts.insert(texts.end(), {entry.keys, entry.effect});
+    }
+    const int unknown = textWidth(face, "\xc2\xbf");  // an inverted question mark, which is not baked
+    EXPECT_EQ(unknown, textWidth(face, "?"));
+    for (const std::string& text : texts) {
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            const auto byte = static_cast<unsigned char>(text[i]);
+            const std::size_t length = byte < 0x80 ? 1 : byte < 0xe0 ? 2 : 3;
+            const std::string character = text.substr(i, length);
+            i += length - 1;
+            const Sheet blank({40, 40}, {0, 0, 0});
+            Sheet drawn({40, 40}, {0, 0, 0}), question({40, 40}, {0, 0, 0});
+            drawn.write(face, character, {0, 0}, {255, 255, 255});
+            question.write(face, "?", {0, 0}, {255, 255, 255});
+            EXPECT_EQ(std::ranges::equal(drawn.rgb(), question.rgb()), character == "?") << text;
+            EXPECT_EQ(std::ranges::equal(drawn.rgb(), blank.rgb()), character == " ") << text;
         }
     }
 }
 
-TEST(Help, IsLeftOutWhereItWouldHideTheSand) {
-    for (const glm::ivec2 tile : {glm::ivec2(96, 72), glm::ivec2(1280, 60)}) {
-        const HelpLayout layout = helpLayout(tile, pointerHelp());
-        EXPECT_EQ(layout.height, 0);
-        EXPECT_TRUE(layout.places.empty());
+TEST(Letters, HaveTheirSizeAndStayInTheirLine) {
+    int before = 0;
+    for (const Face& face : faces()) {
+        EXPECT_GT(face.size, before);
+        before = face.size;
+        EXPECT_NEAR(textWidth(face, "mm"), 2 * 0.974 * face.size, 2) << "an m of DejaVu Sans is 0.974 em wide";
+        Sheet above({200, face.lineHeight + 40}, {0, 0, 0});
+        above.write(face, "Qgj|()", {5, 20}, {255, 255, 255});
+        for (int y = 0; y < above.size().y; ++y) {
+            for (int x = 0; x < 200; ++x) {
+                const bool line = y >= 20 && y < 20 + face.lineHeight;
+                EXPECT_TRUE(line || above.rgb()[3 * static_cast<std::size_t>(y * 200 + x)] == 0) << face.size;
+            }
+        }
+    }
+    EXPECT_EQ(faceFor(1).size, faces().front().size);
+    EXPECT_EQ(faceFor(1000).size, faces().back().size);
+    EXPECT_LE(faceFor(25).size, 25);
+}
+
+TEST(Letters, OfBrokenTextAreQuestionMarks) {
+    const Face& face = faceFor(16);
+    for (const char* text : {"\xff", "\xc2", "\xe2\x80", "\x80"}) {
+        EXPECT_EQ(textWidth(face, text) % textWidth(face, "?"), 0) << "and nothing is read behind the end";
     }
 }
 
-TEST(Help, UsesLettersThatTheFontHas) {
-    const auto unknown = glyphOf('~');
-    for (const HelpEntry& entry : pointerHelp()) {
-        for (const std::string_view text : {entry.key, entry.effect}) {
-            EXPECT_TRUE(std::ranges::none_of(text, [&](char letter) { return glyphOf(letter) == unknown; })) << text;
+TEST(Help, HasEveryKeyAndNoOther) {
+    const std::vector<HelpEntry> entries = helpEntries();
+    ASSERT_EQ(entries.size(), lockstep::mouseList().size() + lockstep::keyList().size());
+    for (std::size_t i = 0; i < lockstep::keyList().size(); ++i) {
+        EXPECT_EQ(entries[lockstep::mouseList().size() + i].keys, keyNames(lockstep::keyList()[i]));
+    }
+}
+
+TEST(Help, TakesAtMostThreeFifthsOfATile) {
+    for (const glm::ivec2 tile :
+         {glm::ivec2(640, 480), glm::ivec2(1280, 720), glm::ivec2(1920, 1080), glm::ivec2(3840, 2160)}) {
+        const Sheet sheet = helpSheet({0, 1, tile}, tile);
+        EXPECT_EQ(sheet.size().x, tile.x);
+        EXPECT_LE(5 * sheet.size().y, 3 * tile.y);
+        EXPECT_GT(sheet.size().y, tile.y / 8);
+        EXPECT_GT(inkOf(sheet), 1000);
+    }
+}
+
+// 400 x 300 pixels are too few for all keys, but four such tiles side by side have room.
+TEST(Help, IsDividedAmongSmallTilesOfARow) {
+    const glm::ivec2 tile(400, 300);
+    EXPECT_EQ(helpSheet({0, 1, tile}, tile).size().y, 0) << "one alone would be hidden";
+    std::vector<int> ink;
+    for (int i = 0; i < 4; ++i) {
+        const Sheet sheet = helpSheet({i, 4, tile}, tile);
+        EXPECT_GT(sheet.size().y, 0);
+        EXPECT_LE(5 * sheet.size().y, 3 * tile.y);
+        ink.push_back(inkOf(sheet));
+    }
+    EXPECT_EQ(std::ranges::count(ink, ink[0]), 1) << "each shows other entries";
+    EXPECT_EQ(helpSheet({0, 2, {96, 72}}, {96, 72}).size().y, 0);
+}
+
+TEST(Help, IsInTheLowestRow) {
+    const walls::Wall tiled = wallNamed("tiled_3x4");
+    int shown = 0;
+    for (const walls::Tile& tile : tiled.tiles) {
+        const auto place = helpPlaceOf(tiled, tile);
+        EXPECT_EQ(place.has_value(), tile.row == tiled.grid->rows) << tile.name;
+        if (place) {
+            EXPECT_EQ(place->index, shown++);
+            EXPECT_EQ(place->count, tiled.grid->columns);
+        }
+    }
+    EXPECT_EQ(shown, tiled.grid->columns);
+    const walls::Wall desk = wallNamed("desktop");
+    EXPECT_EQ(helpPlaceOf(desk, desk.tiles[0])->count, 1);
+}
+
+TEST(Answer, FitsTheTileAndIsAboveTheHelp) {
+    for (const glm::ivec2 tile : {glm::ivec2(1, 1), glm::ivec2(160, 120), glm::ivec2(1280, 720)}) {
+        for (const std::string& text : {std::string("undone"), std::string(200, 'm')}) {
+            const Sheet sheet = answerSheet(tile, text);
+            EXPECT_LE(sheet.size().x, tile.x);
+            EXPECT_LE(sheet.size().y, tile.y);
+            const glm::ivec2 corner = answerCorner(tile, sheet.size(), tile.y / 4);
+            EXPECT_GE(corner.x, 0);
+            EXPECT_GE(corner.y, 0);
+            EXPECT_TRUE(tile.y < 100 || corner.y + sheet.size().y <= tile.y - tile.y / 4);
         }
     }
 }

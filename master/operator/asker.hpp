@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "master/operator/control_socket.hpp"
+
+namespace master {
+
+/// The origin of a command, which gets the answer: a client of the control socket, a window in which a key was pressed,
+/// or standard input, which has neither.
+struct Asker {
+    std::optional<ControlSocket::Client> client{};
+    std::optional<int> window{};  // rank of the window
+
+    [[nodiscard]] static Asker at(int rank) { return {{}, rank}; }
+    friend bool operator==(const Asker&, const Asker&) = default;
+};
+using Askers = std::vector<Asker>;  // those that wait for one answer
+
+}  // namespace master
