@@ -42,9 +42,9 @@ constexpr std::array kQuit{named(Keystroke::kEscape), plain('q'), control('q')};
 constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the tool"},
                                           {KeyAction::larger, kLarger, "larger tool", true},
                                           {KeyAction::smaller, kSmaller, "smaller tool", true},
-                                          {KeyAction::turnLeft, kTurnLeft, "turns the tool left", true},
-                                          {KeyAction::turnRight, kTurnRight, "turns the tool right", true},
-                                          {KeyAction::sceneTool, kScene, "tool as the scene has it"},
+                                          {KeyAction::turnLeft, kTurnLeft, "turns tool left", true},
+                                          {KeyAction::turnRight, kTurnRight, "turns tool right", true},
+                                          {KeyAction::sceneTool, kScene, "tool of the scene"},
                                           {KeyAction::wetter, kWetter, "wetter sand", true},
                                           {KeyAction::drier, kDrier, "drier sand", true},
                                           {KeyAction::undo, kUndo, "undoes the last stroke"},
@@ -63,11 +63,11 @@ constexpr std::array<KeyEntry, 22> kKeys{{{KeyAction::tool, kTools, "chooses the
                                           {KeyAction::quit, kQuit, "ends the session", false, true}}};
 
 constexpr std::array<MouseEntry, 6> kMouse{{{"left button", "digs"},
-                                            {"wheel", "zooms (fixed view: depth)"},
+                                            {"wheel", "zooms, or sets depth"},
                                             {"Shift+wheel", "depth of the tool"},
                                             {"Ctrl+wheel", "size of the tool"},
                                             {"right button", "turns the sand"},
-                                            {"middle, Shift+right button", "moves the sand"}}};
+                                            {"middle, Shift+right", "moves the sand"}}};
 
 }  // namespace
 

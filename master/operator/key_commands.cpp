@@ -142,6 +142,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         case KeyAction::save:
         case KeyAction::capture:  // answered when the files are written
         case KeyAction::help:
+        case KeyAction::fullScreen:
         case KeyAction::quit:
             return {};
     }

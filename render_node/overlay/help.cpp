@@ -39,11 +39,11 @@ HelpColumns columnsOf(std::span<const HelpEntry> entries, const Face& face, int 
 bool fits(std::span<const HelpEntry> entries, const Face& face, glm::ivec2 tile) {
     const HelpColumns columns = columnsOf(entries, face, tile.x);
     return columns.keys + columns.effects + face.size + 2 * columns.padding <= tile.x &&
-           2 * columns.height(face) <= tile.y;
+           5 * columns.height(face) <= 3 * tile.y;
 }
 
-/// Returns the largest face up to the usual one in which the entries take at most half of a tile; null if there is
-/// none.
+/// Returns the largest face up to the usual one in which the entries take at most three fifths of a tile; null if there
+/// is none.
 const Face* faceToFit(std::span<const HelpEntry> entries, glm::ivec2 tile) {
     const Face* best = nullptr;
     for (const Face& face : faces()) {
