@@ -51,7 +51,7 @@ void main() {
     float here = heightAt(cell);
     vNormal = normalize(vec3(-rise / (vec2(max(high - low, ivec2(1))) * uCell), 1.0));
     vScene = vec3(clamp(vec2(vertex) - 0.5, vec2(0.0), vec2(uSize)) * uCell, here);
-    Shade shade = shadeOf(vNormal, openSky(cell, here), texelFetch(uMottling, cell & 255, 0).b);
+    Shade shade = shadeOf(vScene, vNormal, openSky(cell, here), texelFetch(uMottling, cell & 255, 0).b);
     vColour = shade.colour;
     float gone = float(texelFetch(uStart, cell, 0).r) * uUnit - here;
     float much = uCutAndFill * clamp(abs(gone) / (2.0 * uCell), 0.0, 1.0);

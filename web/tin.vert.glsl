@@ -14,7 +14,7 @@ out vec3 vNormal;
 void main() {
     vScene = position;
     vNormal = normal;
-    Shade shade = shadeOf(vNormal, 1.0, 0.5);
+    Shade shade = shadeOf(vScene, vNormal, 1.0, 0.5);
     vColour = shade.colour;
     vInShadow = shade.inShadow;
     vGrainAt = grainAt(vScene);

@@ -52,7 +52,7 @@ def hash_parts():
 SAND, TIN, FORCE = "bench/sand", "bench/tin", "bench/force"
 PARTS = [
     Part("error-at-rest", "--sizes 32,64,128,256,512,1024", "--sizes 32,64,128", (200, 3), f"{SAND}/rest_curves.cpp", False),
-    Part("sweeps", "--sizes 32,64,128,256,512", "--sizes 32,64,128", (60, 3), f"{SAND}/rest_curves.cpp", False),
+    Part("sweeps", "--sizes 32,64,128,256,512", "--sizes 32,64,128", (100, 3), f"{SAND}/rest_curves.cpp", False),
     Part("anisotropy", "--sizes 64,256", "--sizes 64,128", (20, 2), f"{SAND}/rest_curves.cpp", False),
     Part("decay", "--sizes 128", "--sizes 64", (5, 1), f"{SAND}/rest_curves.cpp", False),
     Part("height-bits", "--sizes 32,64,128", "--sizes 32,64", (5, 1), f"{SAND}/unit_curves.cpp", False),
@@ -65,9 +65,9 @@ PARTS = [
     Part("extremes", "--runs 1", "--runs 1", (2, 2), f"{SAND}/extremes.cpp", False),
     Part("force-work", "--sizes 256", "--sizes 256", (2, 2), f"{FORCE}/force_work.cpp", False),
     *hash_parts(),
-    Part("work-precision", "--sizes 16,32,64,128,256,512 --runs 10", "--sizes 16,32,64,128 --runs 3", (400, 20), f"{SAND}/work_precision.cpp"),
+    Part("work-precision", "--sizes 16,32,64,128,256,512 --runs 10", "--sizes 16,32,64,128 --runs 3", (450, 20), f"{SAND}/work_precision.cpp"),
     Part("edit", "--sizes 512,1024,2048 --runs 10", "--sizes 512,2048 --runs 3", (20, 5), f"{SAND}/edit.cpp"),
-    Part("dig", "--sizes 256,512,2048 --runs 10", "--sizes 256,512,2048 --runs 1", (900, 120), f"{SAND}/dig.cpp"),
+    Part("dig", "--sizes 256,512,2048 --runs 10", "--sizes 256,512 --runs 1", (1500, 120), f"{SAND}/dig.cpp"),
     Part("throughput", "--sizes 64,128,256,512,1024,2048,4096 --runs 10", "--sizes 64,256,1024 --runs 5", (120, 10), f"{SAND}/throughput.cpp"),
     Part("force-rate", "--sizes 256 --runs 10", "--sizes 256 --runs 2", (15, 4), f"{FORCE}/force_rate.cpp"),
     Part("parts", "--sizes 512,1024,2048 --runs 10", "--sizes 512 --runs 3", (30, 2), f"{SAND}/parts.cpp"),
