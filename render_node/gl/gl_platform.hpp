@@ -80,8 +80,8 @@ public:
     [[nodiscard]] virtual bool quadBuffers(std::size_t /* window */) const { return false; }
     /// Returns the present size of a window that the picture follows [pixel].
     [[nodiscard]] virtual glm::ivec2 size(std::size_t /* window */) const { return {}; }
-    /// Makes the driver give the back buffer of a window the present size of the window.
-    virtual void resizeBuffer(std::size_t /* window */) {}
+    /// Says that a window has another size since the last swap(). For some frames keepsPicture() is then false.
+    virtual void resized(std::size_t /* window */) {}
     /// Processes the events of the window system. Throws std::runtime_error, which names the output, if a window is
     /// lost.
     virtual void check() {}

@@ -75,22 +75,23 @@ public:
     }
 
     [[nodiscard]] glm::ivec2 size(std::size_t window) const override { return windows_.at(window).pixels(); }
-    // Without a swap, Mesa's software renderer asks for the size of a window only when its context is bound again.
-    void resizeBuffer(std::size_t window) override {
-        glfwMakeContextCurrent(nullptr);
-        makeCurrent(window);
-    }
+    // Mesa's software renderer gives a back buffer its new size only after a swap. Until then a copy of a part beyond
+    // the former size is refused by the X server (MIT-SHM, BadValue), which would end the rank.
+    void resized(std::size_t window) override { wholeSwaps_.at(window) = kWholeSwaps; }
     [[nodiscard]] bool takeExposed(std::size_t window) override { return windows_.at(window).takeExposed(); }
-    [[nodiscard]] bool keepsPicture(std::size_t window) const override { return parts_.at(window).has_value(); }
+    [[nodiscard]] bool keepsPicture(std::size_t window) const override {
+        return parts_.at(window).has_value() && wholeSwaps_.at(window) == 0;
+    }
 
     void swap(std::uint64_t frame, std::span<const PixelRect> changed) override {
         for (std::size_t i = 0; i < windows_.size(); ++i) {
-            if (parts_[i]) {
+            if (keepsPicture(i)) {
                 if (!changed[i].empty()) {
                     parts_[i]->show(changed[i]);
                 }
             } else if (!eyes_[i] || !eyes_[i]->swap(frame)) {
                 glfwSwapBuffers(windows_[i].handle());
+                wholeSwaps_[i] = std::max(0, wholeSwaps_[i] - 1);
             }
         }
     }
@@ -128,6 +129,7 @@ private:
         group_.emplace(loader, drawables);
         eyes_.resize(windows_.size());
         parts_.resize(windows_.size());
+        wholeSwaps_.resize(windows_.size());
         for (std::size_t i = 0; i < windows_.size(); ++i) {
             const bool inTurn = eyesInTurn_ && !windows_[i].quadBuffers();
             if (inTurn) {
@@ -160,7 +162,10 @@ private:
     bool mayClose_;  // whether a user who closes a window ends the session
     std::optional<SwapGroup> group_;
     std::vector<std::optional<EyesByRetrace>> eyes_;
+    static constexpr int kWholeSwaps = 30;  // [frame] after a change of size: one swap, and a margin for more changes
+
     std::vector<std::optional<PartCopy>> parts_;
+    std::vector<int> wholeSwaps_;  // [frame], for which each window is still swapped as a whole
 };
 
 }  // namespace

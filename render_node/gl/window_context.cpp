@@ -82,8 +82,7 @@ public:
         for (std::size_t i = windows_.size(); i-- > 0;) {
             const bool resized = sizeOf(i) != std::exchange(sizes_[i], sizeOf(i));
             if (resized) {
-                platform_->resizeBuffer(i);
-                platform_->makeCurrent(0);
+                platform_->resized(i);
             }
             const bool fits = glm::ivec2(outputs[i].picture->width(), outputs[i].picture->height()) == sizes_[i];
             const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr && !resized && fits;

@@ -17,7 +17,7 @@ import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-from command_line import Parser
+from command_line import Parser, above
 from wall_rates import ROOT, swaying_head
 
 RADII = (0.24, 0.6)  # scene units; 61 and 153 cells
@@ -52,7 +52,7 @@ def row(what, summary):
 def main():
     parser = Parser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--before", type=pathlib.Path, metavar="ROOT", help="sources of an earlier build, with build/release")
-    parser.add_argument("--seconds", type=float, default=20, metavar="S", help="of each session, if frames are on time (default: 20)")
+    parser.add_argument("--seconds", type=above(float, 0), default=20, metavar="S", help="of each session, if frames are on time (default: 20)")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
