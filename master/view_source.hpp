@@ -6,8 +6,8 @@
 #include <optional>
 #include <string_view>
 
-#include "lockstep/frame_message.hpp"
 #include "haptic_bridge/hand/pointer.hpp"
+#include "lockstep/frame_message.hpp"
 #include "lockstep/test_pattern.hpp"
 #include "sand/model/surface.hpp"
 #include "scene/model/scene.hpp"

@@ -194,7 +194,8 @@ bool Facets::findSlots(const tin::Triangles& mesh, const tin::LatticePoint& midd
 void Facets::add(const tin::SurfaceView& tin, std::int32_t slot, const tin::LatticePoint& middle) {
     const tin::Triangle& triangle = tin.triangles.triangles[at(slot)];
     // Begins with the smallest vertex, so that the order of the corners in the mesh does not affect rounding.
-    const auto first = static_cast<std::size_t>(std::min_element(triangle.corner.begin(), triangle.corner.end()) - triangle.corner.begin());
+    const auto first = static_cast<std::size_t>(std::min_element(triangle.corner.begin(), triangle.corner.end()) -
+                                                triangle.corner.begin());
     std::array<std::int64_t, 3> x{}, y{};  // from the middle of the square [part]
     std::array<double, 3> height{};
     Facet facet{};
