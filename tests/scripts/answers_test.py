@@ -6,84 +6,31 @@ usage: answers_test.py   (SANDWALL_BIN: folder of the programs; SANDWALL_KEEP_PI
 """
 
 import json
-import pathlib
-import struct
 import subprocess
 import time
 import unittest
-import zlib
 
+import picture_files
 import pointer_test
 from pointer_test import PATIENCE
 
-EDGE = (158, 128, 84)  # colour of the edge of answers and help (render_node/overlay/help.cpp)
+EDGE = bytes((158, 128, 84))  # colour of the edge of answers and help (render_node/overlay/help.cpp)
 SIZE = (640, 480)
 # Longest time in which a key is answered, and in which an answer goes away, on a busy machine.
 ANSWERED, GONE = 30, 60
 
 
-class Screen:
-    """Rows of pixels, from the top. A pixel is (red, green, blue)."""
-
-    def __init__(self, rows):
-        self.rows = rows
-
-    @classmethod
-    def of_server(cls, folder):
-        """Reads the memory of Xvfb, which has the format of xwd."""
-        data = (pathlib.Path(folder) / "Xvfb_screen0").read_bytes()
-        header = struct.unpack(">25I", data[:100])
-        begin, width, height, line = header[0] + 12 * header[19], header[4], header[5], header[12]
-        rows = []
-        for y in range(height):
-            row = data[begin + y * line:begin + y * line + 4 * width]
-            rows.append(list(zip(row[2::4], row[1::4], row[0::4])))
-        return cls(rows)
-
-    @classmethod
-    def of_png(cls, file):
-        """Reads a PNG file with 8 bits for each of three colours."""
-        data, at, packed, width = file.read_bytes(), 8, b"", 0
-        while at < len(data):
-            length, kind = struct.unpack(">I4s", data[at:at + 8])
-            body = data[at + 8:at + 8 + length]
-            if kind == b"IHDR":
-                width = struct.unpack(">I", body[:4])[0]
-                assert body[8:10] == b"\x08\x02", "not 8-bit RGB"
-            elif kind == b"IDAT":
-                packed += body
-            at += length + 12
-        raw, line = zlib.decompress(packed), 3 * width
-        rows, above = [], bytes(line)
-        for begin in range(0, len(raw), line + 1):
-            row = cls.unfiltered(raw[begin], bytearray(raw[begin + 1:begin + 1 + line]), above)
-            rows.append(list(zip(row[0::3], row[1::3], row[2::3])))
-            above = row
-        return cls(rows)
-
-    @staticmethod
-    def unfiltered(kind, row, above):
-        for i in range(len(row)):
-            left, up, corner = (row[i - 3] if i >= 3 else 0), above[i], (above[i - 3] if i >= 3 else 0)
-            if kind == 4:  # the neighbour that is nearest to left + up - corner
-                guess = left + up - corner
-                best = min((left, up, corner), key=lambda value: abs(guess - value))
-            else:
-                best = (0, left, up, (left + up) // 2)[kind]
-            row[i] = (row[i] + best) & 255
-        return row
-
-    def panels(self):
-        """Returns the lengths of the horizontal edges of answers and of the help, from the top."""
-        found = []
-        for row in self.rows:
-            longest = run = 0
-            for pixel in row:
-                run = run + 1 if pixel == EDGE else 0
-                longest = max(longest, run)
-            if longest >= 40:  # sand has no such line
-                found.append(longest)
-        return found
+def panels(picture):
+    """Returns the lengths of the horizontal edges of answers and of the help in a picture [pixel], from the top."""
+    found = []
+    for row in picture.rows:
+        longest = run = 0
+        for at in range(0, len(row), 3):
+            run = run + 1 if row[at:at + 3] == EDGE else 0
+            longest = max(longest, run)
+        if longest >= 40:  # sand has no such line
+            found.append(longest)
+    return found
 
 
 class Keys(pointer_test.PointerSession):
@@ -99,7 +46,7 @@ class Keys(pointer_test.PointerSession):
                              '\n[[place]]\ntiles = ["r1c1"]\nwindows = [[0, 0]]\n')
 
     def screen(self):
-        return Screen.of_server(self.folder)
+        return picture_files.read_screen(self.folder / "Xvfb_screen0")
 
     def key(self, *keys):
         for name in keys:
@@ -108,8 +55,8 @@ class Keys(pointer_test.PointerSession):
 
     def wait_for_panels(self, wanted, seconds):
         deadline = time.monotonic() + seconds
-        while not wanted(panels := self.screen().panels()):
-            self.assertLess(time.monotonic(), deadline, panels)
+        while not wanted(found := panels(self.screen())):
+            self.assertLess(time.monotonic(), deadline, found)
             time.sleep(0.05)
 
     def answered(self, name=""):
@@ -118,7 +65,7 @@ class Keys(pointer_test.PointerSession):
             self.keep_picture(name)
 
     def gone(self):
-        self.wait_for_panels(lambda panels: not panels, GONE)
+        self.wait_for_panels(lambda found: not found, GONE)
 
     def stroke(self, y):
         self.drag([(220, y), (320, y), (420, y)])
@@ -138,7 +85,7 @@ class Keys(pointer_test.PointerSession):
         self.key("g", "g")
         self.answered("answer.png")
         self.key("F1")
-        self.wait_for_panels(lambda panels: SIZE[0] in panels, ANSWERED)
+        self.wait_for_panels(lambda found: SIZE[0] in found, ANSWERED)
         self.keep_picture("help.png")
         self.key("question")
         self.gone()
@@ -151,7 +98,7 @@ class Keys(pointer_test.PointerSession):
         capture = self.out / "capture_001" / "wall.png"
         self.wait_for_file(capture)
         self.answered("captured.png")
-        self.assertEqual(Screen.of_png(capture).panels(), [])
+        self.assertEqual(panels(picture_files.read_png(capture)), [])
         self.wait_for_status(lambda now: now["tool_shape"] == "rectangle")
 
         # The tool's size, heading and humidity, and back to the scene.

@@ -10,7 +10,6 @@ import json
 import os
 import pathlib
 import shutil
-import struct
 import subprocess
 import sys
 import tempfile
@@ -22,6 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / room) for room in ("figures", "launcher")]
 import desk  # noqa: E402
 import events  # noqa: E402
+import picture_files  # noqa: E402
 import session_control  # noqa: E402
 import x_server  # noqa: E402
 
@@ -283,13 +283,13 @@ class PointerSession(unittest.TestCase):
         windows = {"left": (0, 8, 192, 192), "front": (192, 8, 256, 192), "right": (448, 8, 192, 192), "floor": (192, 200, 256, 192)}
         self.drag([(320, 130), (320, 160), (320, 190), (320, 205), (320, 230), (320, 260)])
         self.assertEqual(self.status()["stereo"], "mono")
-        picture = screen_of(frames / "Xvfb_screen0")
+        picture = picture_files.read_screen(frames / "Xvfb_screen0")
         self.keep_picture("wall_on_a_desk.png")
         for name, (x, y, width, height) in windows.items():
             for place in ((x, y), (x + width - 1, y), (x, y + height - 1), (x + width - 1, y + height - 1)):
-                self.assertNotEqual(picture(*place), (0, 0, 0), f"{place} of {name}")
+                self.assertNotEqual(picture.pixel(*place), (0, 0, 0), f"{place} of {name}")
         for place in ((0, 7), (639, 7), (320, 7), (191, 200), (448, 200), (320, 392), (0, 399)):
-            self.assertEqual(picture(*place), (0, 0, 0), f"{place} is beside all windows")
+            self.assertEqual(picture.pixel(*place), (0, 0, 0), f"{place} is beside all windows")
         self.quit(session)
         summary = json.loads((self.out / "summary.json").read_text())
         self.assertEqual(summary["ranks"], 4)
@@ -299,20 +299,6 @@ class PointerSession(unittest.TestCase):
         first, last = dug.index(True), len(dug) - 1 - dug[::-1].index(True)
         self.assertTrue(all(dug[first:last + 1]), dug)
         self.assertGreater(last - first, 20)
-
-
-def screen_of(file):
-    """Returns a function that returns the colour of a pixel of the screen that Xvfb keeps in `file`, in the format of xwd."""
-    content = file.read_bytes()
-    header = struct.unpack(">25I", content[:100])
-    begin, line, bytes_per_pixel = header[0] + 12 * header[19], header[12], header[11] // 8
-    order = "little" if header[7] == 0 else "big"
-
-    def colour(x, y):
-        at = begin + y * line + x * bytes_per_pixel
-        value = int.from_bytes(content[at:at + bytes_per_pixel], order)
-        return value >> 16 & 255, value >> 8 & 255, value & 255
-    return colour
 
 
 class WallOnADesk(unittest.TestCase):
