@@ -13,9 +13,9 @@ namespace base {
 /// for different ones. Other keys have the codes below.
 struct Keystroke {
     static constexpr std::uint8_t kShift = 1, kControl = 2, kAlt = 4, kSuper = 8;
-    static constexpr std::uint16_t kEscape = 27, kF1 = 0x101, kF11 = 0x10b, kF12 = 0x10c, kHome = 0x201,
-                                   kPageUp = 0x202,
-                                   kPageDown = 0x203;  // F2 to F10 are between F1 and F11
+    static constexpr std::uint16_t kEscape = 27;
+    static constexpr std::uint16_t kF1 = 0x101, kF11 = 0x10b, kF12 = 0x10c;  // F2 to F10 are between F1 and F11
+    static constexpr std::uint16_t kHome = 0x201, kPageUp = 0x202, kPageDown = 0x203;
 
     std::uint16_t code = 0;  // 0: no key
     std::uint8_t modifiers = 0;

@@ -63,7 +63,7 @@ struct KeyFound {
 
 /// Returns the name of a key as it is on keyboards, such as "Ctrl+Z" or "F1".
 [[nodiscard]] std::string keyName(base::Keystroke key);
-/// Returns the names of an entry's keys, such as "Ctrl+Z, U". The digits of the tools are one name: "1 – 6".
+/// Returns the names of an entry's keys, such as "Ctrl+Z U". The digits of the tools are one name: "1 – 6".
 [[nodiscard]] std::string keyNames(const KeyEntry& entry);
 
 /// A use of the mouse, for the help and docs/pointer.md.

@@ -17,7 +17,7 @@ enum class Overlay : std::uint8_t {
     hillShade,   // light and dark by slope, as on maps
     force,       // the tool's force, as an arrow
     statistics,  // frame times and agreement of the wall, on every tile
-    help         // a list of buttons and keys, on the tile of rank 1
+    help         // a list of buttons and keys, on the tiles of the lowest row
 };
 
 inline constexpr std::array<std::string_view, 5> kOverlayNames{"wireframe", "hill-shade", "force", "statistics",

@@ -7,8 +7,9 @@ namespace render_node {
 ///
 /// Makes the context and the windows that rank RANK of the wall on standard input would use. Prints the renderer, and
 /// then one line for each shortcoming. With `--json` it prints one object with `backend`, `renderer` and the list
-/// `shortcomings` instead. With windows it has the `work_area` of the first monitor, too. Rank 0 needs no wall and has
-/// no windows. Does not use MPI. Returns the exit status. Prints errors on standard error, one line each.
+/// `shortcomings` instead. With `--gl glfw` it has the `work_area` of the first monitor, too, also for rank 0. Rank 0
+/// needs no wall and has no windows. Does not use MPI. Returns the exit status. Prints errors on standard error, one
+/// line each.
 int probeMain(int argc, char** argv);
 
 }  // namespace render_node

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "render_node/overlay/help.hpp"
 #include "scene/model/scene.hpp"
 #include "walls/projection.hpp"
 
@@ -126,9 +127,11 @@ void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view,
 void TilePainter::showHelp(bool shown) {
     if (!shown) {
         hide(help_);
-    } else if (const auto place = helpPlaceOf(*wall_, *tile_); place && !help_.panel) {
-        const Sheet sheet = helpSheet(*place, tile_->pixels);
-        help_.panel.emplace(sheet, glm::ivec2(0, tile_->pixels.y - sheet.size().y), tile_->pixels.y);
+    } else if (!help_.panel) {
+        if (const auto place = helpPlaceOf(*wall_, *tile_)) {
+            const Sheet sheet = helpSheet(*place, tile_->pixels);
+            help_.panel.emplace(sheet, glm::ivec2(0, tile_->pixels.y - sheet.size().y), tile_->pixels.y);
+        }
     }
 }
 

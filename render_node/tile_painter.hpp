@@ -10,7 +10,6 @@
 #include "lockstep/frame_message.hpp"
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "render_node/overlay/help.hpp"
 #include "render_node/overlay/statistics.hpp"
 #include "render_node/overlay/test_pattern.hpp"
 #include "render_node/overlay/text_panel.hpp"

@@ -62,7 +62,7 @@ int main(int argc, char** argv) {
     const host::Option stereo = line.option("--stereo", options.stereo, "check it as shown in this mode");
     line.flag("--mono", options.mono, "check it as shown without stereo").excludes(stereo);
     line.option("--desk", options.desk,
-                "check it as shown in windows on this area of a desktop, in place of its places")
+                "check it as shown in windows on this area of a desktop, instead of where its file places them")
         .metavar("WIDTHxHEIGHT+X+Y")
         .excludes(stereo);
     line.option("--svg", options.svg, "draw front view and plan into this file");

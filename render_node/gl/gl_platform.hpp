@@ -76,6 +76,9 @@ public:
     virtual void makeCurrent(std::size_t context) = 0;
     [[nodiscard]] virtual GlFunction functionNamed(const char* name) = 0;
 
+    /// Returns the part of the first monitor that the desktop leaves to windows; nullopt without a display.
+    [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
+
     // The functions below are for windows. They are not called off screen.
     [[nodiscard]] virtual bool quadBuffers(std::size_t /* window */) const { return false; }
     /// Returns the present size of a window that the picture follows [pixel].
@@ -102,8 +105,6 @@ public:
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
-    /// Returns the part of the first monitor that the desktop leaves to windows; nullopt without a display.
-    [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.

@@ -36,9 +36,9 @@ struct WindowInput {
 
 /// Window of one output, with its OpenGL context. It shows a cursor only if the request asks for the pointer.
 ///
-/// A window that the wall file does not place belongs to a desktop: it has a frame, an icon and a title. Its first size
-/// is that of the wall file times the scale of the monitor, and at most 90 % of the monitor. If the picture follows it,
-/// the user may change its size, and F11 switches to full screen and back.
+/// A window that the wall file does not place belongs to a desktop: it has a frame, an icon and a title. If the picture
+/// follows it, its first size is that of the wall file times the scale of the monitor, and at most 90 % of the monitor.
+/// The user may then change its size, and F11 switches to full screen and back.
 class GlfwWindow {
 public:
     /// Makes a hidden window, for its context only.

@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 
 #include <array>
+#include <utility>
 
 namespace render_node {
 namespace {

@@ -2,6 +2,7 @@
 #include "render_node/overlay/help.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "lockstep/key_list.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render_node/overlay/text_panel.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "render_node/overlay/letters.hpp"

@@ -3,14 +3,14 @@
 // renderer shades the pixels of small triangles several times. Only the tool's shadow may be finer. The position in the
 // room is the same sum in every tile, so that tiles join.
 layout(location = 0) in float aHeight;  // scene unit
-layout(location = 1) in vec2 aGrid;     // place of the vertex [cell]
+layout(location = 1) in vec2 aGrid;     // place of the vertex [uCell]
 layout(location = 2) in vec2 aNormal;   // east and north
 layout(location = 3) in vec2 aShade;    // open sky, mottling
 
 uniform mat4 uSceneToRoom;
 uniform mat4 uRoomToClip;
-uniform float uCell;   // scene unit
-uniform vec2 uCells;   // columns and rows of the field
+uniform float uCell;   // unit of aGrid [scene unit]
+uniform vec2 uCells;   // sides of the field [uCell]
 uniform float uFirst;  // value of aGrid at the field's edge; vertices with smaller values are on the edge
 
 // invariant makes positions equal in every program, so that surfaces of different programs join.

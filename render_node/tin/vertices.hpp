@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -49,7 +48,7 @@ public:
     /// Replaces the whole surface, as an update of everything would.
     [[nodiscard]] Change replaceWhole(const sand::tin::SurfaceView& tin);
     /// Returns a box around everything that an update with `sandChange` may change, before and after. Returns nullopt
-    /// if the rim may change. Uses the current state of this surface and of `tin`.
+    /// if the rim may change, and always if the field has holes. Uses the current state of this surface and of `tin`.
     ///
     /// The boxes of all changes of the sand since the last update together bound the result of one update with all of
     /// them.
@@ -67,7 +66,7 @@ public:
     }
     /// Returns the box around a chunk that has triangles.
     [[nodiscard]] const Box& boxOf(TinChunk& chunk) const { return TinChunks::boxOf(geometry_, chunk); }
-    /// Returns the lowest and the highest height that any vertex has ever had.
+    /// Returns the lowest and the highest height that any vertex of ground has ever had.
     [[nodiscard]] HeightRange heightsEver() const { return ever_; }
     [[nodiscard]] SandRim rim() const;
 

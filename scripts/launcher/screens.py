@@ -5,7 +5,7 @@ import os
 import re
 import socket
 
-MOST_OUTPUTS = 2  # a desktop has room for as many windows
+MOST_OUTPUTS = 2  # [output] of a wall whose windows open by themselves
 PATIENCE_SECONDS = 2
 FIRST_PORT = 6000  # X display N listens at this port plus N, if it listens on TCP
 

@@ -38,8 +38,7 @@ TEST(KeyList, HasEachKeyAndEachActionOnce) {
     EXPECT_EQ(actions.size(), static_cast<std::size_t>(KeyAction::quit) + 1);
 }
 
-// Of the characters that can be typed with AltGr alone on a German or a French keyboard, and the letters that both
-// have.
+// None of the characters that need AltGr on a German or a French keyboard.
 TEST(KeyList, NeedsNoAltGr) {
     constexpr std::string_view kAltGr = "@{}[]\\|~#^`";
     for (const KeyEntry& entry : keyList()) {

@@ -352,7 +352,7 @@ std::vector<Image> drawnAfresh(const walls::Wall& wall, const scene::Scene& scen
     return pictures;
 }
 
-// An answer comes and goes while sand moves below it, with and without help and statistics.
+// An answer comes and goes while sand moves below it, with and without help and wireframe.
 TEST_F(Viewer, SeesNothingOfAnAnswerThatHasGone) {
     for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::passive}) {
         walls::Wall wall = gridAndDesk(stereo);

@@ -101,7 +101,9 @@ TEST(DeskWindows, OfProjectorsThatOverlapTouch) {
 }
 
 TEST(DeskWindows, OfEverySampleFitOnAnyDesktop) {
-    std::mt19937 random(test::randomSeed());
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
     for (const std::string& name : configNames()) {
         for (int i = 0; i < 20; ++i) {
             const DeskArea area{{100 + static_cast<int>(random() % 3000), 100 + static_cast<int>(random() % 2000)},

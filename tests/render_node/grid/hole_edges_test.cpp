@@ -32,7 +32,9 @@ double lengthOf(const CornerPlace& from, const CornerPlace& to, int columns, int
 // Edges of triangles are in pairs, except along the outline. So the surface has no crack, and ends at the edges of
 // cells.
 TEST(HoleEdges, CutTheSurfaceAlongTheEdgesOfCellsWithoutACrack) {
-    std::mt19937 random(test::randomSeed());
+    const unsigned seed = test::randomSeed();
+    SCOPED_TRACE(test::again(seed));
+    std::mt19937 random(seed);
     for (int round = 0; round < 50; ++round) {
         const int columns = 3 + static_cast<int>(random() % 9), rows = 3 + static_cast<int>(random() % 7);
         sand::HeightField field(columns, rows, 1);
