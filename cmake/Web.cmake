@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The page's replica for WebAssembly: base, sand, the values of a scene, the journal and the hand. scripts/web.sh
-# configures it with emscripten's toolchain. Nothing else of the project is built then.
+# The page's replica for WebAssembly: base, sand, the values of a scene and the journal. scripts/web.sh configures it with
+# emscripten's toolchain. Nothing else of the project is built then.
 set(SANDWALL_NODE_MODULES ${PROJECT_SOURCE_DIR}/web/node_modules CACHE PATH "What npm ci has installed")
 
 # The exceptions and vectors of WebAssembly, which all browsers have since 2023. Without the third option each conversion
@@ -19,7 +19,6 @@ foreach(header fmt fast_float xxhash.h)
 endforeach()
 include_directories(SYSTEM ${headers})
 add_library(fmt INTERFACE)
-target_compile_definitions(fmt INTERFACE FMT_HEADER_ONLY)
 add_library(fmt::fmt ALIAS fmt)
 add_compile_definitions(FMT_HEADER_ONLY)
 add_library(xxhash STATIC web/xxhash.c)
@@ -44,5 +43,4 @@ add_subdirectory(base)
 add_subdirectory(sand)
 add_subdirectory(scene)
 add_subdirectory(journal)
-add_subdirectory(haptic_bridge)
 add_subdirectory(web)

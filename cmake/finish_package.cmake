@@ -4,6 +4,20 @@
 set(tree "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr")
 set(docs "${tree}/share/doc/sandwall")
 
+# The web page contains works of others.
+if(EXISTS "${tree}/share/sandwall/web")
+    set(page
+"
+Files: usr/share/sandwall/web/*
+Copyright: 2026 the Sandwall authors
+ and the authors whom usr/share/sandwall/web/licences.txt names
+License: Sandwall-web-page
+ Sandwall's own part is licensed under the Apache License, Version 2.0. The page
+ also contains three.js, fmt, fast_float, zstd, xxHash, and the libraries of
+ emscripten. Their licences are in /usr/share/sandwall/web/licences.txt.
+")
+endif()
+
 file(WRITE "${docs}/copyright"
 "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: Sandwall
@@ -13,7 +27,7 @@ Copyright: 2026 the Sandwall authors
 License: Apache-2.0
  Licensed under the Apache License, Version 2.0. On Debian systems the full text
  is in /usr/share/common-licenses/Apache-2.0.
-")
+${page}")
 file(REMOVE "${docs}/LICENSE")  # copyright names the licence, which every Debian system has
 
 string(TIMESTAMP now "%a, %d %b %Y %H:%M:%S +0000" UTC)

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "journal/format.hpp"
 #include "sand/replica.hpp"

@@ -3,13 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 
-#include "base/input_error.hpp"
 #include "host/print_line.hpp"
 #include "journal/verification.hpp"
 #include "master/journal/checkpoint.hpp"

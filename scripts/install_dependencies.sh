@@ -23,14 +23,35 @@ libraries=(
     libgtest-dev libbenchmark-dev libcgal-dev               # tests and benchmarks
 )
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
-# events of sessions against the schemas, make and check a Debian package, and move pointer and windows with xdotool and openbox. The report
-# draws its curves with matplotlib. Of packages with a bar between them, one is enough: the first that this Debian has.
+# events of sessions against the schemas, make and check a Debian package, and move pointer and windows with xdotool and
+# openbox. The report draws its curves with matplotlib. Of packages with a bar between them, one is enough: the first that
+# this Debian has.
 cross=''
+refuse() { echo "install_dependencies.sh: $*" >&2; exit 2; }
+
+# Adds node and npm where they are missing. They may have come from elsewhere, and Debian's packages would conflict with them.
+add_node() {
+    if ! command -v node >/dev/null; then
+        tools+=(nodejs)
+    else
+        local version
+        version=$(node --version)
+        [[ $version =~ ^v([0-9]+)\. && ${BASH_REMATCH[1]} -ge 18 ]] || refuse "node is $version; the web page needs node 18 or later"
+    fi
+    if ! command -v npm >/dev/null; then
+        # The package nodejs of another source contains npm, and conflicts with Debian's package.
+        local conflicts
+        conflicts=$(dpkg-query -W -f='${Conflicts}' nodejs 2>/dev/null || true)
+        [[ -z $(command -v node) || " ${conflicts//,/ } " != *" npm "* ]] || refuse "node has another source; install its own npm"
+        tools+=(npm)
+    fi
+}
+
 for option in "$@"; do
     case "$option" in
         --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool) ;;
-        --with-web) tools+=(emscripten nodejs npm) ;;                     # the web page; docs/web.md
-        --with-browsers) tools+=(chromium firefox-esr xauth libgl1-mesa-dri) ;; # its tests in browsers
+        --with-web) tools+=(emscripten); add_node ;;                      # the web page; docs/web.md
+        --with-browsers) tools+=(chromium firefox-esr xauth) ;;         # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;
         --for-arm64) cross=arm64; tools+=(g++-aarch64-linux-gnu qemu-user) ;; # for cmake/Arm64.cmake; docs/testing.md
         *) echo "usage: scripts/install_dependencies.sh [--with-tests] [--with-web] [--with-browsers] [--with-report] [--for-arm64]" >&2; exit 2 ;;
@@ -45,13 +66,6 @@ is_installed() {
     [[ $1 != *:* ]] || architecture=${1#*:}
     dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "${1%:*}" 2>/dev/null | grep -Eqx "($architecture|all) installed"
 }
-
-# Node may have come from elsewhere with its own npm. Debian's packages would conflict with it.
-if command -v node >/dev/null && command -v npm >/dev/null; then
-    for i in "${!packages[@]}"; do
-        [[ ${packages[i]} != nodejs && ${packages[i]} != npm ]] || unset "packages[i]"
-    done
-fi
 
 missing=()
 for package in "${packages[@]}"; do

@@ -38,6 +38,12 @@ case ${1:-} in
         mkdir -p "$page"
         (cd web && node build.mjs "../$page")
         cp build/web/bin/replica.mjs build/web/bin/replica.wasm "$page"
+        # The bundles and replica.wasm contain these works.
+        for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
+            /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do
+            printf '==== %s\n\n' "$licence"
+            cat "$licence"
+        done >"$page/licences.txt"
         echo "$page: the page"
         ;;
     *) echo "usage: scripts/web.sh [--replica|--missing]" >&2; exit 2 ;;

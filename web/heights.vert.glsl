@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places and lights the vertices of a grid. The heights come as a texture, so normal, open sky and mottling are computed
-// here. The rest is render_node/shaders/sand.vert.glsl.
+// Places the vertices of a grid. The heights come as a texture, so normal, open sky and mottling are computed here.
 uniform highp isampler2D uHeights; // [unit]
 uniform highp isampler2D uStart;   // [unit], at the session's start
 uniform sampler2D uMottling;
@@ -8,19 +7,12 @@ uniform ivec2 uSize;               // columns and rows
 uniform float uUnit;               // scene unit
 uniform float uCell;               // scene unit
 uniform float uCutAndFill;         // 1: sand that has gone is blue, and sand that has come is red
-uniform mat4 uSceneToRoom;
-uniform mat4 uRoomToClip;
-out vec4 vColour;
-out vec2 vGrainAt;
-out float vGrainLevel;
-out vec3 vInShadow;
-out vec3 vScene;
-out vec3 vNormal;
 
 float heightAt(ivec2 cell) {
     return float(texelFetch(uHeights, clamp(cell, ivec2(0), uSize - 1), 0).r) * uUnit;
 }
 
+// The share of open sky around a cell, as render_node/surface/open_sky.hpp computes it.
 float openSky(ivec2 cell, float here) {
     const int kDistances[3] = int[3](2, 5, 10); // [cell]
     float covered = 0.0;
@@ -49,16 +41,12 @@ void main() {
     vec2 rise = vec2(heightAt(ivec2(high.x, cell.y)) - heightAt(ivec2(low.x, cell.y)),
                      heightAt(ivec2(cell.x, high.y)) - heightAt(ivec2(cell.x, low.y)));
     float here = heightAt(cell);
-    vNormal = normalize(vec3(-rise / (vec2(max(high - low, ivec2(1))) * uCell), 1.0));
-    vScene = vec3(clamp(vec2(vertex) - 0.5, vec2(0.0), vec2(uSize)) * uCell, here);
-    Shade shade = shadeOf(vScene, vNormal, openSky(cell, here), texelFetch(uMottling, cell & 255, 0).b);
-    vColour = shade.colour;
+    vec3 normal = normalize(vec3(-rise / (vec2(max(high - low, ivec2(1))) * uCell), 1.0));
+    vec3 place = vec3(clamp(vec2(vertex) - 0.5, vec2(0.0), vec2(uSize)) * uCell, here);
+    lightVertex(place, normal, openSky(cell, here), texelFetch(uMottling, cell & 255, 0).b);
     float gone = float(texelFetch(uStart, cell, 0).r) * uUnit - here;
     float much = uCutAndFill * clamp(abs(gone) / (2.0 * uCell), 0.0, 1.0);
     vec3 tint = gone > 0.0 ? vec3(0.12, 0.35, 0.95) : vec3(0.95, 0.22, 0.10);
     vColour.rgb = mix(vColour.rgb, tint * (0.25 + dot(vColour.rgb, vec3(0.3, 0.5, 0.2))), much);
-    vInShadow = mix(shade.inShadow, vColour.rgb * 0.6, much);
-    vGrainAt = grainAt(vScene);
-    vGrainLevel = grainLevel(vScene, vNormal);
-    gl_Position = uRoomToClip * (uSceneToRoom * vec4(vScene, 1.0));
+    vInShadow = mix(vInShadow, vColour.rgb * 0.6, much);
 }

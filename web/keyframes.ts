@@ -15,9 +15,6 @@ export class Keyframes {
 
     constructor(private readonly most = 256 << 20, ms = 150) { this.pause = ms; }
 
-    get count(): number { return this.kept.length; }
-    get bytes(): number { return this.sum; }
-
     /** Notes that `ms` were spent up to `step`. `encode` makes the state of this step. */
     passed(step: number, ms: number, encode: () => ArrayBuffer): void {
         this.spent += ms;

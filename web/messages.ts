@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // What page and worker tell each other. All buffers are transferred.
 
+export const kUnitsPerCell = 65536;  // units of height
+
+export interface OpenMessage {
+    name: string;
+    address: string;           // of a journal that was fetched; empty for files
+    parts: ArrayBuffer[];
+}
+
 export type ToWorker =
-    | { open: { name: string; parts: ArrayBuffer[] } }
+    | { open: OpenMessage }
     | { seek: number }
     | { play: number }     // steps per second; negative: backwards; 0: stop
     | { shown: true };     // the page has drawn a frame, and may get the next
 
 export interface SessionMessage {
     kind: "session";
-    file: string;
+    address: string;           // of the OpenMessage
     name: string;
     shortcoming: string;
     tin: boolean;
@@ -40,9 +48,6 @@ export interface ProgressMessage {
     matches: number;
     mismatches: number;
     passed: boolean;           // whether the first pass has ended
-    keyframes: number;
-    keyframeBytes: number;
-    heapBytes: number;
 }
 
 export interface ProblemMessage {

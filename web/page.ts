@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: opens sessions, shows what the worker computes, and says whether its hashes are those of the session.
-import type { FrameMessage, FromWorker, ProgressMessage, SessionMessage, ToWorker } from "./messages";
+import { type FrameMessage, type FromWorker, kUnitsPerCell, type ProgressMessage, type SessionMessage, type ToWorker } from "./messages";
 import { View } from "./view";
 
-const kUnitsPerCell = 65536;
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const canvas = element<HTMLCanvasElement>("sand"), say = element("say"), numbers = element("numbers"), slider = element<HTMLInputElement>("step");
 const playButton = element<HTMLButtonElement>("play"), cutButton = element<HTMLButtonElement>("cut");
@@ -15,7 +14,6 @@ let frame: FrameMessage | undefined;     // the last one
 let progress: ProgressMessage | undefined;
 let playing = false;
 let pendingStep = Number(query.get("step") ?? NaN);
-let address = "";                        // of a journal that was fetched
 
 const worker = new Worker("worker.js", { type: "module" });
 const tell = (message: ToWorker, buffers: Transferable[] = []) => worker.postMessage(message, buffers);
@@ -26,7 +24,6 @@ try {
     view = new View(canvas, () => tell({ shown: true }));
 } catch {
     noPicture = "This browser has no WebGL 2, so there is no picture. The sand is computed and compared all the same.";
-    document.body.dataset.webgl = "none";
 }
 
 function seconds(step: number): string {
@@ -73,14 +70,14 @@ function begin(opened: SessionMessage): void {
     cutButton.disabled = element<HTMLButtonElement>("heights").disabled = opened.tin;
     cutButton.setAttribute("aria-pressed", "false");
     element<HTMLButtonElement>("picture").disabled = view === undefined;
-    element<HTMLButtonElement>("link").disabled = address === "";
+    element<HTMLButtonElement>("link").disabled = opened.address === "";
     showMarks(opened);
 }
 
 function take(message: ProgressMessage): void {
     progress = message;
-    const { step, hash, matches, mismatches, passed, keyframes, keyframeBytes, heapBytes } = message;
-    Object.assign(document.body.dataset, { step, hash, matches, mismatches, passed: passed ? "yes" : "no", keyframes, keyframeBytes, heapBytes });
+    const { step, hash, matches, mismatches, passed } = message;
+    Object.assign(document.body.dataset, { step, hash, matches, mismatches, passed: passed ? "yes" : "no" });
     if (!passed) {
         element("computed").style.width = `${100 * step / Math.max(session!.lastStep, 1)}%`;
     } else if (slider.disabled) {
@@ -180,7 +177,7 @@ element("heights").onclick = () => {
     }
 };
 element("link").onclick = async () => {
-    const link = `${location.origin}${location.pathname}?journal=${encodeURIComponent(address)}&step=${frame?.step ?? 0}`;
+    const link = `${location.origin}${location.pathname}?journal=${encodeURIComponent(session!.address)}&step=${frame?.step ?? 0}`;
     history.replaceState(null, "", link);
     try {
         await navigator.clipboard.writeText(link);
@@ -200,9 +197,12 @@ async function openFiles(files: File[]): Promise<void> {
         return;
     }
     files.sort((a, b) => partOf(a.name) - partOf(b.name));
-    address = "";
-    const parts = await Promise.all(files.map((file) => file.arrayBuffer()));
-    tell({ open: { name: files[0].name, parts } }, parts);
+    try {
+        const parts = await Promise.all(files.map((file) => file.arrayBuffer()));
+        tell({ open: { name: files[0].name, address: "", parts } }, parts);
+    } catch (error) {
+        problem(`${files[0].name}: cannot be read (${(error as Error).message})`);
+    }
 }
 element<HTMLInputElement>("files").onchange = (event) => void openFiles([...(event.target as HTMLInputElement).files!]);
 addEventListener("dragover", (event) => { event.preventDefault(); document.body.classList.add("over"); });
@@ -230,8 +230,7 @@ async function fetchJournal(path: string): Promise<void> {
     if (parts.length === 0) {
         return problem(`${path}: the server does not have it; check the address`);
     }
-    address = url.pathname;
-    tell({ open: { name: url.pathname.slice(url.pathname.lastIndexOf("/") + 1), parts } }, parts);
+    tell({ open: { name: url.pathname.slice(url.pathname.lastIndexOf("/") + 1), address: url.pathname, parts } }, parts);
 }
 const named = query.get("journal");
 if (named !== null) {

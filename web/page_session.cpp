@@ -9,12 +9,22 @@
 
 #include "base/input_error.hpp"
 #include "journal/journal.hpp"
-#include "web/memory_parts.hpp"
+#include "journal/memory_parts.hpp"
 
 namespace web {
 namespace {
 
 constexpr double kMebibyte = 1 << 20;
+
+/// Returns the mark of an edit.
+Mark::Kind markOf(sand::Edit::Kind edit) {
+    static_assert(static_cast<int>(Mark::Kind::settle) == static_cast<int>(sand::Edit::settle));
+    static_assert(static_cast<int>(Mark::Kind::reset) == static_cast<int>(sand::Edit::reset));
+    static_assert(static_cast<int>(Mark::Kind::undo) == static_cast<int>(sand::Edit::undo));
+    static_assert(static_cast<int>(Mark::Kind::tune) == static_cast<int>(sand::Edit::tune));
+    static_assert(static_cast<int>(Mark::Kind::load) == static_cast<int>(sand::Edit::load));
+    return static_cast<Mark::Kind>(edit);
+}
 
 /// Throws base::InputError if the sand cannot fit, before any height is made.
 void requireMemory(const journal::JournalReader& reader, std::int64_t memory) {
@@ -55,7 +65,7 @@ PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::
         throw base::InputError(name_ + ": has no part");
     }
     requireOurs(name_, parts, release);
-    journal::JournalReader reader(std::make_unique<MemoryParts>(name_, std::move(parts)), release);
+    journal::JournalReader reader(std::make_unique<journal::MemoryParts>(name_, std::move(parts)), release);
     requireMemory(reader, memory);
     scene_ = journal::sceneOf(reader);
     read(reader);
@@ -109,7 +119,7 @@ void PageSession::noteSteps(const journal::JournalFrame& frame) {
         }
         engaged_ = step.engaged;
         if (step.edit.kind != sand::Edit::none) {
-            marks_.push_back({step.number, static_cast<Mark::Kind>(step.edit.kind)});
+            marks_.push_back({step.number, markOf(step.edit.kind)});
         }
         lastStep_ = step.number;
     }

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,12 +41,8 @@ public:
 
     /// Takes the next record of the first pass. Returns false behind the last one.
     [[nodiscard]] bool advance();
-    /// Returns whether the first pass has ended.
-    [[nodiscard]] bool passed() const { return next_ == records_.size(); }
     [[nodiscard]] std::uint64_t matches() const;
     [[nodiscard]] std::uint64_t mismatches() const;
-    /// Returns what the first pass has counted.
-    [[nodiscard]] const journal::Verification::Counts& counts() const { return verification_->counts(); }
 
     /// Returns the sand of the present step. Only after the first pass may it be put back by decodeState().
     [[nodiscard]] sand::Replica& replica() { return verification_->replica(); }
@@ -60,6 +55,10 @@ private:
     void note(journal::JournalRecord& record);
     void noteSteps(const journal::JournalFrame& frame);
     void compareAgain(std::uint64_t hash);
+    /// Returns whether the first pass has ended.
+    [[nodiscard]] bool passed() const { return next_ == records_.size(); }
+    /// Returns what the first pass has counted.
+    [[nodiscard]] const journal::Verification::Counts& counts() const { return verification_->counts(); }
 
     std::string name_;
     scene::Scene scene_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that web/worker.ts calls: one session at a time. Functions that can fail return -1, and sw_problem()
-// then has the sentence for the user. Pointers stay valid until the next call that changes what they name.
+// The functions that web/worker.ts calls: one session at a time. Functions that can fail return -1, or nullptr
+// for an address, and sw_problem() then has the sentence for the user. Pointers stay valid until the next call that
+// changes what they name.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@ namespace {
 
 // A 32-bit heap that may grow to 2 GiB, less what journal and states take.
 constexpr std::int64_t kMemory = std::int64_t{1536} << 20;
+constexpr const char* kNoMemory = "This page has no more memory";
 
 std::vector<base::Bytes> parts;
 std::unique_ptr<web::PageSession> session;
@@ -39,11 +42,23 @@ int guarded(Work&& work) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        problem = "This page has no more memory";
+        problem = kNoMemory;
+    } catch (const std::length_error&) {  // more than a container of 32 bits can have
+        problem = kNoMemory;
     } catch (const std::exception& error) {
         problem = error.what();
     }
     return -1;
+}
+
+/// Gives `bytes` a new size. Returns their address, or nullptr if there is no memory.
+std::uint8_t* resized(base::Bytes& bytes, std::uint32_t size) {
+    const auto resize = [&bytes, size] {
+        bytes.reserve(std::max(size, 1U));  // an empty part has an address, too
+        bytes.resize(size);
+        return 0;
+    };
+    return guarded(resize) == 0 ? bytes.data() : nullptr;
 }
 
 }  // namespace
@@ -52,10 +67,19 @@ API const char* sw_problem() { return problem.c_str(); }
 
 /// Drops the parts of a journal that was not opened.
 API void sw_begin() { parts.clear(); }
-/// Adds the next part of a journal. Returns where its bytes go.
+/// Adds the next part of a journal. Returns where its bytes go. If there is no memory, drops all parts.
 API std::uint8_t* sw_add_part(std::uint32_t size) {
-    parts.emplace_back(size);
-    return parts.back().data();
+    base::Bytes part;
+    std::uint8_t* const at = resized(part, size);
+    const auto add = [&part] {
+        parts.push_back(std::move(part));
+        return 0;
+    };
+    if (at == nullptr || guarded(add) != 0) {
+        parts = {};
+        return nullptr;
+    }
+    return at;
 }
 /// Opens the journal of all parts. If it fails, the session before stays open.
 API int sw_open(const char* name) {
@@ -119,10 +143,7 @@ API int sw_state() {
 }
 API const std::uint8_t* sw_state_bytes() { return state.data(); }
 /// Makes room for a state, which sw_restore() then puts back.
-API std::uint8_t* sw_room_for_state(std::uint32_t size) {
-    state.resize(size);
-    return state.data();
-}
+API std::uint8_t* sw_room_for_state(std::uint32_t size) { return resized(state, size); }
 API int sw_restore() {
     return guarded([] {
         session->replica().decodeState(state);
@@ -132,8 +153,10 @@ API int sw_restore() {
 
 /// Takes the present sand to draw it. Returns 1 for a TIN, 0 for a grid.
 API int sw_draw() {
-    drawn.take(session->replica().surface());
-    return drawn.meshed ? 1 : 0;
+    return guarded([] {
+        drawn.take(session->replica().surface());
+        return drawn.meshed ? 1 : 0;
+    });
 }
 API const std::int32_t* sw_heights() { return drawn.heights.data(); }
 API const float* sw_places() { return drawn.places.data(); }

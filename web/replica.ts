@@ -3,6 +3,8 @@
 
 type Module = Record<string, any>;
 
+const kMostBytes = 2 ** 32 - 1;  // that a size of 32 bits can name; more than a page has
+
 export class Replica {
     private constructor(private readonly wasm: Module) {}
 
@@ -20,6 +22,8 @@ export class Replica {
         }
         return result;
     }
+    /** Returns an address, unless there is no memory. */
+    private room(address: number): number { return this.require(address > 0 ? address : -1); }
     private floats(at: number, count: number): Float32Array { return this.wasm.HEAPF32.slice(at >> 2, (at >> 2) + count); }
     private ints(at: number, count: number): Int32Array { return this.wasm.HEAP32.slice(at >> 2, (at >> 2) + count); }
 
@@ -27,7 +31,7 @@ export class Replica {
     open(name: string, parts: ArrayBuffer[]): void {
         this.wasm._sw_begin();
         for (const part of parts) {
-            const at = this.wasm._sw_add_part(part.byteLength);
+            const at = this.room(this.wasm._sw_add_part(Math.min(part.byteLength, kMostBytes)));
             this.wasm.HEAPU8.set(new Uint8Array(part), at);
         }
         const bytes = new TextEncoder().encode(name + "\0");
@@ -51,7 +55,6 @@ export class Replica {
     get hash(): string { return this.text(this.wasm._sw_hash()); }
     get matches(): number { return this.wasm._sw_matches(); }
     get mismatches(): number { return this.wasm._sw_mismatches(); }
-    get heapBytes(): number { return this.wasm.HEAPU8.length; }
 
     state(): ArrayBuffer {
         const length = this.require(this.wasm._sw_state());
@@ -59,13 +62,13 @@ export class Replica {
         return this.wasm.HEAPU8.slice(at, at + length).buffer;
     }
     restore(state: ArrayBuffer): void {
-        const at = this.wasm._sw_room_for_state(state.byteLength);
+        const at = this.room(this.wasm._sw_room_for_state(state.byteLength));
         this.wasm.HEAPU8.set(new Uint8Array(state), at);
         this.require(this.wasm._sw_restore());
     }
     sand(columns: number, rows: number): { heights?: Int32Array; places?: Float32Array; corners?: Uint32Array } {
         const w = this.wasm;
-        if (w._sw_draw() === 0) {
+        if (this.require(w._sw_draw()) === 0) {
             return { heights: this.ints(w._sw_heights(), columns * rows) };
         }
         return {

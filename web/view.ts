@@ -15,11 +15,11 @@ import toolFragment from "../render_node/shaders/tool.frag.glsl";
 import wood from "../render_node/shaders/wood.frag.glsl";
 import { makeGrain } from "./grain";
 import heightsVertex from "./heights.vert.glsl";
-import type { FrameMessage, SessionMessage } from "./messages";
+import lightVertex from "./light_vertex.glsl";
+import { type FrameMessage, kUnitsPerCell, type SessionMessage } from "./messages";
 import tinVertex from "./tin.vert.glsl";
 import { trayOf } from "./tray";
 
-const kUnitsPerCell = 65536;
 const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall
 const kPrecision = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
 const kShared = kPrecision + light + sunlit + ball;
@@ -146,14 +146,14 @@ export class View {
         const geometry = new BufferGeometry();
         this.heights = undefined;
         if (session.tin) {
-            this.sand = this.add(geometry, this.material(tinVertex, near, {}));
+            this.sand = this.add(geometry, this.material(lightVertex + tinVertex, near, {}));
         } else {
             const start = heightTexture(columns, rows);
             start.image.data.set(frame.heights!);
             start.needsUpdate = true;
             this.heights = heightTexture(columns, rows);
             geometry.setIndex(new BufferAttribute(gridIndex(columns + 2, rows + 2), 1));
-            this.sand = this.add(geometry, this.material(heightsVertex, near, {
+            this.sand = this.add(geometry, this.material(lightVertex + heightsVertex, near, {
                 uHeights: { value: this.heights }, uStart: { value: start }, uMottling: { value: grain },
                 uSize: { value: new Int32Array([columns, rows]) }, uUnit: { value: cell / kUnitsPerCell }, uCell: { value: cell },
             }));

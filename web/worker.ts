@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the sand. It works in slices, so that it answers the page between them.
 import { Keyframes } from "./keyframes";
-import type { FromWorker, ToWorker } from "./messages";
+import type { FromWorker, OpenMessage, ToWorker } from "./messages";
 import { Replica } from "./replica";
 
 const kSliceMs = 12;
@@ -29,8 +29,7 @@ function tellProgress(now: number): void {
     const it = replica!;
     lastProgress = now;
     toldStep = passed ? it.step : -1;
-    tell({ kind: "progress", step: it.step, hash: it.hash, matches: it.matches, mismatches: it.mismatches, passed,
-           keyframes: keyframes.count, keyframeBytes: keyframes.bytes, heapBytes: it.heapBytes });
+    tell({ kind: "progress", step: it.step, hash: it.hash, matches: it.matches, mismatches: it.mismatches, passed });
 }
 
 /** Sends the present sand, if the page has drawn the frame before. */
@@ -109,14 +108,19 @@ function work(): void {
         if (toldStep !== replica.step && ((passed && rests) || now - lastProgress >= kProgressMs)) {
             tellProgress(now);
         }
-        if (!rests || replica.step !== shownStep) {
-            again(rests || rate !== 0 ? 4 : 0);
+        if (!rests) {
+            again(rate !== 0 ? 4 : 0);
         }
     } catch (error) {
-        rate = 0;
-        session = undefined;
-        tell({ kind: "problem", text: (error as Error).message });
+        fail(error as Error);
     }
+}
+
+/** Ends the session. */
+function fail(error: Error): void {
+    rate = 0;
+    session = undefined;
+    tell({ kind: "problem", text: error.message });
 }
 
 function again(ms = 0): void {
@@ -126,7 +130,7 @@ function again(ms = 0): void {
     }
 }
 
-async function open(name: string, parts: ArrayBuffer[]): Promise<void> {
+async function open({ name, address, parts }: OpenMessage): Promise<void> {
     try {
         if (!WebAssembly.validate(kVectors)) {
             throw new Error("This browser has no vectors in WebAssembly; use a browser of 2023 or later");
@@ -146,14 +150,14 @@ async function open(name: string, parts: ArrayBuffer[]): Promise<void> {
     shownStep = toldStep = -1;
     mayShow = true;
     const sand = replica.sand(opened.columns, opened.rows);
-    tell({ kind: "session", file: name, tin: sand.heights === undefined, ...opened });
+    tell({ kind: "session", address, tin: sand.heights === undefined, ...opened });
     show();
     again();
 }
 
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     if ("open" in data) {
-        void open(data.open.name, data.open.parts);
+        open(data.open).catch(fail);
         return;
     }
     if ("shown" in data) {

@@ -5,7 +5,6 @@ import http.server
 import os
 import pathlib
 import re
-import urllib.parse
 
 import layout
 from command_line import at_least
@@ -14,6 +13,9 @@ from rank_hosts import BadInput
 HOST = "127.0.0.1"
 TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css",
          ".wasm": "application/wasm", ".txt": "text/plain; charset=utf-8"}
+# The policy of index.html. A worker obeys only that of its own file, so every answer has it.
+POLICY = ("default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
+          "img-src data:")
 JOURNAL = "/session/session.journal"
 PART = re.compile(re.escape(JOURNAL) + r"(?:\.([1-9][0-9]{0,8}))?")
 PIECE = 1 << 20  # [byte]
@@ -26,6 +28,12 @@ def files_of(page):
     return files
 
 
+def names_of(port):
+    """Returns what a browser of this machine sends as Host."""
+    names = {f"{name}:{port}" for name in (HOST, "localhost")}
+    return names | {HOST, "localhost"} if port == 80 else names
+
+
 class Handler(http.server.BaseHTTPRequestHandler):
     """Answers GET and HEAD for the files of the page and the parts of the journal. All else does not exist."""
 
@@ -34,15 +42,18 @@ class Handler(http.server.BaseHTTPRequestHandler):
     timeout = 30  # [s]
 
     def found(self):
-        path = urllib.parse.urlsplit(self.path).path
+        path = self.path.partition("?")[0]
         if path in self.server.files:
             return self.server.files[path]
         part = PART.fullmatch(path)
         if part is None or self.server.journal is None:
             return None
         number = part.group(1)
-        file = pathlib.Path(f"{self.server.journal}.{number}" if number else self.server.journal)
-        return file if number != "1" and file.is_file() else None
+        if number is None:
+            return self.server.journal if self.server.journal.is_file() else None
+        file = pathlib.Path(f"{self.server.journal}.{number}")
+        # The user has named the first part alone. A link beside it could lead to any file.
+        return file if number != "1" and file.is_file() and not file.is_symlink() else None
 
     def answer(self, with_bytes):
         # A page of another site could reach this server under a name of its own that leads to this machine.
@@ -59,6 +70,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
                 self.send_header("Content-Type", TYPES.get(file.suffix, "application/octet-stream"))
                 self.send_header("Content-Length", str(length))
                 self.send_header("Cache-Control", "no-store")
+                self.send_header("Content-Security-Policy", POLICY)
                 self.send_header("X-Content-Type-Options", "nosniff")
                 self.end_headers()
                 while with_bytes and length > 0:
@@ -94,7 +106,7 @@ class Server(http.server.ThreadingHTTPServer):
         super().__init__((HOST, port), Handler)
         self.journal = journal
         self.files = files_of(page)
-        self.names = {f"{name}:{self.server_port}" for name in (HOST, "localhost")}
+        self.names = names_of(self.server_port)
 
 
 def page_folder():

@@ -8,31 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "journal/memory_parts.hpp"
 #include "journal/reader.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace test {
-
-/// The parts of a journal in memory: JOURNAL, JOURNAL.2 and so on.
-class MemoryParts : public journal::JournalParts {
-public:
-    explicit MemoryParts(std::vector<base::Bytes> parts) : parts_(std::move(parts)) {}
-    [[nodiscard]] std::string name(std::uint32_t part) const override {
-        return part == 1 ? "folder/JOURNAL" : "folder/JOURNAL." + std::to_string(part);
-    }
-    [[nodiscard]] bool has(std::uint32_t part) const override { return part >= 1 && part <= parts_.size(); }
-    [[nodiscard]] std::int64_t length(std::uint32_t part) override {
-        return static_cast<std::int64_t>(parts_.at(part - 1).size());
-    }
-    void read(std::uint32_t part, std::int64_t offset, std::int64_t size, base::Bytes& bytes) override {
-        const base::Bytes& all = parts_.at(part - 1);
-        const auto from = all.begin() + std::min(offset, length(part));
-        bytes.assign(from, from + std::min(size, all.end() - from));
-    }
-
-private:
-    std::vector<base::Bytes> parts_;
-};
 
 /// Makes the bytes of a journal, of which each record is a write.
 class JournalInMemory {
@@ -59,7 +39,7 @@ public:
     }
     [[nodiscard]] std::vector<base::Bytes>& parts() { return parts_; }
     [[nodiscard]] journal::JournalReader reader(std::string_view release = "1.2.3") const {
-        return {std::make_unique<MemoryParts>(parts_), release};
+        return {std::make_unique<journal::MemoryParts>("folder/JOURNAL", parts_), release};
     }
 
 private:

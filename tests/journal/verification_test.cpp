@@ -11,7 +11,7 @@
 
 namespace {
 
-/// A session of twelve frames with two steps each. The last but one has a doubt.
+/// Sessions whose frames have two steps each.
 class Verified : public testing::Test {
 protected:
     using Counts = journal::Verification::Counts;

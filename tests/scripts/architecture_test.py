@@ -23,8 +23,7 @@ NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-6
          "sand/grid/erosion_loops.hpp": "leaves out the loops that it replaces",
          "sand/grid/erosion_loops_wasm.hpp": "the loops for WebAssembly",
          "cmake/Web.cmake": "the flags of WebAssembly",
-         "haptic_bridge/CMakeLists.txt": "ends where a page needs no more",
-         "scene/CMakeLists.txt": "the same",
+         "scene/CMakeLists.txt": "ends where a page needs no more",
          "web/CMakeLists.txt": "the program for WebAssembly",
          "web/replica.cpp": "its functions"}
 KNOWS = re.compile(r"[<\"][a-z]*intrin\.h|\b_mm[0-9]*_|__m(128|256|512)|__builtin_(cpu_|ia32_)|\basm\b|__(x86_64|aarch64|i386|arm|amd64|SSE|AVX|wasm)\w*\b|\bwasm_\w+|EMSCRIPTEN|"

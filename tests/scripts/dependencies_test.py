@@ -4,6 +4,7 @@
 
 import os
 import pathlib
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -13,7 +14,7 @@ from launcher_fixture import ROOT
 # `installed` has lines PACKAGE ARCHITECTURE, and `known` the packages of this Debian.
 PROGRAMS = {
     "dpkg": '[ "$1" = --print-architecture ] && echo amd64\n[ "$1" = --add-architecture ] && echo "$2" >>"$MADE_UP/added"\ntrue\n',
-    "dpkg-query": 'for package; do :; done\nsed -n "s/^$package \\(.*\\)/\\1 installed/p" "$MADE_UP/installed"\n',
+    "dpkg-query": '[ "$2" = "-f=\\${Conflicts}" ] && exec sed "" "$MADE_UP/conflicts"\nfor package; do :; done\nsed -n "s/^$package \\(.*\\)/\\1 installed/p" "$MADE_UP/installed"\n',
     "apt-cache": 'echo "$2:"\ngrep -qx "$2" "$MADE_UP/known" && echo "  Candidate: 1:14.0-1" || echo "  Candidate: (none)"\n',
     "apt-get": '[ "$1" = install ] && echo "$*" >>"$MADE_UP/asked"\ntrue\n',
 }
@@ -75,6 +76,42 @@ class Dependencies(unittest.TestCase):
         self.assertEqual(libraries, "libfmt-dev:arm64", "apt knows packages for all architectures without a colon alone")
         self.assertIn("libglm-dev", tools.split())
         self.assertEqual((self.folder / "added").read_text(), "arm64\n")
+
+    def web(self, conflicts="", **versions):
+        """Runs --with-web where only these programs of node are there. Returns its status, its line, and what it asks for."""
+        path = self.folder / "path"
+        shutil.rmtree(path, ignore_errors=True)
+        path.mkdir()
+        for name in ("bash", "sh", "env", "sed", "grep", "sudo"):
+            (path / name).symlink_to(self.folder / name if name == "sudo" else shutil.which(name))
+        for name, version in versions.items():
+            (path / name).write_text(f"#!/bin/sh\necho {version}\n")
+            (path / name).chmod(0o755)
+        for name in PROGRAMS:
+            (path / name).symlink_to(self.folder / name)
+        self.write("conflicts", conflicts)
+        self.write("installed", self.all_installed("amd64") + "emscripten amd64\n")
+        (self.folder / "asked").unlink(missing_ok=True)
+        ended = subprocess.run([ROOT / "scripts" / "install_dependencies.sh", "--with-web"], capture_output=True, text=True, timeout=60,
+                               env={**os.environ, "MADE_UP": str(self.folder), "PATH": str(path)})
+        asked = self.folder / "asked"
+        words = asked.read_text().split() if asked.exists() else []
+        return ended.returncode, ended.stderr, [word for word in words if word in ("nodejs", "npm", "emscripten")]
+
+    def test_node_and_npm_are_installed_where_they_are_missing(self):
+        self.assertEqual(self.web(), (0, "", ["nodejs", "npm"]))
+        self.assertEqual(self.web(node="v18.19.0"), (0, "", ["npm"]))
+        self.assertEqual(self.web(npm="9"), (0, "", ["nodejs"]))
+        self.assertEqual(self.web(node="v20.1.0", npm="10"), (0, "", []))
+
+    def test_node_of_another_source_without_its_npm_is_one_line(self):
+        line = "install_dependencies.sh: node has another source; install its own npm\n"
+        self.assertEqual(self.web(node="v20.1.0", conflicts="nodejs-doc, nodejs-legacy, npm"), (2, line, []))
+        self.assertEqual(self.web(node="v20.1.0", conflicts="nodejs-doc, npm-tools"), (0, "", ["npm"]))
+
+    def test_an_old_node_is_one_line(self):
+        line = "install_dependencies.sh: node is v16.20.2; the web page needs node 18 or later\n"
+        self.assertEqual(self.web(node="v16.20.2", npm="8"), (2, line, []))
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 
 import http.client
 import pathlib
+import re
 import sys
 import tempfile
 import threading
@@ -28,12 +29,19 @@ class WebPage(unittest.TestCase):
         (session / "session.journal").write_bytes(b"first")
         (session / "session.journal.2").write_bytes(b"second")
         (session / "summary.json").write_text("{}")
+        (session / "session.journal.3").symlink_to(page / "secret.key")
         self.server = web_page.Server(0, page, session / "session.journal")
         self.addCleanup(self.server.server_close)
         thread = threading.Thread(target=self.server.serve_forever)
         thread.start()
         self.addCleanup(thread.join)
         self.addCleanup(self.server.shutdown)
+
+    def header(self, path, name):
+        connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=20)
+        self.addCleanup(connection.close)
+        connection.request("GET", path)
+        return connection.getresponse().getheader(name)
 
     def answer(self, path, method="GET", host=None):
         connection = http.client.HTTPConnection("127.0.0.1", self.server.server_port, timeout=20)
@@ -67,6 +75,20 @@ class WebPage(unittest.TestCase):
                      "//etc/passwd", "/session/session.journal/..", "/session/session.journal.2/../summary.json", "/page/index.html"):
             self.assertEqual(self.answer(path)[0], 404, path)
         self.assertEqual(self.answer("/", "POST")[0], 501)
+
+    def test_a_malformed_address_is_missing(self):
+        for path in ("http://[::1/x", "http://[::1/session/session.journal", "?", "*"):
+            self.assertEqual(self.answer(path)[0], 404, path)
+
+    def test_every_file_has_the_policy_of_the_page(self):
+        html = (ROOT / "web" / "index.html").read_text(encoding="utf-8")
+        policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]+)"', html).group(1)
+        for path in ("/", "/replica.wasm", "/session/session.journal.2"):
+            self.assertEqual(self.header(path, "Content-Security-Policy"), policy, path)
+
+    def test_at_port_80_a_browser_leaves_out_the_port(self):
+        self.assertEqual(web_page.names_of(80), {"127.0.0.1", "127.0.0.1:80", "localhost", "localhost:80"})
+        self.assertEqual(self.answer("/", host="localhost")[0], 403)
 
     def test_a_name_of_another_site_is_refused(self):
         for host in ("evil.example", f"evil.example:{self.server.server_port}", "127.0.0.1:1"):

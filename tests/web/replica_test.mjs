@@ -26,6 +26,7 @@ function open(name, parts) {
     replica._sw_begin();
     for (const part of parts) {
         const at = replica._sw_add_part(part.length);
+        assert.ok(at > 0, textAt(replica._sw_problem()));
         replica.HEAPU8.set(part, at);
     }
     return withText(name, (at) => replica._sw_open(at)) === 0 ? "" : textAt(replica._sw_problem());
@@ -99,6 +100,15 @@ assert.match(textAt(replica._sw_shortcoming()), /damaged at byte [0-9]+ of/);
 assert.ok(replica._sw_last_step() > 0 && replica._sw_last_step() < Number(steps), "some steps are intact");
 while (replica._sw_advance() === 1) {}
 assert.equal(replica._sw_mismatches(), 0);
-
+// A part or a state that is too large is a sentence, and the session goes on.
+const before = textAt(replica._sw_hash());
+for (const makeRoom of [replica._sw_add_part, replica._sw_room_for_state]) {
+    for (const size of [2 ** 31 - 4096, 2 ** 32 - 1]) {
+        assert.equal(makeRoom(size), 0);
+        assert.equal(textAt(replica._sw_problem()), "This page has no more memory");
+    }
+}
+assert.equal(textAt(replica._sw_hash()), before);
+assert.ok(replica._sw_draw() >= 0);
 
 console.log(`${sessions.length} sessions equal the native program's`);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/memory_parts.hpp"
+#include "journal/memory_parts.hpp"
 
 #include <algorithm>
 
-namespace web {
+namespace journal {
 
 std::string MemoryParts::name(std::uint32_t part) const {
     return part == 1 ? name_ : name_ + "." + std::to_string(part);
@@ -15,4 +15,4 @@ void MemoryParts::read(std::uint32_t part, std::int64_t offset, std::int64_t siz
     bytes.assign(from, from + std::min<std::ptrdiff_t>(size, all.end() - from));
 }
 
-}  // namespace web
+}  // namespace journal

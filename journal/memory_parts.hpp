@@ -8,10 +8,10 @@
 
 #include "journal/journal_parts.hpp"
 
-namespace web {
+namespace journal {
 
-/// The parts of a journal that a page has loaded into memory.
-class MemoryParts : public journal::JournalParts {
+/// The parts of a journal in memory: NAME, NAME.2 and so on.
+class MemoryParts : public JournalParts {
 public:
     /// `name` is that of the first part.
     MemoryParts(std::string name, std::vector<base::Bytes> parts) : name_(std::move(name)), parts_(std::move(parts)) {}
@@ -28,4 +28,4 @@ private:
     std::vector<base::Bytes> parts_;
 };
 
-}  // namespace web
+}  // namespace journal
