@@ -19,7 +19,7 @@ enum class KeyAction : std::uint8_t {
     smaller,
     turnLeft,  // turns the tool
     turnRight,
-    sceneTool,  // tool, depth and humidity as the scene has them
+    sceneTool,  // tool and humidity as the scene has them, and the usual depth
     wetter,
     drier,
     undo,

@@ -132,7 +132,8 @@ scene::Scene loadScene(const lockstep::Cluster& cluster, Options& options) {
 /// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
 std::string sceneName(const Options& options) {
     const std::filesystem::path scene(options.scene);
-    return !scene.empty() ? scene.stem().string() : std::filesystem::path(options.replay).parent_path().stem().string();
+    return !scene.empty() ? scene.stem().string()
+                          : std::filesystem::path(options.replay).parent_path().filename().string();
 }
 
 World loadWorld(const lockstep::Cluster& cluster, Options& options) {

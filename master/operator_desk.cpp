@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "walls/stereo_change.hpp"
@@ -39,8 +38,6 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       shown_(wall),
       place_(SandPlace::of(scene)),
       grid_(scene.grid()),
-      sceneMaterial_(scene.material),
-      toolLimits_(ToolLimits::of(scene)),
       material_(material),
       out_(std::move(out)),
       session_(std::move(session)),
@@ -49,15 +46,17 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       captures_(out_),
       force_(options.force),
       lastEdit_(options.lastEdit),
-      pointer_(options.pointer),
-      film_(options.film) {
+      film_(options.film),
+      windows_(scene, out_, options.pointer,
+               {views_, material_, paused_, [this] { return session_.sand.replica().surface().heights(); },
+                [this](const Command& command, int rank) { (void)carryOut(command, Asker::at(rank)); }}) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
     }
     views_.show(options.pattern);
     views_.show(options.layers);
     views_.setHumidity(material_.humidity);
-    frameView();
+    windows_.frameView();
     if (const int port = views_.viewer().port(); port != 0) {
         fmt::print("head tracking listens on port {}\n", port);
         std::fflush(stdout);
@@ -78,103 +77,9 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
     finishJobs(false);
     for (std::size_t rank = 0; rank < arrivals.size(); ++rank) {
         if (arrivals[rank].key.code != 0) {
-            obeyKey(arrivals[rank].key, static_cast<int>(rank));
+            windows_.obey(arrivals[rank].key, static_cast<int>(rank));
         }
     }
-}
-
-void OperatorDesk::obeyKey(base::Keystroke key, int rank) {
-    const std::optional<lockstep::KeyFound> found = lockstep::findKey(key);
-    if (!found || !(pointer_ || found->entry.everySession)) {
-        return;
-    }
-    using lockstep::KeyAction;
-    const KeyAction action = found->entry.action;
-    if (action == KeyAction::frameView && !views_.moves()) {
-        answerWindow(rank, kFixedView);
-        return;
-    }
-    if (action == KeyAction::undo && !session_.sand.replica().canUndo()) {
-        answerWindow(rank, "nothing to undo");
-        return;
-    }
-    if (action == KeyAction::frameView) {
-        frameView();
-    } else if (action == KeyAction::sceneTool) {
-        depth_ = kUsualDepth;
-    }
-    try {
-        for (const Command& command : commandsOf(*found, keyState(action == KeyAction::save))) {
-            (void)carryOut(command, Asker::at(rank));
-        }
-        answerWindow(rank, answerOf(*found, keyState(false)));
-    } catch (const base::InputError& error) {
-        refuse(error.what(), {Asker::at(rank)});
-    }
-}
-
-KeyState OperatorDesk::keyState(bool saves) {
-    return {material_,
-            sceneMaterial_,
-            toolLimits_,
-            views_.layers(),
-            views_.pattern(),
-            paused_,
-            saves ? freeSaveName() : std::string()};
-}
-
-std::string OperatorDesk::freeSaveName() {
-    std::string name;
-    do {
-        name = fmt::format("save_{:03}", ++savesByKey_);
-    } while (std::filesystem::exists(saveFile(out_, name)));
-    return name;
-}
-
-void OperatorDesk::moveView(std::span<haptic_bridge::PointerReport> pointers) {
-    for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
-        haptic_bridge::PointerReport& pointer = pointers[rank];
-        if (views_.moves()) {
-            views_.move(pointer);
-            continue;
-        }
-        pointer.depth += std::exchange(pointer.wheel, 0.0F);
-        if (pointer.movesView()) {
-            answerWindow(static_cast<int>(rank), kFixedView);
-        }
-    }
-}
-
-void OperatorDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointers) {
-    for (std::size_t rank = 0; rank < pointers.size(); ++rank) {
-        const haptic_bridge::PointerReport& pointer = pointers[rank];
-        if (pointer.depth != 0) {
-            depth_ = deepened(depth_, static_cast<double>(pointer.depth));
-            answerWindow(static_cast<int>(rank), depthInWords(depth_));
-        }
-        if (pointer.size != 0) {
-            resizeTool(-static_cast<double>(pointer.size), static_cast<int>(rank));
-        }
-    }
-}
-
-void OperatorDesk::resizeTool(double notches, int rank) {
-    const double radius = toolLimits_.resized(material_.toolRadius, notches);
-    try {
-        (void)carryOut({.verb = Verb::tool, .tool = {.radius = radius}}, Asker::at(rank));
-        answerWindow(rank, sizeInWords(keyState(false)));
-    } catch (const base::InputError& error) {
-        refuse(error.what(), {Asker::at(rank)});
-    }
-}
-
-void OperatorDesk::answerWindow(int rank, const std::string& text) { answers_.show(rank, text, host::monotonicNs()); }
-
-std::vector<lockstep::Answer> OperatorDesk::answers(std::int64_t nowNs) {
-    if (pointer_ && !std::exchange(hinted_, true) && !views_.layers().shows(lockstep::Overlay::help)) {
-        answers_.show(Answers::kLowestRow, lockstep::hint(), nowNs, Answers::kHintLife);
-    }
-    return answers_.at(nowNs);
 }
 
 void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
@@ -245,7 +150,7 @@ bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
 
 void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
     if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
-        throw base::InputError("there is no stroke to undo");
+        throw base::InputError("nothing to undo");
     }
     edits_.requireRoomFor(edit);
     // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
@@ -401,7 +306,7 @@ void OperatorDesk::answerAll(const Askers& askers, const BackgroundJobs::Result&
         if (asker.client) {
             control_->answer(*asker.client, result.json);
         } else if (asker.window) {
-            answerWindow(*asker.window, result.words);
+            windows_.answer(*asker.window, result.words);
         }
     }
 }
@@ -411,7 +316,7 @@ void OperatorDesk::refuse(const std::string& why, const Askers& askers) {
         if (asker.client) {
             control_->answer(*asker.client, line({{"ok", false}, {"error", why}}));
         } else if (asker.window) {
-            answerWindow(*asker.window, why);
+            windows_.answer(*asker.window, why);
         } else {
             host::printLine("{}", why);
             host::emitEvent("command_refused", {{"error", why}});

@@ -5,24 +5,21 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "lockstep/arrival.hpp"
 #include "lockstep/cluster.hpp"
 #include "lockstep/frame_barrier.hpp"
-#include "lockstep/key_list.hpp"
 #include "master/captures.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "master/master_sand.hpp"
-#include "master/operator/answers.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/edit_queue.hpp"
-#include "master/operator/key_commands.hpp"
 #include "master/operator/operator_command.hpp"
 #include "master/operator/operator_input.hpp"
-#include "master/view_source.hpp"
+#include "master/operator/view_source.hpp"
+#include "master/operator/window_desk.hpp"
 #include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
 
@@ -61,19 +58,8 @@ public:
     /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
     /// windows. Answers the askers of jobs that have ended.
     void obey(const std::vector<lockstep::Arrival>& arrivals);
-    /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. Where the view
-    /// is fixed, the wheels count as PointerReport::depth instead. An attempt to move a fixed view is answered in
-    /// its window.
-    void moveView(std::span<haptic_bridge::PointerReport> pointers);
-    /// Changes depth and size of the tool as the wheels have turned. Call it after moveView().
-    void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
-    /// Returns the depth of the pointer's tool [tool radius].
-    [[nodiscard]] double depth() const { return depth_; }
-    /// Shows an answer in the windows of a rank.
-    void answerWindow(int rank, const std::string& text);
-    /// Returns the answers that the windows show at `nowNs`. The first call of a session with a pointer begins the
-    /// hint.
-    [[nodiscard]] std::vector<lockstep::Answer> answers(std::int64_t nowNs);
+    /// Returns what carries out the keys and wheels of the ranks' windows.
+    [[nodiscard]] WindowDesk& windows() { return windows_; }
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
     [[nodiscard]] const EditQueue& edits() const { return edits_; }
@@ -91,23 +77,16 @@ public:
     void answerEditsThatWaitForRoom();
     /// Answers the clients whose edits are in `steps`, which the wall shows now.
     void answer(const std::vector<haptic_bridge::TimedStep>& steps);
-    /// Calls Captures::take. A later obey() answers the clients.
+    /// Calls Captures::take. A later obey() answers the askers.
     void takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier);
-    /// Waits for the background jobs, answers their clients, and removes the control socket.
+    /// Waits for the background jobs, answers their askers, and removes the control socket.
     void close();
 
 private:
     using Client = ControlSocket::Client;
 
-    void obeyKey(base::Keystroke key, int rank);
-    void resizeTool(double notches, int rank);
-    /// Returns the state from which a key starts, with a name for a file if it `saves`.
-    [[nodiscard]] KeyState keyState(bool saves);
-    void frameView() { views_.frame(session_.sand.replica().surface().heights()); }
-    /// Returns a name that no file has, and that no earlier key has got: a thread may still be writing those files.
-    [[nodiscard]] std::string freeSaveName();
     void obeyLine(const std::string& line, const Asker& asker);
-    /// Returns whether the command is done, so that its client gets the answer "ok". Otherwise the answer comes later
+    /// Returns whether the command is done, so that a client gets the answer "ok". Otherwise the answer comes later
     /// or has been sent.
     [[nodiscard]] bool carryOut(const Command& command, const Asker& asker);
     void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
@@ -128,8 +107,6 @@ private:
     glm::ivec2 window_{0};  // [pixel], size of the window that the picture follows; 0: none, or not known yet
     const SandPlace place_;
     const scene::MaterialGrid grid_;
-    const scene::Material sceneMaterial_;  // as the scene file has it
-    const ToolLimits toolLimits_;
     scene::Material material_;  // with all changes that operators have asked for
     const std::filesystem::path out_;
     const Session session_;
@@ -141,12 +118,9 @@ private:
     Captures captures_;
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
-    const bool pointer_, film_;
-    Answers answers_;
-    bool hinted_ = false;         // whether the hint was shown
-    double depth_ = kUsualDepth;  // of the pointer's tool [tool radius]
-    int savesByKey_ = 0;          // number of the last file that a key has asked for
+    const bool film_;
     bool paused_ = false;
+    WindowDesk windows_;
 };
 
 }  // namespace master

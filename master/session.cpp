@@ -120,7 +120,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     frame.stop = last && check_.mayEnd(now, shownThen);
     frame.capture = film_.has_value() || (frame.stop ? options_.pictures : desk_.needsCapture());
     if (!frame.capture) {  // pictures show no answers
-        frame.answers = desk_.answers(now);
+        frame.answers = desk_.windows().answers(now);
     }
     // The last frame compares the whole sand, because no later frame finds what is wrong now.
     frame.auditTiles = frame.stop ? sand_.allTiles() : sand_.auditTiles(clock_.sinceSwap(now));
@@ -163,10 +163,9 @@ bool Session::showFrame(bool& more) {
     desk_.followWindow(barrier_.arrivals());
     if (options_.pointer) {
         std::vector<haptic_bridge::PointerReport> pointers = barrier_.pointers();
-        desk_.moveView(pointers);
-        desk_.turnWheels(pointers);
-        steps_->setPointerDepth(desk_.depth());
-        steps_->pointed(pointers, sand_.replica(), clock_.lastSwap());
+        desk_.windows().moveView(pointers);
+        desk_.windows().turnWheels(pointers);
+        steps_->pointed(pointers, desk_.windows().depth(), sand_.replica(), clock_.lastSwap());
     }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
     const Steps steps = takeSteps();

@@ -80,7 +80,8 @@ Replica::Replica(const Replica& other)
       engaged_(other.engaged_),
       owed_(other.owed_),
       leftOut_(other.leftOut_),
-      refusedStep_(other.refusedStep_) {}
+      refusedStep_(other.refusedStep_),
+      lastWork_(other.lastWork_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
 
@@ -324,6 +325,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     heading_ = head.heading;
     leftOut_.clear();
     refusedStep_ = false;
+    lastWork_ = {};
 }
 
 }  // namespace sand

@@ -91,12 +91,11 @@ public:
     /// - A settle takes that place too. It brings all sand to rest within its step. With an engaged tool, and on a
     ///   height field with rock or walls, the sand settles by sweeps instead. An engaged tool is then an obstacle.
     ///   These sweeps are owed until all sand is at rest, or until an engaged tool moves. On a TIN, each step runs at
-    ///   most settlingSweeps() of them.
+    ///   most settlingSweeps() of them, or Tuning::sweepsPerStep if that is more.
     ///
     /// A step may leave out a part of itself. Every replica does so alike, because state and step alone decide:
     /// - The whole step is left out if it moves an engaged tool while sweeps are owed, or if it runs more sweeps than
-    /// are
-    ///   owed. Nothing but the step number changes. A program that numbers steps correctly makes no such step.
+    ///   are owed. Nothing but the step number changes. A program that numbers steps correctly makes no such step.
     /// - A load whose bytes are not sand for this field is ignored. The step then runs its sweeps.
     /// - An undo is ignored if canUndo() is false. The step then runs its sweeps.
     /// - A path is ignored, except for its end, if it is so long and the tool so large that the step would take
@@ -112,7 +111,7 @@ public:
         apply(step, [] {});
     }
     /// Applies the next step. Calls `moved` after the tool's movement and the edit, and before the sweeps, so that the
-    /// caller can measure both. It is not called for a step that is left out.
+    /// caller can measure both. It is not called for a step that is left out or that restores sand.
     void apply(const Step& step, const std::function<void()>& moved);
     /// Returns the work of the last step that was applied. The number of sweeps may differ between equal replicas.
     [[nodiscard]] const StepWork& lastWork() const { return lastWork_; }

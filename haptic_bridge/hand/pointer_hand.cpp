@@ -18,7 +18,7 @@ PointerHand::PointerHand(int stepsPerSecond, const sand::Replica& sand)
     Hand::begin(sand);
 }
 
-void PointerHand::point(const PointerSample& sample, const sand::Replica& sand) {
+void PointerHand::point(const PointerSample& sample, double depth, const sand::Replica& sand) {
     radius_ = sand.tool().radius;
     surface_.reset();
     if (sample.meets == 0) {
@@ -27,7 +27,7 @@ void PointerHand::point(const PointerSample& sample, const sand::Replica& sand) 
     }
     const bool pressed = sample.pressed != 0;
     surface_ = sample.probe.z;
-    add({sample.readNs, raised(sample.probe, radius_ * (pressed ? 1 - depth_ : kHover)), pressed});
+    add({sample.readNs, raised(sample.probe, radius_ * (pressed ? 1 - depth : kHover)), pressed});
 }
 
 /// Puts a tool that hovers at rest to the height for its new size.
@@ -41,7 +41,7 @@ void PointerHand::hoverAt(const sand::Replica& sand) {
 
 void PointerHand::lift(std::int64_t readNs) { add({readNs, last().probe, false}); }
 
-void PointerHand::take(std::span<const PointerReport> reports, const sand::Replica& sand) {
+void PointerHand::take(std::span<const PointerReport> reports, double depth, const sand::Replica& sand) {
     const std::optional<std::size_t> hand = arbiter_.hand(reports);
     if (!hand) {
         return;
@@ -54,7 +54,7 @@ void PointerHand::take(std::span<const PointerReport> reports, const sand::Repli
         lift(!samples.empty() ? samples.front().readNs : !ended.empty() ? ended.back().readNs : last().readNs);
     }
     for (const PointerSample& sample : samples) {
-        point(sample, sand);
+        point(sample, depth, sand);
     }
     if (surface_ && !last().engaged && sand.tool().radius != radius_) {
         hoverAt(sand);

@@ -14,9 +14,9 @@ namespace haptic_bridge {
 
 /// Makes the paths of the master's own steps from the pointers of the ranks' windows.
 ///
-/// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is by the depth below
-/// the sand's surface. Otherwise the tool hovers just above. A pointer beside the sand lifts the tool and moves
-/// nothing. Used by one thread.
+/// One pointer at a time is the hand (PointerArbiter). While it is pressed, the tool's underside is below the sand's
+/// surface, by the depth that take() gets. Otherwise the tool hovers just above. A pointer beside the sand lifts the
+/// tool and moves nothing. Used by one thread.
 class PointerHand : public Hand {
 public:
     static constexpr double kHover = 1.3;  // [tool radius] from the surface to the centre of a tool that hovers
@@ -24,16 +24,15 @@ public:
     /// Begins on `sand`.
     PointerHand(int stepsPerSecond, const sand::Replica& sand);
 
-    /// Takes the reports of a frame, in order of rank. `sand` gives the size of the tool.
-    void take(std::span<const PointerReport> reports, const sand::Replica& sand);
+    /// Takes the reports of a frame, in order of rank, and the depth of their places [tool radius]. `sand` gives the
+    /// size of the tool.
+    void take(std::span<const PointerReport> reports, double depth, const sand::Replica& sand);
 
-    /// Sets the depth of further places [tool radius].
-    void setDepth(double depth) { depth_ = depth; }
     /// Returns whether a pointer has moved or touched.
     [[nodiscard]] bool pointed() const { return hand_.has_value(); }
 
 private:
-    void point(const PointerSample& sample, const sand::Replica& sand);
+    void point(const PointerSample& sample, double depth, const sand::Replica& sand);
     void lift(std::int64_t readNs /* [ns] */);
     void hoverAt(const sand::Replica& sand);
 
@@ -41,7 +40,6 @@ private:
     std::optional<std::size_t> hand_;      // rank of the frame before
     std::optional<std::int32_t> surface_;  // height of the sand at the last place [probe unit]; none beside the sand
     std::int32_t radius_;                  // of the tool that the last place was computed for [probe unit]
-    double depth_ = 0.5;
 };
 
 }  // namespace haptic_bridge

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "haptic_bridge/hand/path_builder.hpp"
+
 namespace haptic_bridge {
 
 void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
@@ -60,6 +62,9 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
 }
 
 std::int64_t SweepBudget::mostSubsteps() const {
+    if (pace_ == Pace::fast) {
+        return PathBuilder::kNoLimit;
+    }
     constexpr double kUnlimited = 1 << 30;
     const double most = substepNs_ > 0 ? static_cast<double>(budgetNs()) / substepNs_ : kUnlimited;
     return static_cast<std::int64_t>(std::clamp(most, 1.0, kUnlimited));

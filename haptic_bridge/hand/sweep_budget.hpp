@@ -10,12 +10,12 @@
 namespace haptic_bridge {
 
 /// Decides how much work of the sand fits into a frame: how many sweeps a step runs, how far it moves the tool, and how
-/// many steps a frame takes.
+/// many of a server's steps a frame takes, at least one.
 ///
-/// The time for sand in a frame is half of the longer of its period and its drawing, and at most kMostNs. The sweeps of
-/// a step fit into it by the last wall time of a sweep. They are also at most twice as many as a frame has shown since
-/// a change. A stroke begins with kFastPart sweeps. After an edit all sand may move, as at the start of a session. So
-/// the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
+/// The time for sand in a frame is half of the longer of a step's period and the frame's drawing, and at most kMostNs.
+/// The sweeps of a step fit into it by the last wall time of a sweep. They are also at most twice as many as a frame
+/// has shown since a change. A stroke begins with at most kFastPart sweeps. After an edit all sand may move, as at the
+/// start of a session. So the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
 ///
 /// The sand after all sweeps of a step does not depend on these numbers. In real time the path of the hand does.
 /// Reads no clock. Used by one thread.
@@ -25,7 +25,7 @@ public:
     static constexpr std::int64_t kMostNs = 80'000'000;  // [ns], of sand in a frame
     static constexpr std::int64_t kCellNs = 2;           // [ns], of a cell that moves, in a sweep of a large field
 
-    /// `periodNs` is that of the wall's frames [ns].
+    /// `periodNs` is that of the steps [ns].
     SweepBudget(Pace pace, std::int64_t periodNs) : pace_(pace), periodNs_(periodNs) {}
 
     /// Takes the cost of a frame. `step` is the number of its last step.
@@ -33,7 +33,7 @@ public:
 
     /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
-    /// Returns how many sub-steps of the tool a step may have; at least 1.
+    /// Returns how many sub-steps of the tool a step may have, at least 1; PathBuilder::kNoLimit under the fast pace.
     [[nodiscard]] std::int64_t mostSubsteps() const;
     /// Returns whether a frame whose steps ask for `taken` may take a further step that asks for `further`.
     [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further) const;

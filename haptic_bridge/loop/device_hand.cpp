@@ -33,7 +33,8 @@ void ChannelHand::drain() {
 void ChannelHand::publish(const sand::Replica& replica, bool edited) {
     edits_ += edited ? 1 : 0;
     // The hand feels sand in which its oldest waiting movement is missing. The guards see how old that is.
-    stepNs_ = std::min(now_(), engagedSinceNs().value_or(now_()));
+    const std::int64_t now = now_();
+    stepNs_ = std::min(now, engagedSinceNs().value_or(now));
     copy(replica);
 }
 

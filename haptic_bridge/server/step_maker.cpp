@@ -144,7 +144,7 @@ void StepMaker::collect() {
 /// Returns the time at which the last sample of the step was read [ns, the host's clock]. Returns 0 if the step has no
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
-    const std::int64_t readNs = hand_.fill(step, hand_.onHostClock() ? budget_.mostSubsteps() : PathBuilder::kNoLimit);
+    const std::int64_t readNs = hand_.fill(step, budget_.mostSubsteps());
     if (sand::isRound(replica_.tool().kind) || step.heading == replica_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }

@@ -21,8 +21,8 @@ public:
 
     struct Asked {
         sand::Edit edit;
-        std::optional<ControlSocket::Client>
-            client;                               // client that gets the answer; nullopt for a line from standard input
+        /// Client that gets the answer; nullopt for a line from standard input or a key in a window.
+        std::optional<ControlSocket::Client> client;
         std::optional<scene::Material> material;  // the session's material after the edit; nullopt if unchanged
     };
 

@@ -117,7 +117,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
                               ? fmt::format("a {} is round: its heading shows in no furrow", tool)
                               : fmt::format("heading {:.0f}°", after.material.toolHeading));
         case KeyAction::sceneTool:
-            return edited("tool, depth and humidity of the scene");
+            return edited("tool and humidity of the scene, usual depth");
         case KeyAction::wetter:
         case KeyAction::drier:
             return edited(fmt::format("humidity {:.0f} %", 100 * after.material.humidity));

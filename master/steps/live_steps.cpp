@@ -176,7 +176,7 @@ std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_
         probe = step.path.empty() ? probe : step.path.back();
         engaged = step.engaged;
         steps.push_back(std::move(next.front()));
-        // One more like it must fit, because a step that has been taken cannot be put back.
+        // One more with as many sweeps must fit, because a step that has been taken cannot be put back.
         if (!budget_.fits(taken, {steps.back().step.sweeps, 0})) {
             break;
         }
@@ -198,7 +198,7 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         } else {
             own_.fill(next, budget_.mostSubsteps());
         }
-        next.step.edit = edits_.at(0);
+        next.step.edit = edits_.next();
         next.step.sweeps = budget_.sweepsOf(next.step, replica);
         known = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step);
     }

@@ -57,11 +57,10 @@ public:
     void refused(const std::vector<haptic_bridge::TimedStep>& steps, const std::string& why) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override { return link_.ticks(); }
     /// From the first call on, the pointers are the hand. Call it only without a server.
-    void pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
+    void pointed(std::span<const haptic_bridge::PointerReport> reports, double depth, const sand::Replica& sand,
                  std::int64_t receivedNs) override {
-        own_.pointed(reports, sand, receivedNs);
+        own_.pointed(reports, depth, sand, receivedNs);
     }
-    void setPointerDepth(double depth) override { own_.setDepth(depth); }
     void drill(const lockstep::Fault& fault) override { link_.drill(fault); }
 
     /// Returns whether the session has just started and still waits for the server.

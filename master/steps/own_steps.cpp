@@ -43,13 +43,12 @@ void OwnSteps::followPositions(haptic_bridge::Client& client, haptic_bridge::Lin
     }
 }
 
-void OwnSteps::pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
+void OwnSteps::pointed(std::span<const haptic_bridge::PointerReport> reports, double depth, const sand::Replica& sand,
                        std::int64_t receivedNs) {
     if (!pointer_) {
         pointer_.emplace(stepsPerSecond_, sand);
     }
-    pointer_->setDepth(depth_);
-    pointer_->take(reports, sand);
+    pointer_->take(reports, depth, sand);
     pointedNs_ = receivedNs;
 }
 

@@ -39,10 +39,8 @@ public:
     /// Takes the positions of the server, if the link is in the state `streaming`. Prints troubles with them.
     void followPositions(haptic_bridge::Client& client, haptic_bridge::Link link, const sand::Replica& sand,
                          std::int64_t nowNs);
-    /// Sets PointerHand::setDepth() for the pointers that are taken next.
-    void setDepth(double depth) { depth_ = depth; }
-    /// Takes the pointers. From the first call on they are the hand.
-    void pointed(std::span<const haptic_bridge::PointerReport> reports, const sand::Replica& sand,
+    /// Takes the pointers and the depth of their tool [tool radius]. From the first call on they are the hand.
+    void pointed(std::span<const haptic_bridge::PointerReport> reports, double depth, const sand::Replica& sand,
                  std::int64_t receivedNs);
 
     /// Returns whether a server streams positions.
@@ -57,7 +55,6 @@ private:
     haptic_bridge::Pace pace_;
     PositionSource positions_;
     std::optional<haptic_bridge::PointerHand> pointer_;  // nullopt before pointed()
-    double depth_ = 0.5;                                 // [tool radius]
     std::int64_t pointedNs_ = 0;                         // [ns], when the last reports arrived
     double owed_ = 0;                                    // [step]
     std::int64_t lastNs_ = 0;

@@ -55,13 +55,11 @@ public:
     /// Returns a line for the user that describes this difference, once; an empty text if there is no new one.
     [[nodiscard]] virtual std::string takeStrayLine() { return {}; }
 
-    /// Takes the pointers of the ranks' windows at the last barrier, in order of rank. `receivedNs` is when the last of
-    /// them arrived [ns, the master's clock].
-    virtual void pointed(std::span<const haptic_bridge::PointerReport> /* reports */, const sand::Replica& /* sand */,
-                         std::int64_t /* receivedNs */) {}
-
-    /// Sets how far the tool's underside is below the sand while a pointer is pressed [tool radius].
-    virtual void setPointerDepth(double /* depth */) {}
+    /// Takes the pointers of the ranks' windows at the last barrier, in order of rank. While one is pressed, the tool's
+    /// underside is by `depth` below the sand's surface [tool radius]. `receivedNs` is when the last of them arrived
+    /// [ns, the master's clock].
+    virtual void pointed(std::span<const haptic_bridge::PointerReport> /* reports */, double /* depth */,
+                         const sand::Replica& /* sand */, std::int64_t /* receivedNs */) {}
 
     /// Called when the wall has swapped.
     virtual void shown(const haptic_bridge::Shown& /* frame */) {}

@@ -14,8 +14,8 @@ namespace master {
 class WaitingEdits {
 public:
     void add(sand::Edit edit) { edits_.push_back(std::move(edit)); }
-    /// Returns edit `i`, counted from 0; no edit if fewer wait.
-    [[nodiscard]] sand::Edit at(std::size_t i) const { return i < edits_.size() ? edits_[i] : sand::Edit(); }
+    /// Returns the oldest edit; no edit if none waits.
+    [[nodiscard]] sand::Edit next() const { return edits_.empty() ? sand::Edit() : edits_.front(); }
     /// Removes the edits whose numbers are in `steps`.
     void removeThoseIn(const std::vector<haptic_bridge::TimedStep>& steps) {
         for (const haptic_bridge::TimedStep& timed : steps) {

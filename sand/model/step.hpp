@@ -68,8 +68,9 @@ struct Step {
     std::vector<ProbePoint> path{};
     Edit edit = Edit::none;                         // done after the tool's displacement and before the sweeps
     std::optional<Heading> heading = std::nullopt;  // of the tool from this step on; nullopt: unchanged
-    /// Sweeps of a height field that this step runs, at most kMostSweeps. 0 runs all that is owed: a TIN's steps do,
-    /// and so do steps that never become bytes.
+    /// Sweeps of a height field that this step runs, at most kMostSweeps. 0 runs all that is owed, but of a
+    /// settle only what Replica::wholeSweeps() returns. Steps of a TIN have 0, and so have steps that never become
+    /// bytes.
     std::int32_t sweeps = 0;
 
     /// Writes the one format that link, frame message and journal share. A point is written as the difference from the

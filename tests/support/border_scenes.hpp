@@ -170,8 +170,8 @@ inline bool isWithinOutline(const sand::TurnedShape& turned, const sand::Tool& t
     });
 }
 
-/// Returns how far the surface is above the underside of a tool at `probe`, on a lattice of quarter cells. Counts only
-/// places on ground that the outline in a mesh holds.
+/// Returns how far the surface is above the underside of a tool at `probe`, at the centres of cells, and on a lattice
+/// of quarter cells of a TIN. Counts only places on ground, and on a TIN only those that the outline in a mesh holds.
 inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& probe) {
     const sand::TurnedShape turned(sand.tool());
     const bool tin = sand.rules().tin != 0;
@@ -183,7 +183,8 @@ inline double overUnderside(const sand::Replica& sand, const sand::ProbePoint& p
         for (std::int32_t x = step / 2; x < sand.rules().columns * sand::kProbePerCell; x += step) {
             const sand::Offset offset{std::int64_t{x} - probe.x, std::int64_t{y} - probe.y};
             if (std::max(std::abs(offset.x), std::abs(offset.y)) > sand.tool().radius ||
-                !isWithinOutline(turned, sand.tool(), offset) || (holes != nullptr && holes->holds({x, y})) ||
+                !(tin ? isWithinOutline(turned, sand.tool(), offset) : turned.covers(offset)) ||
+                (holes != nullptr && holes->holds({x, y})) ||
                 (ground != nullptr && ground->isWall(x / sand::kProbePerCell, y / sand::kProbePerCell))) {
                 continue;
             }

@@ -23,8 +23,21 @@ struct HeldSettle {
     double largest = 0;        // of the sand above the tool's underside [cell at n = 64]
     std::int64_t changed = 0;  // of the volume of all sand with the outflow [volume unit]
     double exchanged = 0;      // volume that has passed a wall [cell³]
-    bool still = false;        // whether a step after the settle moved nothing
+    bool atRest = false;       // whether sweeps have found all sand at rest
+    bool still = false;        // whether a step after the settle changed nothing
 };
+
+/// Returns what is wrong with a settle, or an empty text.
+inline std::string whyWrong(const HeldSettle& held) {
+    std::string why;
+    for (const auto& [wrong, what] : {std::pair{held.changed != 0, "the volume has changed"},
+                                      {held.exchanged > 0, "sand has passed a wall"},
+                                      {!held.atRest, "sweeps have not found all sand at rest"},
+                                      {!held.still, "the next step has changed the sand"}}) {
+        why += !wrong ? "" : why.empty() ? what : std::string(", ") + what;
+    }
+    return why;
+}
 
 /// A tool is dragged to its place and pressed a radius deep into uneven sand. The operator settles the sand.
 inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind, HeldAt place) {
@@ -71,7 +84,8 @@ inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind,
     result.exchanged = given.rim == sand::Rim::open ? 0 : borders::exchanged(before, sand);
     const auto settled = sand.copySand()->encode();
     hand.hold();
-    result.still = sand.settled() && sand.copySand()->encode() == settled;
+    result.atRest = sand.settled();
+    result.still = sand.copySand()->encode() == settled;
     return result;
 }
 

@@ -236,6 +236,7 @@ SweepResult settleUp(std::size_t count, const double* __restrict sums, const dou
     std::int64_t resting = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const double inflow = sums[2 * i], flow = sums[2 * i + 1];
+        // The library of emscripten has no std::bit_cast.
         const auto bits = __builtin_bit_cast(std::uint64_t, inflow + 0.0);  // minus zero counts as 0
         moved |= bits;
         beyond |= bits & unwatched[i];

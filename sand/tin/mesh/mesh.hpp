@@ -94,6 +94,7 @@ public:
         std::array<Vertex, 3> corner{};
         std::array<LatticePoint, 3> place{};
         friend bool operator==(const Piece&, const Piece&) = default;
+        // The library of emscripten has no <=> of arrays.
         friend bool operator<(const Piece& a, const Piece& b) {
             return std::tie(a.corner, a.place) < std::tie(b.corner, b.place);
         }

@@ -35,7 +35,7 @@ void forEachSubstep(const ProbePoint& from, const ProbePoint& to, const Visit& v
     const std::int64_t dx = std::int64_t{to.x} - from.x, dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
-    const std::int64_t steps = std::max<std::int64_t>((longest + kProbePerCell - 1) / kProbePerCell, 1);
+    const std::int64_t steps = substepsBetween(from, to);
     // `ahead` is the direction of the whole way, at most two cells long, as for the tool of a grid.
     const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
     for (std::int64_t i = 1; i <= steps; ++i) {

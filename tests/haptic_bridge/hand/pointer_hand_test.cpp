@@ -36,7 +36,7 @@ protected:
     }
     /// Shows a frame with one step.
     sand::Step step() {
-        hand_.take(reports_, replica_);
+        hand_.take(reports_, depth_, replica_);
         for (PointerReport& report : reports_) {
             report.count = 0;
         }
@@ -51,6 +51,7 @@ protected:
     const scene::Scene scene_ = samples::flatScene(64, 64);
     sand::Replica replica_{scene_};
     haptic_bridge::PointerHand hand_{60, replica_};
+    double depth_ = 0.5;  // [tool radius]
     std::array<PointerReport, 3> reports_{};
     std::int64_t clock_ = 20'000 * kReadingNs;
     std::int64_t read_ = 0;
@@ -91,10 +92,10 @@ TEST_F(PointerHand, ARestingToolHoversJustAboveTheSandInItsNewSize) {
 }
 
 TEST_F(PointerHand, DigsAsDeepAsItIsSet) {
-    hand_.setDepth(0.7);
+    depth_ = 0.7;
     add(1, 20, 32, true);
     EXPECT_EQ(step().path.at(0).z, std::lround(0.3 * 4 * kPerCell));
-    hand_.setDepth(2);
+    depth_ = 2;
     add(1, 24, 32, true);
     EXPECT_EQ(step().path.at(0).z, -4 * kPerCell);
 }
@@ -153,10 +154,10 @@ TEST_F(PointerHand, IsLiftedWhenTheNextPointerRests) {
 }
 
 TEST_F(PointerHand, StaysWithinTheReachOfAStep) {
-    hand_.setDepth(2);
+    depth_ = 2;
     add(1, 20, 32, true);
     reports_[1].samples[0].probe.z = -sand::kMaxProbe;
-    hand_.take(reports_, replica_);
+    hand_.take(reports_, depth_, replica_);
     sand::Step deep;
     (void)hand_.fill(deep);
     EXPECT_EQ(deep.path.at(0).z, -sand::kMaxProbe);

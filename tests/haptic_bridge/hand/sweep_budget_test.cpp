@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "haptic_bridge/hand/path_builder.hpp"
 #include "tests/support/border_scenes.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -17,9 +18,9 @@ constexpr std::int64_t kPeriod = 16'000'000, kMillisecond = 1'000'000;
 
 class Budget : public testing::Test {
 protected:
-    explicit Budget(int whole = 4000) {
+    Budget() {
         scene_ = samples::flatScene(1000, 500);  // a sweep takes at most 1 ms
-        scene_.rules.tuning.sweepsPerStep = whole;
+        scene_.rules.tuning.sweepsPerStep = 4000;
         sand_.emplace(scene_);
     }
     /// Returns the sweeps of the next step, which engages, holds or edits.
@@ -162,7 +163,8 @@ TEST_F(Budget, AFrameTakesTheStepsThatFit) {
 TEST_F(Budget, TheFastPaceDependsOnNoTime) {
     SweepBudget fast(Pace::fast, kPeriod);
     for (const std::int64_t sweepNs : {1, 1000, 1'000'000'000}) {
-        fast.shown({.sweeps = 64, .sweepNs = 64 * sweepNs}, 1);
+        fast.shown({.sweeps = 64, .substeps = 8, .sweepNs = 64 * sweepNs, .dragNs = 8 * sweepNs}, 1);
+        EXPECT_EQ(fast.mostSubsteps(), haptic_bridge::PathBuilder::kNoLimit);
         EXPECT_EQ(fast.sweepsOf({1, 1, true, {}}, *sand_), 64);
         EXPECT_EQ(fast.sweepsOf({1, 1, true, {}, sand::Edit::reset}, *sand_), 64);
     }

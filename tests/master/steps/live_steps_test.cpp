@@ -39,14 +39,14 @@ TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunct
     master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
                            [this] { return nowNs_.load(); });
     std::array<haptic_bridge::PointerReport, 2> reports{};
-    live.pointed(reports, wall_, nowNs_);
+    live.pointed(reports, 0.5, wall_, nowNs_);
     EXPECT_STREQ(live.hand(), "hand points");
     for (int frame = 0; frame < 60; ++frame) {
         nowNs_ += kFrameNs + (frame % 3 - 1) * 400'000;
         const std::int64_t read = nowNs_ - 5'000'000, received = nowNs_ - 1'000'000;
         reports[1].count = 1;
         reports[1].samples[0] = {read, {2048 + 64 * frame, 2048, 0}, 0, 1, {}};
-        live.pointed(reports, wall_, received);
+        live.pointed(reports, 0.5, wall_, received);
         const std::vector<TimedStep> steps = show(live);
         ASSERT_EQ(steps.size(), 1U) << "frame " << frame;
         ASSERT_EQ(steps[0].step.path.size(), 1U);

@@ -175,8 +175,8 @@ void measureHeldTools(Table& table, int n) {
                 const borders::HeldSettle held = borders::settleAround(ground, n, kind, place);
                 const bool flat = kind == circle || kind == rectangle || kind == ellipse;
                 table.row(at + ": sand in it", held.largest, !ground.tin ? 0 : flat ? 1e-3 : 0.4, "cell");
-                const bool wrong = held.changed != 0 || held.exchanged > 0 || !held.still;
-                table.row("the same, volume changes, sand passes walls, or sand moves afterwards", wrong ? 1 : 0, 0,
+                const std::string why = borders::whyWrong(held);
+                table.row("the same, volume, walls and rest" + (why.empty() ? "" : ": " + why), why.empty() ? 0 : 1, 0,
                           "");
             }
         }

@@ -19,6 +19,7 @@ void expectNoSandIn(const borders::Ground& ground, sand::ToolKind kind, HeldAt p
     EXPECT_LE(held.largest, most) << name;
     EXPECT_EQ(held.changed, 0) << name;
     EXPECT_EQ(held.exchanged, 0) << name;
+    EXPECT_TRUE(held.atRest) << name;
     EXPECT_TRUE(held.still) << name;
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/view_source.hpp"
-
-#include <fmt/format.h>
+#include "master/operator/view_source.hpp"
 
 #include <algorithm>
 #include <glm/gtc/type_ptr.hpp>

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
-#include <string_view>
 
 #include "haptic_bridge/hand/pointer.hpp"
 #include "lockstep/frame_message.hpp"
