@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <string>
 #include <vector>
 
 namespace bench {
@@ -33,6 +34,12 @@ double secondsOf(const Work& work) {
 /// Returns how often a measurement is run whose first run has taken `first` seconds: `most` times below 5 s, three
 /// times below 60 s, and else once.
 inline int runsFor(double first, int most) { return first < 5 ? most : first < 60 ? std::min(most, 3) : 1; }
+
+/// Returns what `runsFor` does with `most`, for the head of a table.
+inline std::string runsRule(int most) {
+    return std::to_string(most) + " if the first takes less than 5 s, " + std::to_string(runsFor(5, most)) +
+           " if less than 60 s, else 1";
+}
 
 /// Returns the value below which `share` of `values` are, by linear interpolation between neighbours. Returns 0 if
 /// `values` is empty.

@@ -118,7 +118,7 @@ void dig(const Settings& settings, Csv& csv) {
                     kSteps));
     csv.note("TIN: one vertex per cell, at a random place of the cell; heights are compared at the middles of cells");
     csv.note("ms: CPU time of one thread per step, hash included, over the steps of all strokes");
-    csv.note("runs: ten strokes if one takes less than 5 s, three below 60 s, else one");
+    csv.note("runs: strokes, " + runsRule(settings.runs));
     csv.note(
         "misplaced_held: sum of |height - settled height| over the sum of |settled height - level|. The sand settles "
         "with the tool in its last place. This is sand that has yet to move over displaced sand");

@@ -28,11 +28,11 @@ std::vector<Contender> race(const std::vector<Method>& all, const sand::HeightFi
         contenders.push_back({method, {}, {}, 0});
     }
     for (int run = 0; run < runs; ++run) {
-        progress("{}, N = {}, {} of {} runs", field, start.columns(), run + 1, runs);
         for (Contender& contender : contenders) {
             if (run > 0 && run >= runsFor(contender.seconds.front(), runs)) {
                 continue;
             }
+            progress("{}, N = {}, {}: run {}", field, start.columns(), contender.method.name, run + 1);
             std::unique_ptr<Relaxation> relaxation;
             contender.seconds.push_back(secondsOf([&] {
                 relaxation = contender.method.start(start, rulesFor(start));
@@ -73,9 +73,8 @@ void write(Csv& csv, const std::string& field, int side, const std::vector<Conte
     }
 }
 
-void begin(Csv& csv) {
-    csv.note(fmt::format("ten runs of a method below 5 s, three below 60 s, else one; beyond N = {} only G and settle",
-                         kLargestSlow));
+void begin(const Settings& settings, Csv& csv) {
+    csv.note("runs of a method: " + runsRule(settings.runs));
     csv.note("ratio: median of `" + kToRest.front() + "` of the same field over this one's median");
     csv.columns("field,method,N,runs,sweeps,seconds_median,seconds_min,seconds_max,ratio,error");
 }
@@ -85,7 +84,8 @@ void begin(Csv& csv) {
 void rest(const Settings& settings, Csv& csv) {
     csv.note(
         "low pile: cylinder of height 0.6 R, R = 0.3 N, talus 45 degrees, band 0; error against the analytic pile");
-    begin(csv);
+    csv.note(fmt::format("beyond N = {} only G and settle", kLargestSlow));
+    begin(settings, csv);
     for (const int side : settings.sizes) {
         const Pile pile = lowPile(side);
         write(csv, "low pile", side, race(contendersOn(side), pile.start, settings.runs, "low pile"), pile.rest,
@@ -100,7 +100,7 @@ void restMoving(const Settings& settings, Csv& csv) {
     csv.note("bumpy slope: a plane three times as steep as the talus with bumps of up to half a cell in a closed box;");
     csv.note("  error against " + kToRest.back() +
              ": sum of |difference| over the sum of |rest - start|, the moved sand");
-    begin(csv);
+    begin(settings, csv);
     for (const int side : settings.sizes) {
         const sand::HeightField start = bumpySlope(side, settings.seed);
         const std::vector<Contender> slope = race(all, start, settings.runs, "bumpy slope");

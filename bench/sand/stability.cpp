@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/input_error.hpp"
 #include "bench/report/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "scene/model/scene.hpp"
@@ -67,6 +68,38 @@ double stiffest(const ArmPhysics& physics, Guards::Mode mode, double low, double
     return low;
 }
 
+/// An arm of the curve guarded-sweep, with its name among the --rows.
+struct SweptArm {
+    std::string name;
+    std::string_view arm;
+    int delay;       // [tick]
+    double damping;  // [N s/m]
+};
+
+/// Returns the arms with the names in `settings`, or all arms without a name. Throws InputError for an unknown
+/// name.
+std::vector<SweptArm> swept(const Settings& settings, const std::vector<double>& dampings) {
+    std::vector<SweptArm> arms;
+    std::string names;
+    for (const std::string_view arm : haptic_bridge::kArmPresets) {
+        for (const int delay : {0, 1}) {
+            for (const double damping : dampings) {
+                arms.push_back({fmt::format("{}/{}/{:g}", arm, delay, damping), arm, delay, damping});
+                names += (names.empty() ? "" : ", ") + arms.back().name;
+            }
+        }
+    }
+    for (const std::string& wanted : settings.rows) {
+        if (std::ranges::find(arms, wanted, &SweptArm::name) == arms.end()) {
+            throw base::InputError("--rows: there is no \"" + wanted + "\"; choose from " + names);
+        }
+    }
+    std::erase_if(arms, [&](const SweptArm& arm) {
+        return !settings.rows.empty() && std::ranges::find(settings.rows, arm.name) == settings.rows.end();
+    });
+    return arms;
+}
+
 }  // namespace
 
 void stability(const Settings& settings, Csv& csv) {
@@ -102,6 +135,9 @@ void stability(const Settings& settings, Csv& csv) {
 }
 
 void guardedSweep(const Settings& settings, Csv& csv) {
+    const bool full = settings.runs > 1;
+    const std::vector<double> dampings = full ? std::vector<double>{0.5, 1, 2, 3.5, 5} : std::vector<double>{0.5};
+    const std::vector<SweptArm> arms = swept(settings, dampings);
     csv.note("The constants of Dorjgotov et al. 2007 on level sand.");
     csv.note("Depth 0 to 3 radii, speed 0 to 1 m/s, pressed or held by a hand.");
     csv.note("rest: share of the trials below 1 mm/s within 3 s, or within what a heavy arm's damping takes.");
@@ -110,47 +146,37 @@ void guardedSweep(const Settings& settings, Csv& csv) {
     csv.note("deviation: relative difference in these ticks between the force sent and the law with these constants.");
     csv.columns("arm,delay,b,hand,trials,rest,force,max_force,deviation,unlimited,literal_rest,literal_force");
     const scene::Scene scene = test::levelSand();
-    const bool full = settings.runs > 1;
-    const std::vector<double> dampings = full ? std::vector<double>{0.5, 1, 2, 3.5, 5} : std::vector<double>{0.5};
     const std::vector<double> depths = full ? std::vector<double>{0, 0.5, 1, 2, 3} : std::vector<double>{1};
     const std::vector<double> speeds = full ? std::vector<double>{0, 0.03, 0.1, 0.3, 1} : std::vector<double>{0.3};
-    for (const std::string_view name : haptic_bridge::kArmPresets) {
-        for (const int delay : {0, 1}) {
-            for (const double damping : dampings) {
-                const std::string row = fmt::format("{}/{}/{:g}", name, delay, damping);
-                if (!settings.rows.empty() && std::ranges::find(settings.rows, row) == settings.rows.end()) {
-                    continue;
-                }
-                for (const bool held : {false, true}) {
-                    progress("sweep of {}, delay {}, {} N s/m", name, delay, damping);
-                    test::Trial trial{*haptic_bridge::armPreset(name), 0, 0, held};
-                    trial.arm.damping = damping;
-                    trial.arm.delayTicks = delay;
-                    int trials = 0, rest = 0, literalRest = 0;
-                    double force = 0, literalForce = 0, deviation = 0, touching = 0, unlimited = 0;
-                    for (const double depth : depths) {
-                        for (const double speed : speeds) {
-                            trial.depth = depth;
-                            trial.speed = speed;
-                            trial.mode = Guards::Mode::on;
-                            const test::Outcome guarded = run(trial, scene);
-                            trial.mode = Guards::Mode::literal;
-                            const test::Outcome literal = run(trial, scene);
-                            ++trials;
-                            rest += guarded.settles() ? 1 : 0;
-                            literalRest += literal.settles() ? 1 : 0;
-                            force = std::max(force, guarded.mostForce);
-                            literalForce = std::max(literalForce, literal.mostForce);
-                            deviation = std::max(deviation, guarded.deviation);
-                            touching += static_cast<double>(guarded.touching);
-                            unlimited += static_cast<double>(guarded.unlimited);
-                        }
-                    }
-                    csv.row(name, delay, damping, held ? "held" : "pressed", trials, static_cast<double>(rest) / trials,
-                            force, trial.arm.maxForce, deviation, touching > 0 ? unlimited / touching : 1.0,
-                            static_cast<double>(literalRest) / trials, literalForce);
+    for (const auto& [name, arm, delay, damping] : arms) {
+        for (const bool held : {false, true}) {
+            progress("sweep of {}, delay {}, {} N s/m", arm, delay, damping);
+            test::Trial trial{*haptic_bridge::armPreset(arm), 0, 0, held};
+            trial.arm.damping = damping;
+            trial.arm.delayTicks = delay;
+            int trials = 0, rest = 0, literalRest = 0;
+            double force = 0, literalForce = 0, deviation = 0, touching = 0, unlimited = 0;
+            for (const double depth : depths) {
+                for (const double speed : speeds) {
+                    trial.depth = depth;
+                    trial.speed = speed;
+                    trial.mode = Guards::Mode::on;
+                    const test::Outcome guarded = run(trial, scene);
+                    trial.mode = Guards::Mode::literal;
+                    const test::Outcome literal = run(trial, scene);
+                    ++trials;
+                    rest += guarded.settles() ? 1 : 0;
+                    literalRest += literal.settles() ? 1 : 0;
+                    force = std::max(force, guarded.mostForce);
+                    literalForce = std::max(literalForce, literal.mostForce);
+                    deviation = std::max(deviation, guarded.deviation);
+                    touching += static_cast<double>(guarded.touching);
+                    unlimited += static_cast<double>(guarded.unlimited);
                 }
             }
+            csv.row(arm, delay, damping, held ? "held" : "pressed", trials, static_cast<double>(rest) / trials, force,
+                    trial.arm.maxForce, deviation, touching > 0 ? unlimited / touching : 1.0,
+                    static_cast<double>(literalRest) / trials, literalForce);
         }
     }
 }

@@ -150,14 +150,13 @@ void workPrecision(const Settings& settings, Csv& csv) {
     csv.note(
         fmt::format("a float baseline ends when no sweep moves {} cells, or twice the sweeps change the error by < 1 %",
                     kFloatTolerance));
-    csv.note(fmt::format("ten runs of a method below 5 s, three below 60 s, else one; no tall pile beyond N = {}",
-                         kLargestTall));
+    csv.note(fmt::format("runs of a method: {}; no tall pile beyond N = {}", runsRule(settings.runs), kLargestTall));
     csv.columns(
         "pile,method,integers,N,runs,sweeps,seconds_median,seconds_min,seconds_max,misplaced,largest,apex,at_rest");
     for (const int side : settings.sizes) {
         for (const Pile& pile : pilesOf(side)) {
             for (const Method& method : methods(kRaced)) {
-                progress("{} pile, N = {}, {}: {} runs", pile.name, side, method.name, settings.runs);
+                progress("{} pile, N = {}, {}", pile.name, side, method.name);
                 Runner runner(method, pile);
                 std::vector<Sample> samples = runner.first();
                 const int runs = runsFor(runner.total(), settings.runs);

@@ -279,12 +279,20 @@ def notes(args, before):
             "Digging: that paper's tool on 512² cells, both eyes. Still: settled sand, one eye, so that hardly anything is drawn. Pixels are those of one eye."]
 
 
-def write_csv(file, rows, said, command):
-    lines = [f"# {line}" for line in [*said, f"command: {command}", time.strftime("date: %Y-%m-%dT%H:%M:%SZ", time.gmtime())]]
+def write_csv(file, rows, said, program):
+    """Writes rows to a file, or to standard output if `file` is None, as a table whose head has the lines `said` and the command
+    of `program`. Returns the exit status."""
+    lines = [f"# {line}" for line in [*said, f"command: {program} {' '.join(sys.argv[1:])}", time.strftime("date: %Y-%m-%dT%H:%M:%SZ", time.gmtime())]]
     lines.append(",".join(rows[0]))
     for row in rows:
         lines.append(",".join(f"{value:.6g}" if isinstance(value, float) else str(value) for value in row.values()))
-    file.write_text("\n".join(lines) + "\n")
+    text = "\n".join(lines) + "\n"
+    try:
+        file.write_text(text) if file else sys.stdout.write(text)
+    except OSError as error:
+        print(f"{program}: {file}: cannot be written ({error.strerror})", file=sys.stderr)
+        return 1
+    return 0
 
 
 class Parser(command_line.Parser):
@@ -342,13 +350,7 @@ def main():
         return 130
     said = notes(args, before)
     print("\n" + "\n".join(f"- {line}" for line in said))
-    if args.out:
-        try:
-            write_csv(args.out, rows, said, "sandwall-bench latency " + " ".join(sys.argv[1:]))
-        except OSError as error:
-            print(f"sandwall-bench latency: {args.out}: cannot be written ({error.strerror})", file=sys.stderr)
-            return 1
-    return 0
+    return write_csv(args.out, rows, said, "sandwall-bench latency") if args.out else 0
 
 
 if __name__ == "__main__":

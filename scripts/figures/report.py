@@ -29,7 +29,7 @@ def options(arguments):
     parser.add_argument("--quick", action="store_true", help="smaller fields and fewer runs, into out/report unless --out names another folder")
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--list", action="store_true", help="only print the parts, whether their tables are those of the present sources, and the time that they take")
-    what.add_argument("--check", action="store_true", help="measure the smallest N of each table again, and compare errors, sweeps and hashes; at most two minutes")
+    what.add_argument("--check", action="store_true", help="measure the smallest N of each table again, and compare errors, sweeps and hashes; at most two minutes for each, after building")
     what.add_argument("--draw", action="store_true", help="only draw the pictures and write the text, from the tables that exist")
     parser.add_argument("--out", type=pathlib.Path, metavar="DIR", help="folder of the report (default: docs/report)")
     args = parser.parse_args(arguments)

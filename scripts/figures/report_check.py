@@ -9,17 +9,18 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from latency import die_with_parent
 from report_data import Table, TableFault
-from report_measure import die_with_parent, state_of
+from report_measure import state_of
 
 LONGEST = 120  # [s], of one part
 # Columns that depend on the clock, on the number of runs or on the compiler. All others are compared.
-OF_TIME = re.compile(r"(seconds|ms|us|ns|first|again|runs|idle)(_|$)|(times_copy|ratio|compiler|flags)$")
+OF_TIME = re.compile(r"(seconds|ms|us|ns|first|again|runs|idle)(_|$)|(wall|master|floor|frame)_|(times_copy|ratio|compiler|flags)$")
 # Two numbers are the same if they differ by no more than the last of their six digits.
 DIGIT = 1.01e-5
 
 
-def compared(row, column):
+def is_compared(row, column):
     return not OF_TIME.match(column) and not (column == "cost" and row.get("unit") == "us")
 
 
@@ -30,13 +31,23 @@ def same(a, b):
     return a == b
 
 
-def differences(old, new):
-    """Returns a line for each row of the new table that the old one does not have."""
-    lines = []
+def more_rows(old, new):
+    """Returns a line for each N of the new table of which the old one has more rows."""
+    sizes = new.distinct("N") if "N" in new.columns and "N" in old.columns else []
+    counts = ((size, len(old.where(N=size)), len(new.where(N=size))) for size in sizes)
+    return [f"{old.path.name}: has {was} rows with N = {size}, and now {now}" for size, was, now in counts if was > now]
+
+
+def differences(old, new, whole):
+    """Returns a line for each row of the new table that the old one does not have.
+
+    `whole`: the new table has all rows of each N that it has, so that the old one must not have more.
+    """
+    lines = more_rows(old, new) if whole else []
     for place, row in enumerate(new.rows, 1):
         if row.get("kind") == "library":  # of the system
             continue
-        columns = [column for column in new.columns if compared(row, column)]
+        columns = [column for column in new.columns if is_compared(row, column)]
         if missing := [column for column in columns if column not in old.columns]:
             return [f"{old.path.name}: has no column {missing[0]}"]
         near = [other for other in old.rows if "N" not in row or other["N"] == row["N"]] or old.rows
@@ -65,7 +76,7 @@ def again(part, data, quick, root):
             if ran.returncode != 0:
                 said = (ran.stderr.strip() or ran.stdout.strip() or "it said nothing").splitlines()[-1][:200]
                 return [f"{part.name}.csv: cannot be measured again (status {ran.returncode}: {said})"], None
-            return differences(Table(data / f"{part.name}.csv"), Table(file)), time.monotonic() - began
+            return differences(Table(data / f"{part.name}.csv"), Table(file), part.check is None), time.monotonic() - began
         except (OSError, TableFault, subprocess.TimeoutExpired) as error:
             return [f"{part.name}.csv: cannot be measured again ({error})"], None
 

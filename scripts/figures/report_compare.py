@@ -14,7 +14,7 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 from command_line import Parser
-from report_check import compared, same
+from report_check import is_compared, same
 from report_data import TableFault, keys_of, markdown
 from report_page import read_tables
 
@@ -36,7 +36,7 @@ def differences(name, old, new):
         for column in new.columns:
             if column in keys or column not in before:
                 continue
-            differs = not same(before[column], row[column]) if compared(row, column) else (
+            differs = not same(before[column], row[column]) if is_compared(row, column) else (
                 column.endswith("_median") and not ranges_meet(before, row, column))
             if differs:
                 yield [name, ", ".join(str(row[key]) for key in keys), column, before[column], row[column]]

@@ -9,6 +9,8 @@ import pathlib
 MAY_BE_NAN = {"order", "exponent"}
 MAY_BE_EMPTY = {"ms_to_rest", "cost", "unit", "why", "ratio", "bound"}
 
+IN_TIME = 2  # [ms], time of a step in which the hand digs
+
 # Columns that say what a row is about. All others are results. MORE_KEYS has those of single tables.
 KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "radius", "R", "cells_per_step",
         "sweeps_per_step", "datum", "degrees", "law", "rate", "slope", "shallow", "arm", "delay", "b", "hand", "ground",
@@ -16,7 +18,7 @@ KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "
         "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
         "used", "why", "world", "integers", "measure", "stays", "talus"}
 MORE_KEYS = {"work-precision": {"sweeps"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
-             "ranks": {"ranks"}}
+             "ranks": {"ranks"}, "tin-active": {"raised"}}
 
 
 class TableFault(Exception):
@@ -46,7 +48,8 @@ class Table:
     def _row(self, place, row):
         if "more" in row or None in row.values():
             raise TableFault(f"{self.path.name}: row {place} has not as many values as the table has columns")
-        read = {column: number(text) for column, text in row.items()}
+        # A hash is no number, although it may consist of digits alone, or of digits with one e.
+        read = {column: text if column.endswith("hash") else number(text) for column, text in row.items()}
         for column, value in read.items():
             empty = value == "" and column not in MAY_BE_EMPTY
             infinite = isinstance(value, float) and not math.isfinite(value) and column not in MAY_BE_NAN
@@ -108,6 +111,16 @@ def number(text):
 def keys_of(name, columns):
     """Returns the columns of a table that say what a row is about."""
     return [column for column in columns if column in KEYS | MORE_KEYS.get(name, set())]
+
+
+def usual_size(table):
+    """Returns the N at which the report compares methods: 128, or the last N of the table."""
+    return 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
+
+
+def kind(row):
+    """Returns the kind of sand of a row, "grid" or "TIN"."""
+    return row.get("sand", "grid")
 
 
 def held(rows):

@@ -7,7 +7,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from report_data import frontier, held
+from report_data import IN_TIME, frontier, held, kind, usual_size
 
 # Okabe and Ito's colours, because colour-blind readers can distinguish them. Markers and lines differ in grey prints too.
 STYLES = {
@@ -67,7 +67,7 @@ def legend_below(figure, axes, columns=4):
 
 def work_precision(table):
     figure, axes = panels(2)
-    size = 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
+    size = usual_size(table)
     for axis, (pile, title) in zip(axes, PILES.items()):
         for method, style in STYLES.items():
             rows = table.where(pile=pile, method=method, N=size)
@@ -203,12 +203,12 @@ def dig(table):
     figure, axes = panels(2)
     tools = {}  # the largest field for each kind of sand and each tool
     for row in table.where(cells_per_step=1.5):
-        tool = (row.get("sand", "grid"), row["R"])
+        tool = (kind(row), row["R"])
         tools[tool] = max(row["N"], tools.get(tool, 0))
     radii = sorted({radius for _, radius in tools}, reverse=True)
     for (sand, radius), size in tools.items():
         place = radii.index(radius)
-        rows = [row for row in table.where(N=size, R=radius, cells_per_step=1.5) if row.get("sand", "grid") == sand]
+        rows = [row for row in table.where(N=size, R=radius, cells_per_step=1.5) if kind(row) == sand]
         for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
             axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=SERIES[place % len(SERIES)],
                       marker=MARKERS[place % len(MARKERS)], linestyle="--" if sand == "TIN" else "-",
@@ -219,7 +219,7 @@ def dig(table):
                                  textcoords="offset points", xytext=(4, 4))
     label(axes[0], "time per step, 99th percentile [ms]", "sand behind the hand [%]", "1.5 cells per step; labels: sweeps per step")
     label(axes[1], "sweeps per step", "sand behind the hand [%]", "1.5 cells per step")
-    axes[0].axvline(2, color="#777777", linewidth=1)
+    axes[0].axvline(IN_TIME, color="#777777", linewidth=1)
     sizes_on(axes[1], table.distinct("sweeps_per_step"))
     for axis in axes:
         axis.axhline(10, color="#777777", linewidth=1)

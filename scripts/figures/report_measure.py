@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures the parts of the report. An interrupted report continues with the tables that are missing."""
 
-import ctypes
 import os
 import re
 import shutil
@@ -10,17 +9,13 @@ import subprocess
 import tempfile
 import time
 
+from latency import die_with_parent
 from report_data import Table, TableFault
 from report_parts import ROOT, algorithm_version, fingerprint, release, why_old
 
 LEAST_FREE = 16 << 20  # [byte], free space below which no part begins
 SAYS_EVERY = 30  # [s], time between two lines of a long part
 END_SECONDS = 20  # longest time that an interrupted part gets to end
-
-
-def die_with_parent():
-    """Runs in the new process: it ends if this script ends for any reason."""
-    ctypes.CDLL(None).prctl(1, signal.SIGTERM)  # PR_SET_PDEATHSIG
 
 
 def commit_of(root=ROOT):
@@ -109,7 +104,7 @@ class Job:
                 f"load: {self.load:.2f} before and {os.getloadavg()[0]:.2f} after, on {os.cpu_count()} processors",
                 f"took: {self.seconds():.1f} s"]
         try:
-            text = re.sub(r"^(# command: .*?) --out \S+$", r"\1", self.file.read_text(), flags=re.MULTILINE)
+            text = re.sub(r"^(# command: .*?) --out .+$", r"\1", self.file.read_text(), flags=re.MULTILINE)
             self.file.unlink()
             with self.file.open("w") as file:
                 file.write("".join(f"# {line}\n" for line in head) + text)
@@ -127,9 +122,9 @@ class Job:
 class Measuring:
     """Measures parts: first those without times, one per core, then each of the others alone."""
 
-    def __init__(self, parts, data, quick, root=ROOT, cores=None):
+    def __init__(self, parts, data, quick, root=ROOT):
         self.data, self.quick, self.root = data, quick, root
-        self.cores = cores or len(os.sched_getaffinity(0))
+        self.cores = len(os.sched_getaffinity(0))
         self.waiting = sorted((part for part in parts if state_of(part, data, quick, root)), key=lambda part: part.timed)
         self.count, self.done = len(self.waiting), 0
         self.jobs, self.failures = [], {}

@@ -17,11 +17,11 @@ After reading this page you know the error and the run time of every scheme, and
     scripts/report.sh --quick   # measures smaller fields with fewer runs into out/report; takes about {quick}
     scripts/report.sh           # measures the tables that are missing or old; all of them take about {full} on {cores} cores
     scripts/report.sh --list    # prints which tables are missing or old, and the time that they take
-    scripts/report.sh --check   # measures the smallest N of each table again, and compares; at most two minutes
+    scripts/report.sh --check   # measures the smallest N of each table again, and compares; at most two minutes for each, after building
     scripts/report.sh --draw    # only draws and writes, from the tables that exist
 
 `scripts/report.sh` writes this page; do not edit it. If it is interrupted, the next call continues. The tables were measured from
-{first} to {last}, {machines}. The compiler was {compiler} with `{flags}`, the code path {path}. Times are CPU time of one
+{first} to {last}, {machines}. The compiler was {compiler}. Its flags were {flags}. The code path was {path}. Times are CPU time of one
 thread, unless a section names another time. They are medians; the tables also have the least and the most. {load} The tables are in
 [data](data). The head of each has the command that made it, its seed and the definitions of its columns.
 [Tables](#tables) has the release and the load of each. All sentences about results are computed from the tables.
@@ -44,14 +44,29 @@ N4 and the float32 methods were written for this comparison only (`bench/sand/in
 """
 
 
-def machines_of(tables):
-    """Returns a phrase with the machine that measured most tables, and with each other machine and its tables."""
+def groups_of(tables, value_of):
+    """Returns the names of tables by what `value_of` says of them, the largest group first. Tables without a value are left out."""
     named = {}
     for name, table in tables.items():
-        named.setdefault(table.fact("machine", "an unknown machine").partition(",")[0], []).append(name)
-    usual, *others = sorted(named, key=lambda machine: len(named[machine]), reverse=True)
-    return "; ".join([f"most of them on {usual}" if others else f"on {usual}"] +
-                     [f"on {other}: {', '.join(named[other])}" for other in others])
+        if value := value_of(table):
+            named.setdefault(value, []).append(name)
+    return dict(sorted(named.items(), key=lambda group: len(group[1]), reverse=True))
+
+
+def machines_of(tables):
+    """Returns a phrase with the machine that measured most tables, and with each other machine and its tables."""
+    usual, *others = groups_of(tables, lambda table: table.fact("machine", "an unknown machine").partition(",")[0]).items()
+    return "; ".join([f"most of them on {usual[0]}" if others else f"on {usual[0]}"] +
+                     [f"on {other}: {', '.join(names)}" for other, names in others])
+
+
+def builds_of(tables, fact, mark=""):
+    """Returns a phrase with the compiler, flags or code path of most tables, and with each other one and its tables."""
+    if not (groups := groups_of(tables, lambda table: table.fact(fact, "").strip())):
+        return "unknown"
+    usual, *others = groups.items()
+    return "; ".join([f"{mark}{usual[0]}{mark}" + (" for most tables" if others else "")] +
+                     [f"{mark}{other}{mark} for {', '.join(names)}" for other, names in others])
 
 
 def load_of(tables):
@@ -77,14 +92,12 @@ def read_tables(data):
 
 def head_of(tables, parts, out):
     cores = len(os.sched_getaffinity(0))
-    some = next((table for table in tables.values() if table.fact("compiler", "")), None)
     dates = sorted(table.fact("date")[:10] for table in tables.values() if table.fact("date", ""))
-    facts = {name: some.fact(name, "unknown").strip() if some else "unknown" for name in ("compiler", "flags", "code path")}
     quick, full = (minutes(total([part for part in parts if part.options(small) is not None], out / "data", small, cores))
                    for small in (True, False))
     return HEAD.format(quick=quick, full=full, cores=cores, first=dates[0] if dates else "never", last=dates[-1] if dates else "never",
-                       machines=machines_of(tables) if tables else "nowhere", compiler=facts["compiler"], flags=facts["flags"],
-                       path=facts["code path"], load=load_of(tables))
+                       machines=machines_of(tables) if tables else "nowhere", compiler=builds_of(tables, "compiler"),
+                       flags=builds_of(tables, "flags", "`"), path=builds_of(tables, "code path"), load=load_of(tables))
 
 
 def replace_file(file, write):

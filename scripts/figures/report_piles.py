@@ -2,16 +2,12 @@
 """Text of the report on piles in the grid. Every number and every result in it comes from the tables."""
 
 from report_claims import compared, convergence, growth, listing, count_of, times
-from report_data import held, least_seconds, markdown, percent, seconds
+from report_data import held, least_seconds, markdown, percent, seconds, usual_size
 
 PUBLIC = ["float32 N4 in place", "float32 N4 Jacobi", "float32 N8 Jacobi", "float32 N8 sqrt2 Jacobi"]
 OURS = ["G", "settle"]
 METHODS = ["G", "G plain", "settle", "N4"] + PUBLIC
 WANTED = [0.1, 0.044, 0.04, 0.035, 0.03, 0.02, 0.014, 0.01, 0.005, 0.002, 0.001, 5e-4, 2e-4, 1e-4]  # the errors in the tables of least time
-
-
-def usual_size(table):
-    return 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
 
 
 def stopped(rows):

@@ -10,14 +10,13 @@ import re
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 import layout
 import session_results
 from command_line import Parser
-from latency import processor
+from latency import processor, write_csv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -41,7 +40,7 @@ def run(*command):
 
 
 def measure(rows, columns, folder):
-    """Returns the number of ranks, the hash of the session, that of the replay, and the number of divergences."""
+    """Returns one row of the table: a session and the replay of its journal."""
     text = (ROOT / "walls" / "configs" / "tiled_3x4.toml").read_text()
     for name, value in (("rows", rows), ("columns", columns)):
         text = re.sub(rf"^{name} = .*", f"{name} = {value}", text, flags=re.MULTILINE)
@@ -51,7 +50,7 @@ def measure(rows, columns, folder):
         "--gl", layout.in_memory(), "--pace", "fast", "--steps", 60, "--out", out)
     summary = session_results.read_summary(out)
     replayed = re.findall(r"\b[0-9a-f]{16}\b", run(layout.bin_folder() / "sandwall-replay", out / "session.journal", "--hash"))
-    return rows * columns, summary["state_hash"], replayed[-1], summary["divergences"]
+    return {"ranks": rows * columns, "session_hash": summary["state_hash"], "replay_hash": replayed[-1], "divergences": summary["divergences"]}
 
 
 def main():
@@ -59,19 +58,12 @@ def main():
     parser.add_argument("--walls", type=walls, default="1x1,2x2,3x4", help="rows and columns of tiles, one render rank each (default: 1x1,2x2,3x4)")
     parser.add_argument("--out", type=pathlib.Path, help="CSV file to write (default: standard output)")
     args = parser.parse_args()
-    lines = [f"# machine: {processor()}", f"# command: report_ranks.py {' '.join(sys.argv[1:])}",
-             time.strftime("# date: %Y-%m-%dT%H:%M:%SZ", time.gmtime()), "ranks,session_hash,replay_hash,divergences"]
+    results = []
     with tempfile.TemporaryDirectory(prefix="sandwall-ranks-") as folder:
         for rows, columns in args.walls:
             print(f"a session on {rows} x {columns} tiles", file=sys.stderr)
-            lines.append(",".join(map(str, measure(rows, columns, pathlib.Path(folder)))))
-    text = "\n".join(lines) + "\n"
-    try:
-        args.out.write_text(text) if args.out else sys.stdout.write(text)
-    except OSError as error:
-        print(f"report_ranks.py: {args.out}: cannot be written ({error.strerror})", file=sys.stderr)
-        return 1
-    return 0
+            results.append(measure(rows, columns, pathlib.Path(folder)))
+    return write_csv(args.out, results, [f"machine: {processor()}"], "report_ranks.py")
 
 
 if __name__ == "__main__":

@@ -2,9 +2,8 @@
 """Text of the report on steps, pictures and builds. Every number and every result in it comes from the tables."""
 
 from report_claims import count_of, listing, times
-from report_data import markdown, percent
-
-IN_TIME = 2  # [ms], time of a step in which the hand digs
+from report_data import IN_TIME, kind, markdown, percent
+from report_parts import PRESETS
 
 
 def edit(tables):
@@ -53,10 +52,6 @@ def dig(tables):
             f"of the rows in which 99 % of the steps take {IN_TIME} ms or less: {'; '.join(best_in_time(table, *tool) for tool in tools)}.\n\n" +
             markdown(["sand", "N", "R [cells]", "cells/step", "sweeps/step", "p50 [ms]", "p99 [ms]", "behind", "lifted",
                       "bank [cells]", "reach [cells]", "after"], lines))
-
-
-def kind(row):
-    return row.get("sand", "grid")
 
 
 def best_in_time(table, of_kind, size, radius):
@@ -146,9 +141,10 @@ def hashes(tables):
             lines.append([table.fact("compiler"), f"`{table.fact('flags').split('-Werror')[-1].strip()}`", scheme,
                           ", ".join(map(str, table.distinct("code_path"))), ", ".join(map(str, table.distinct("threads"))),
                           ", ".join(map(str, table.distinct("block"))), " ".join(map(str, found))])
-    verdict = ("each scheme has one hash over all of them" if all(len(found) == 1 for found in seen.values())
-               else "**the hashes differ**")
-    text = (f"{len(builds)} of 5 builds have computed 300 random drags on a field with odd sides: {verdict}.\n\n" +
+    verdict = ("**the hashes differ**" if any(len(found) > 1 for found in seen.values()) else
+               "each scheme has one hash over all of them" if len(builds) == len(PRESETS) else
+               "each scheme has one hash there, and the other builds are missing")
+    text = (f"{len(builds)} of {len(PRESETS)} builds have computed 300 random drags on a field with odd sides: {verdict}.\n\n" +
             markdown(["compiler", "flags", "scheme", "code paths", "threads", "blocks", "hash"], lines))
     if "ranks" in tables:
         table = tables["ranks"]

@@ -3,10 +3,10 @@
 """Measures how long the frames of a session are with large tools, whose steps are spread over frames.
 
 Runs sessions on a desktop wall with dunes of 512 x 512 cells, in real time, with the recorded hand `gis` and a head that
-moves. Prints for each tool the frames, the steps and the samples of the hand that are in no step. With --before BUILD the
+moves. Prints for each tool the frames, the steps and the samples of the hand that are in no step. With --before ROOT the
 sessions of an earlier build run in turns with those of build/release.
 
-usage: scripts/figures/spread.py [--before BUILD] [--seconds S]   (two minutes; the machine should be idle otherwise)
+usage: scripts/figures/spread.py [--before ROOT] [--seconds S]   (some minutes; the machine should be idle otherwise)
 """
 
 import json
@@ -20,11 +20,14 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher")
 from command_line import Parser, above
 from wall_rates import ROOT, swaying_head
 
-RADII = (0.24, 0.6)  # scene units; 61 and 153 cells
+RADII = (0.24, 0.6)  # scene units; 61 and 154 cells
 
 
 def scene(folder, radius):
-    text = (ROOT / "scenes" / "dunes.toml").read_text().replace("radius = 0.03 ", f"radius = {radius} ")
+    usual = (ROOT / "scenes" / "dunes.toml").read_text()
+    text = usual.replace("radius = 0.03 ", f"radius = {radius} ")
+    if text == usual:
+        sys.exit("scenes/dunes.toml: has no tool of radius 0.03; give its radius in scripts/figures/spread.py")
     file = folder / f"dunes_{radius}.toml"
     file.write_text(text)
     return file

@@ -131,6 +131,7 @@ TEST(SandwallBench, RefusesInOneLineWhatItCannotDo) {
              {"rest --sizes 16 --out /nowhere/rest.csv", "/nowhere/rest.csv"},
              {"throughput --path x86-64-v9", "x86-64-v4"},
              {"throughput --rows G,H", "there is no \"H\"; choose from copy, G, "},
+             {"guarded-sweep --rows touch/0/7", "there is no \"touch/0/7\"; choose from touch/0/0.5, "},
              {"explain", "SCENE"},
              {"explain nowhere.toml", "nowhere.toml"},
              {"explain nowhere.toml --sizes 16", "--sizes"}}) {

@@ -17,4 +17,9 @@ TEST(Timing, NoMeasurementIsRunMoreOftenThanAskedFor) {
     EXPECT_EQ(bench::runsFor(10, 2), 2);
 }
 
+TEST(Timing, SaysHowOftenAMeasurementIsRun) {
+    EXPECT_EQ(bench::runsRule(10), "10 if the first takes less than 5 s, 3 if less than 60 s, else 1");
+    EXPECT_EQ(bench::runsRule(2), "2 if the first takes less than 5 s, 2 if less than 60 s, else 1");
+}
+
 }  // namespace

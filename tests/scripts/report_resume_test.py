@@ -17,7 +17,8 @@ import unittest
 
 import report_fixture
 from report_fixture import NAMES, make_root
-from report_parts import ROOT, fingerprint
+from report_check import is_compared
+from report_parts import ROOT
 
 FIXTURE = pathlib.Path(report_fixture.__file__)
 LONGEST = 60  # [s], bound of every run
@@ -114,7 +115,9 @@ class Interrupted(Report):
         self.does("first", "wait")
         process = subprocess.Popen(self.command(), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
+            end = time.monotonic() + LONGEST
             while not (self.root / "first.began").exists():
+                self.assertLess(time.monotonic(), end, "the part did not begin")
                 time.sleep(0.01)
             ran = self.run_report()
         finally:
@@ -134,6 +137,12 @@ class Kept(Report):
                      "# command: bench.py first --sizes 8,16,32\n"):
             self.assertIn(fact, head)
 
+    def test_a_folder_with_a_space_gets_its_tables(self):
+        self.out = self.root / "a b"
+        ran = self.run_report()
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertIn("# command: bench.py first --sizes 8,16,32\n", (self.out / "data" / "first.csv").read_text())
+
     def test_another_algorithm_source_or_command_makes_tables_old(self):
         self.assertEqual(self.run_report().returncode, 0)
         (self.root / "bench" / "third.cpp").write_text("int third(int);\n")
@@ -142,12 +151,15 @@ class Kept(Report):
         (self.root / "bench" / "shared.hpp").write_text("int shared();  // another comment\n")
         self.assertEqual(self.run_report().returncode, 0)
         self.assertEqual(self.calls()["first"], 1, "a comment does not count")
+        (self.root / "bench" / "shared.hpp").write_text("int shared(int);\n")
+        self.assertEqual(self.run_report().returncode, 0)
+        self.assertEqual(self.calls()["first"], 2, "a header that it includes counts")
         rules = self.root / "sand" / "model" / "rules.hpp"
         rules.write_text(rules.read_text().replace("= 7", "= 8"))
         self.assertEqual(self.run_report().returncode, 0)
-        self.assertEqual(self.calls()["first"], 2)
-        self.assertEqual(self.run_report("--quick").returncode, 0)
         self.assertEqual(self.calls()["first"], 3)
+        self.assertEqual(self.run_report("--quick").returncode, 0)
+        self.assertEqual(self.calls()["first"], 4)
 
     def test_times_of_another_release_are_listed_as_old(self):
         self.assertEqual(self.run_report().returncode, 0)
@@ -242,6 +254,12 @@ class Check(Report):
         self.alter("^8,0.015626,0000", "8,0.015625,1000")
         self.assertIn("hash is 1000", self.check()[1])
 
+    def test_a_row_that_the_smallest_n_no_longer_has_is_named(self):
+        self.alter("^8,0.015625,(.*)$", r"8,0.015625,\1\n8,0.25,\1")
+        status, said = self.check()
+        self.assertEqual(status, 1)
+        self.assertIn("second.csv: has 2 rows with N = 8, and now 1", said)
+
     def test_old_missing_and_failing_tables_are_not_valid(self):
         (self.out / "data" / "first.csv").unlink()
         self.alter("^# algorithm: 7", "# algorithm: 6")
@@ -268,11 +286,17 @@ class Compare(Report):
         self.assertEqual(ran.stdout.splitlines()[2:], ["| t | 8 | ms_median | 5 | 7 |"])
 
 
-class Fingerprints(unittest.TestCase):
-    def test_every_part_names_a_source_and_curves_share_no_fingerprint_by_accident(self):
+    def test_times_of_latency_without_a_range_are_not_compared(self):
+        for column in ("wall_mean", "master_p99", "floor_frame_mean", "floor_p50", "frame_mean"):
+            self.assertFalse(is_compared({}, column), column)
+        for column in ("wall", "divergences", "error"):
+            self.assertTrue(is_compared({}, column), column)
+
+
+class Sources(unittest.TestCase):
+    def test_every_part_names_a_source(self):
         for part in report_fixture.report.PARTS:
             self.assertTrue((ROOT / part.source).is_file(), part.name)
-        self.assertNotEqual(fingerprint("bench/sand/dig.cpp"), fingerprint("bench/sand/edit.cpp"))
 
 
 if __name__ == "__main__":
