@@ -224,6 +224,19 @@ TEST(Owed, StepsOfATinStateNoSweeps) {
     EXPECT_EQ(step.refusal(ofGrid), "");
 }
 
+TEST(Owed, AReplicaThatLoadsAStatePaysWhatIsOwed) {
+    Replica sand = owing();
+    Replica joined(towerScene());
+    joined.decodeState(sand.encodeState());
+    ASSERT_EQ(joined.owed(), (Owed{kWhole, 10}));
+    for (int part = 0; part < 3; ++part) {
+        sand.apply(next(sand, 10, {.engaged = true}));
+        joined.apply(next(joined, 10, {.engaged = true}));
+        EXPECT_EQ(joined.stateHash(), sand.stateHash());
+    }
+    EXPECT_EQ(joined.owed(), Owed());
+}
+
 TEST(Owed, AnImpossibleStateIsRefused) {
     Replica sand = owing();
     const base::Bytes state = sand.encodeState();
