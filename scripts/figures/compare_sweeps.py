@@ -7,7 +7,8 @@ the field before and after, the same in copies of one number per cell, and the r
 of all rounds. A code path that the build BEFORE lacks is compared with the fastest one that it has. The second table has steps
 of digging. The third table has what two threads gain, with both cores.
 
-usage: scripts/figures/compare_sweeps.py BEFORE AFTER [--sizes 256,512,2048,4096] [--rounds 9] [--core 0]
+usage: scripts/figures/compare_sweeps.py BEFORE AFTER [--table sweeps|digging|threads] [--sizes 256,512,2048,4096]
+           [--rounds 9] [--core 0]
 """
 
 import json
@@ -104,10 +105,14 @@ def thread_rows(before, after, args):
             yield [str(side), name, f"{ratio(times[1], times[0])} ×", f"{ratio(times[3], times[2])} ×"]
 
 
+TABLES = {"sweeps": sweep_rows, "digging": dig_rows, "threads": thread_rows}
+
+
 def main():
     parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("before", type=pathlib.Path, metavar="BEFORE", help="folder of programs of a build")
     parser.add_argument("after", type=pathlib.Path, metavar="AFTER", help="folder of programs of the other build")
+    parser.add_argument("--table", choices=TABLES, help="measure only this table")
     parser.add_argument("--sizes", type=sizes, default=[256, 512, 2048, 4096], help="sides of the fields [cell], separated by commas")
     parser.add_argument("--rounds", type=at_least(int, 1), default=9, help="number of turns of both builds (default: 9)")
     parser.add_argument("--runs", type=at_least(int, 1), default=1, help="number of runs of a row in a turn (default: 1)")
@@ -117,7 +122,7 @@ def main():
     for program in (folder / name for folder in (before, after) for name in ("sandwall-bench", "sand_bench")):
         if not program.is_file():
             parser.error(f"{program} is missing; build it")
-    for table in (sweep_rows, dig_rows, thread_rows):
+    for table in [TABLES[args.table]] if args.table else TABLES.values():
         rows = table(before, after, args)
         header = next(rows)
         print(f"| {' | '.join(header)} |\n|{'---|' * len(header)}", flush=True)
