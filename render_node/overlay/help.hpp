@@ -27,8 +27,10 @@ struct HelpPlace {
 /// in the lowest row if its lower edge is as low as that of any explicit screen, and the wall has no grid.
 [[nodiscard]] std::optional<HelpPlace> helpPlaceOf(const walls::Wall& wall, const walls::Tile& tile);
 
-/// Returns the help for a tile: a bar as wide as the tile, with the entries in columns. If the tiles of the row are too
-/// small for all entries, each shows its share of them. If even the shares do not fit, the bar has no height.
+/// Returns the help for a tile: a bar as wide as the tile, with the entries in columns, at most seven tenths of the
+/// tile high. If the tiles of the row are too small for all entries, each shows its share of them; the last ones may have
+/// none, and a bar without height. If even this does not fit, the bar takes up to the whole tile; the smallest tiles
+/// show the first entries.
 [[nodiscard]] Sheet helpSheet(const HelpPlace& place, glm::ivec2 tile /* [pixel] */);
 
 /// Returns an answer for a tile: a box with one line of text.
