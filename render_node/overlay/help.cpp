@@ -36,40 +36,54 @@ int widthOf(const HelpColumns& columns, const Face& face) {
     return texts + gaps * face.size + 2 * paddingOf(face);
 }
 
+HelpColumns columnsOf(std::span<const HelpEntry> entries, const Face& face, int rows) {
+    const auto height = static_cast<std::size_t>(rows), count = (entries.size() + height - 1) / height;
+    HelpColumns columns{rows, std::vector<int>(count), std::vector<int>(count)};
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        int& keys = columns.keys[i / height];
+        int& effects = columns.effects[i / height];
+        keys = std::max(keys, textWidth(face, entries[i].keys));
+        effects = std::max(effects, textWidth(face, entries[i].effect));
+    }
+    return columns;
+}
+
 /// Returns as many columns as are possible in this width, and at least one.
 HelpColumns columnsIn(std::span<const HelpEntry> entries, const Face& face, int width) {
-    std::vector<glm::ivec2> widths;  // of the keys and of the effect of each entry
-    for (const HelpEntry& entry : entries) {
-        widths.emplace_back(textWidth(face, entry.keys), textWidth(face, entry.effect));
-    }
-    for (std::size_t rows = 1;; ++rows) {
-        const std::size_t count = (entries.size() + rows - 1) / rows;
-        HelpColumns columns{static_cast<int>(rows), std::vector<int>(count), std::vector<int>(count)};
-        for (std::size_t i = 0; i < widths.size(); ++i) {
-            columns.keys[i / rows] = std::max(columns.keys[i / rows], widths[i].x);
-            columns.effects[i / rows] = std::max(columns.effects[i / rows], widths[i].y);
-        }
-        if (count <= 1 || widthOf(columns, face) <= width) {
+    const int all = static_cast<int>(entries.size());
+    for (int rows = 1; rows < all; ++rows) {
+        HelpColumns columns = columnsOf(entries, face, rows);
+        if (widthOf(columns, face) <= width) {
             return columns;
         }
     }
+    return columnsOf(entries, face, std::max(1, all));
 }
 
 /// What each tile of the row shows.
 using Shares = std::vector<std::span<const HelpEntry>>;
 
-bool fits(const Shares& shares, const Face& face, glm::ivec2 room) {
-    return std::ranges::all_of(shares, [&](std::span<const HelpEntry> entries) {
-        const HelpColumns columns = columnsIn(entries, face, room.x);
-        return widthOf(columns, face) <= room.x && heightOf(face, columns.rows) <= room.y;
-    });
+/// Returns the rows of the share that needs most of them, so that all bars have the same height.
+int rowsOf(const Shares& shares, const Face& face, int width) {
+    int rows = 1;
+    for (const std::span<const HelpEntry> entries : shares) {
+        rows = std::max(rows, columnsIn(entries, face, width).rows);
+    }
+    return rows;
 }
 
-/// Returns the largest face up to `most` in which each share fits into `room`; null if there is none.
-const Face* faceToFit(const Shares& shares, const Face& most, glm::ivec2 room /* [pixel] */) {
+bool fits(const Shares& shares, const Face& face, glm::ivec2 room) {
+    const int rows = rowsOf(shares, face, room.x);
+    return heightOf(face, rows) <= room.y && std::ranges::all_of(shares, [&](std::span<const HelpEntry> entries) {
+               return widthOf(columnsOf(entries, face, rows), face) <= room.x;
+           });
+}
+
+/// Returns the largest face from `least` to `most` pixels in which each share fits into `room`; null if there is none.
+const Face* faceToFit(const Shares& shares, int least, int most, glm::ivec2 room /* [pixel] */) {
     const Face* best = nullptr;
     for (const Face& face : faces()) {
-        if (face.size <= most.size && fits(shares, face, room)) {
+        if (face.size >= least && face.size <= most && fits(shares, face, room)) {
             best = &face;
         }
     }
@@ -102,13 +116,13 @@ std::vector<HelpEntry> firstOnes(std::span<const HelpEntry> entries, glm::ivec2 
     return {entries.front()};
 }
 
-Sheet sheetOf(std::span<const HelpEntry> entries, const Face& face, glm::ivec2 tile) {
-    const HelpColumns columns = columnsIn(entries, face, tile.x);
+Sheet sheetOf(std::span<const HelpEntry> entries, const Face& face, int rows, glm::ivec2 tile) {
+    const HelpColumns columns = columnsOf(entries, face, rows);
     Sheet sheet({tile.x, std::min(heightOf(face, columns.rows), tile.y)}, kHelpBack);
     sheet.fill({0, 0}, {tile.x, std::max(1, face.size / 12)}, kHelpEdge);
     // The columns share the width that remains, and the last one has a part of it on its right.
     const int count = static_cast<int>(columns.keys.size());
-    const int more = std::max(0, tile.x - widthOf(columns, face)) / count;
+    const int more = std::max(0, tile.x - widthOf(columns, face)) / std::max(1, count);
     int left = paddingOf(face);
     for (int column = 0, i = 0; column < count; ++column) {
         const auto at = static_cast<std::size_t>(column);
@@ -165,19 +179,23 @@ std::optional<HelpPlace> helpPlaceOf(const walls::Wall& wall, const walls::Tile&
 
 Sheet helpSheet(const HelpPlace& place, glm::ivec2 tile) {
     const std::vector<HelpEntry> all = helpEntries();
-    const Face& most = usualFace(place.smallest.y, kLinesOfHelp);
+    const int most = usualFace(place.smallest.y, kLinesOfHelp).size;
+    const Shares whole{all}, divided = dividedAmong(all, place.count);
     const glm::ivec2 lowPart(place.smallest.x, 7 * place.smallest.y / 10);
-    for (const glm::ivec2 room : {lowPart, place.smallest}) {
-        if (const Face* face = faceToFit({all}, most, room)) {
-            return sheetOf(all, *face, tile);
-        }
-        const Shares shares = dividedAmong(all, place.count);
-        if (const Face* face = faceToFit(shares, most, room)) {
-            const auto index = static_cast<std::size_t>(place.index);
-            return index < shares.size() ? sheetOf(shares[index], *face, tile) : Sheet({tile.x, 0}, kHelpBack);
+    for (const int least : {kReadable, faces().front().size}) {
+        for (const glm::ivec2 room : {lowPart, place.smallest}) {
+            for (const Shares& shares : {whole, divided}) {
+                if (const Face* face = faceToFit(shares, least, most, room)) {
+                    const std::size_t index = shares.size() == 1 ? 0 : static_cast<std::size_t>(place.index);
+                    const auto entries = index < shares.size() ? shares[index] : std::span<const HelpEntry>();
+                    return sheetOf(entries, *face, rowsOf(shares, *face, place.smallest.x), tile);
+                }
+            }
         }
     }
-    return sheetOf(firstOnes(all, tile), faces().front(), tile);
+    const std::vector<HelpEntry> first = firstOnes(all, tile);
+    const Face& smallest = faces().front();
+    return sheetOf(first, smallest, columnsIn(first, smallest, tile.x).rows, tile);
 }
 
 Sheet answerSheet(glm::ivec2 tile, const std::string& text) {

@@ -129,18 +129,28 @@ TEST(Help, ShowsAllEntriesInAtMostSevenTenthsOfATile) {
 
 // 400 x 300 pixels are too few for letters that can be read, but four such tiles side by side have room.
 TEST(Help, IsDividedAmongSmallTilesOfARow) {
-    for (const glm::ivec2 tile : {glm::ivec2(400, 300), glm::ivec2(318, 178), glm::ivec2(254, 142)}) {
+    for (const glm::ivec2 tile : {glm::ivec2(478, 358), glm::ivec2(400, 300), glm::ivec2(318, 238)}) {
         std::vector<Sheet> sheets;
         std::vector<int> ink;
         for (int i = 0; i < 4; ++i) {
             sheets.push_back(helpSheet({i, 4, tile}, tile));
-            EXPECT_GT(sheets.back().size().y, 0);
-            EXPECT_LE(sheets.back().size().y, tile.y);
+            EXPECT_EQ(sheets.back().size(), sheets.front().size());
+            EXPECT_LE(10 * sheets.back().size().y, 7 * tile.y);
             ink.push_back(inkOf(sheets.back()));
         }
-        EXPECT_NE(sizeOfWholeTexts(sheets), 0) << tile.x;
+        EXPECT_EQ(sizeOfWholeTexts(sheets), 13) << tile.x;
         EXPECT_EQ(std::ranges::count(ink, ink[0]), 1) << "each shows other entries";
     }
+}
+
+TEST(Help, HasSmallLettersOnTheSmallTilesOfARow) {
+    const glm::ivec2 tile(254, 142);
+    std::vector<Sheet> sheets;
+    for (int i = 0; i < 4; ++i) {
+        sheets.push_back(helpSheet({i, 4, tile}, tile));
+    }
+    EXPECT_EQ(sizeOfWholeTexts(sheets), 10);
+    EXPECT_EQ(helpSheet({29, 30, {300, 40}}, {300, 40}).size().x, 300) << "no entry is left for the last of many tiles";
 }
 
 TEST(Help, TakesTheWholeOfASmallTile) {
