@@ -27,8 +27,10 @@ struct HelpPlace {
 /// in the lowest row if its lower edge is as low as that of any explicit screen, and the wall has no grid.
 [[nodiscard]] std::optional<HelpPlace> helpPlaceOf(const walls::Wall& wall, const walls::Tile& tile);
 
-/// Returns the help for a tile: a bar as wide as the tile, with the entries in columns. If the tiles of the row are too
-/// small for all entries, each shows its share of them. If even the shares do not fit, the bar has no height.
+/// Returns the help for a tile: a bar as wide as the tile, with the entries in columns, at most seven tenths of the
+/// tile high. If the tiles of the row are too small for all entries in letters of 13 pixels, each shows its share of
+/// them. Otherwise the bar takes up to the whole tile, or has smaller letters. The smallest tiles show the first
+/// entries. All bars of a row with tiles of one size have the same height.
 [[nodiscard]] Sheet helpSheet(const HelpPlace& place, glm::ivec2 tile /* [pixel] */);
 
 /// Returns an answer for a tile: a box with one line of text.

@@ -91,30 +91,96 @@ TEST(Help, HasEveryKeyAndNoOther) {
     }
 }
 
-TEST(Help, TakesAtMostThreeFifthsOfATile) {
-    for (const glm::ivec2 tile :
-         {glm::ivec2(640, 480), glm::ivec2(1280, 720), glm::ivec2(1920, 1080), glm::ivec2(3840, 2160)}) {
+/// Returns the pixels of all entries' texts in a face, each text written alone.
+int inkOfEntries(const Face& face) {
+    int ink = 0;
+    for (const HelpEntry& entry : helpEntries()) {
+        for (const std::string& text : {entry.keys, entry.effect}) {
+            Sheet sheet({textWidth(face, text) + face.size, 2 * face.lineHeight}, {0, 0, 0});
+            sheet.write(face, text, {face.size / 2, face.lineHeight / 2}, {255, 255, 255});
+            ink += inkOf(sheet);
+        }
+    }
+    return ink;
+}
+/// Returns the size of the letters in which sheets together show all entries, whole and apart; 0 if there is none.
+int sizeOfWholeTexts(const std::vector<Sheet>& sheets) {
+    for (const Face& face : faces()) {
+        int ink = 0;
+        for (const Sheet& sheet : sheets) {
+            ink += sheet.size().y == 0 ? 0 : inkOf(sheet) - sheet.size().x * std::max(1, face.size / 12);  // the edge
+        }
+        if (ink == inkOfEntries(face)) {
+            return face.size;
+        }
+    }
+    return 0;
+}
+
+TEST(Help, ShowsAllEntriesInAtMostSevenTenthsOfATile) {
+    for (const glm::ivec2 tile : {glm::ivec2(640, 360), glm::ivec2(640, 480), glm::ivec2(1280, 720),
+                                  glm::ivec2(1920, 1080), glm::ivec2(3840, 2160)}) {
         const Sheet sheet = helpSheet({0, 1, tile}, tile);
         EXPECT_EQ(sheet.size().x, tile.x);
-        EXPECT_LE(5 * sheet.size().y, 3 * tile.y);
-        EXPECT_GT(sheet.size().y, tile.y / 8);
-        EXPECT_GT(inkOf(sheet), 1000);
+        EXPECT_LE(10 * sheet.size().y, 7 * tile.y);
+        EXPECT_GE(sizeOfWholeTexts({sheet}), std::max(13, tile.y / 60)) << tile.x;
     }
 }
 
-// 400 x 300 pixels are too few for all keys, but four such tiles side by side have room.
+// 400 x 300 pixels are too few for letters that can be read, but four such tiles side by side have room.
 TEST(Help, IsDividedAmongSmallTilesOfARow) {
-    const glm::ivec2 tile(400, 300);
-    EXPECT_EQ(helpSheet({0, 1, tile}, tile).size().y, 0) << "one alone would be hidden";
-    std::vector<int> ink;
-    for (int i = 0; i < 4; ++i) {
-        const Sheet sheet = helpSheet({i, 4, tile}, tile);
-        EXPECT_GT(sheet.size().y, 0);
-        EXPECT_LE(5 * sheet.size().y, 3 * tile.y);
-        ink.push_back(inkOf(sheet));
+    for (const glm::ivec2 tile : {glm::ivec2(478, 358), glm::ivec2(400, 300), glm::ivec2(318, 238)}) {
+        std::vector<Sheet> sheets;
+        std::vector<int> ink;
+        for (int i = 0; i < 4; ++i) {
+            sheets.push_back(helpSheet({i, 4, tile}, tile));
+            EXPECT_EQ(sheets.back().size(), sheets.front().size());
+            EXPECT_LE(10 * sheets.back().size().y, 7 * tile.y);
+            ink.push_back(inkOf(sheets.back()));
+        }
+        EXPECT_EQ(sizeOfWholeTexts(sheets), 13) << tile.x;
+        EXPECT_EQ(std::ranges::count(ink, ink[0]), 1) << "each shows other entries";
     }
-    EXPECT_EQ(std::ranges::count(ink, ink[0]), 1) << "each shows other entries";
-    EXPECT_EQ(helpSheet({0, 2, {96, 72}}, {96, 72}).size().y, 0);
+}
+
+TEST(Help, HasSmallLettersOnTheSmallTilesOfARow) {
+    const glm::ivec2 tile(254, 142);
+    std::vector<Sheet> sheets;
+    for (int i = 0; i < 4; ++i) {
+        sheets.push_back(helpSheet({i, 4, tile}, tile));
+    }
+    EXPECT_EQ(sizeOfWholeTexts(sheets), 10);
+    EXPECT_EQ(helpSheet({29, 30, {300, 40}}, {300, 40}).size().x, 300) << "no entry is left for the last of many tiles";
+}
+
+TEST(Help, TakesTheWholeOfASmallTile) {
+    const glm::ivec2 tile(300, 400);
+    const Sheet sheet = helpSheet({0, 1, tile}, tile);
+    EXPECT_LE(sheet.size().y, tile.y);
+    EXPECT_NE(sizeOfWholeTexts({sheet}), 0);
+}
+
+TEST(Help, ShowsThePartThatFitsOnTheSmallestTiles) {
+    for (const glm::ivec2 tile : {glm::ivec2(1, 1), glm::ivec2(96, 72), glm::ivec2(300, 30), glm::ivec2(50, 500)}) {
+        for (const int count : {1, 2}) {
+            const Sheet sheet = helpSheet({0, count, tile}, tile);
+            EXPECT_EQ(sheet.size().x, tile.x);
+            EXPECT_LE(sheet.size().y, tile.y);
+            EXPECT_TRUE(tile.x == 1 || inkOf(sheet) > 50) << tile.x;
+        }
+    }
+    // The first entry of two columns, and that there are more.
+    const Sheet bar = helpSheet({0, 1, {300, 60}}, {300, 60});
+    const std::vector<HelpEntry> all = helpEntries();
+    const Face& face = faces().front();
+    Sheet line({bar.size().x, face.lineHeight}, {18, 20, 26});
+    line.write(face, all.front().keys, {face.size / 2, 0}, {242, 204, 133});
+    const auto row = bar.rgb().subspan(static_cast<std::size_t>(3 * bar.size().x * face.size / 2));
+    const auto width = static_cast<std::size_t>(3 * (face.size / 2 + textWidth(face, all.front().keys)));
+    for (std::size_t y = 0; y < static_cast<std::size_t>(face.lineHeight); ++y) {
+        const std::size_t at = y * 3 * static_cast<std::size_t>(bar.size().x);
+        EXPECT_TRUE(std::ranges::equal(row.subspan(at, width), line.rgb().subspan(at, width))) << y;
+    }
 }
 
 TEST(Help, IsInTheLowestRow) {
