@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "web/drawn_sand.hpp"
 
+#include <algorithm>
 #include <variant>
 
 #include "sand/model/probe_point.hpp"
@@ -10,12 +11,14 @@ namespace web {
 
 void DrawnSand::take(const sand::Surface& surface) {
     const sand::SurfaceData data = surface.data();
+    holes.clear();
     if (const auto* const grid = std::get_if<sand::GridData>(&data)) {
         meshed = false;
         heights.clear();
         for (int y = 0; y < grid->field.rows(); ++y) {
             heights.insert(heights.end(), grid->field.row(y), grid->field.row(y) + grid->field.columns());
         }
+        takeHoles(*grid);
         return;
     }
     const sand::tin::SurfaceView& view = std::get<sand::TinData>(data).view;
@@ -32,6 +35,20 @@ void DrawnSand::take(const sand::Surface& surface) {
         places.insert(places.end(), {static_cast<float>(place.x) / sand::kProbePerCell,
                                      static_cast<float>(place.y) / sand::kProbePerCell,
                                      static_cast<float>(view.heights[i] / sand::kUnitsPerCell)});
+    }
+}
+
+void DrawnSand::takeHoles(const sand::GridData& grid) {
+    if (grid.ground == nullptr) {
+        return;
+    }
+    for (int y = 0; y < grid.field.rows(); ++y) {
+        for (int x = 0; x < grid.field.columns(); ++x) {
+            holes.push_back(grid.ground->isWall(x, y) ? 1 : 0);
+        }
+    }
+    if (std::find(holes.begin(), holes.end(), 1) == holes.end()) {
+        holes.clear();
     }
 }
 

@@ -178,6 +178,29 @@ void everyTool(const std::filesystem::path& folder) {
     session.end(folder / "every_tool.journal");
 }
 
+/// A short session for each kind of tool, turned and mirrored, whose tool stands in the sand at the end. The last one
+/// has wet sand.
+void everyShape(const std::filesystem::path& folder) {
+    for (int kind = 0; kind <= sand::kToolKinds; ++kind) {
+        const bool wet = kind == sand::kToolKinds;
+        scene::Scene scene = samples::flatScene(160, 120, 14);
+        sand::grid::makeDunes({.bed = 4, .height = 8, .length = 50, .seed = 3}, scene.terrain);
+        sand::Tool& tool = scene.rules.tuning.tool;
+        tool.kind = wet ? sand::ToolKind::sphere : static_cast<sand::ToolKind>(kind);
+        tool.halfWidth =
+            sand::isRound(tool.kind) ? 0 : static_cast<std::int32_t>(tool.radius * sand::usualWidth(tool.kind));
+        tool.heading = sand::headingOf(25, tool.kind == sand::ToolKind::footprint).value();
+        scene.material.humidity = wet ? 0.6 : 0;
+        Written session(scene);
+        for (int frame = 0; frame < 20; ++frame) {
+            session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
+        }
+        session.end(folder / (wet ? "wet.journal"
+                                  : fmt::format("tool_{}.journal",
+                                                sand::valuesOf(tool.kind).at(static_cast<std::size_t>(kind)).name)));
+    }
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -192,5 +215,6 @@ int main(int count, char** arguments) {
     everyEdit("edits_of_a_grid", scene::loadScene("scenes/stroke.toml"), folder);
     everyEdit("edits_of_a_tin", scene::loadScene("scenes/gis_tin.toml"), folder);
     everyTool(folder);
+    everyShape(folder);
     return 0;
 }
