@@ -8,6 +8,20 @@
 #include "sand/tin/geometry/surface_view.hpp"
 
 namespace web {
+namespace {
+
+/// Returns 1 for each cell without ground, or nothing if all cells have ground.
+std::vector<std::uint8_t> holesOf(const sand::GridData& grid) {
+    std::vector<std::uint8_t> holes;
+    for (int y = 0; y < grid.field.rows() && grid.ground != nullptr; ++y) {
+        for (int x = 0; x < grid.field.columns(); ++x) {
+            holes.push_back(grid.ground->isWall(x, y) ? 1 : 0);
+        }
+    }
+    return std::find(holes.begin(), holes.end(), 1) == holes.end() ? std::vector<std::uint8_t>() : holes;
+}
+
+}  // namespace
 
 void DrawnSand::take(const sand::Surface& surface) {
     const sand::SurfaceData data = surface.data();
@@ -18,7 +32,7 @@ void DrawnSand::take(const sand::Surface& surface) {
         for (int y = 0; y < grid->field.rows(); ++y) {
             heights.insert(heights.end(), grid->field.row(y), grid->field.row(y) + grid->field.columns());
         }
-        takeHoles(*grid);
+        holes = holesOf(*grid);
         return;
     }
     const sand::tin::SurfaceView& view = std::get<sand::TinData>(data).view;
@@ -35,20 +49,6 @@ void DrawnSand::take(const sand::Surface& surface) {
         places.insert(places.end(), {static_cast<float>(place.x) / sand::kProbePerCell,
                                      static_cast<float>(place.y) / sand::kProbePerCell,
                                      static_cast<float>(view.heights[i] / sand::kUnitsPerCell)});
-    }
-}
-
-void DrawnSand::takeHoles(const sand::GridData& grid) {
-    if (grid.ground == nullptr) {
-        return;
-    }
-    for (int y = 0; y < grid.field.rows(); ++y) {
-        for (int x = 0; x < grid.field.columns(); ++x) {
-            holes.push_back(grid.ground->isWall(x, y) ? 1 : 0);
-        }
-    }
-    if (std::find(holes.begin(), holes.end(), 1) == holes.end()) {
-        holes.clear();
     }
 }
 

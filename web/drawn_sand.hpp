@@ -18,9 +18,6 @@ struct DrawnSand {
 
     /// Takes all of `surface`.
     void take(const sand::Surface& surface);
-
-private:
-    void takeHoles(const sand::GridData& grid);
 };
 
 }  // namespace web
