@@ -22,6 +22,7 @@ add_library(fmt INTERFACE)
 add_library(fmt::fmt ALIAS fmt)
 add_compile_definitions(FMT_HEADER_ONLY)
 add_library(xxhash STATIC web/xxhash.c)
+target_compile_options(xxhash PRIVATE -O3)  # every frame is hashed, and -Os keeps it from inlining its reads
 add_library(PkgConfig::XXHASH ALIAS xxhash)
 
 # zstd from a pinned npm package, which has its sources. A replica uses level 1 alone.

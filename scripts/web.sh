@@ -3,6 +3,7 @@
 # Builds the web page as static files in build/web/page. docs/web.md
 #
 # usage: scripts/web.sh             installs what web/package-lock.json names, and builds all
+#        scripts/web.sh --page      builds all with what is installed; fetches nothing
 #        scripts/web.sh --replica   builds only the replica for WebAssembly; fetches nothing
 #        scripts/web.sh --missing   prints what --replica would miss and succeeds; fails if nothing is missing
 set -euo pipefail
@@ -28,23 +29,28 @@ build_replica() {
     cmake --build build/web --parallel "$(nproc)" --target replica
 }
 
+build_page() {
+    build_replica
+    page=build/web/page
+    mkdir -p "$page"
+    (cd web && node build.mjs "../$page")
+    cp build/web/bin/replica.mjs build/web/bin/replica.wasm "$page"
+    # The bundles and replica.wasm contain these works.
+    for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
+        /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do
+        printf '==== %s\n\n' "$licence"
+        cat "$licence"
+    done >"$page/licences.txt"
+    echo "$page: the page"
+}
+
 case ${1:-} in
     --missing) missing ;;
     --replica) build_replica ;;
+    --page) build_page ;;
     '')
         (cd web && npm ci --ignore-scripts)
-        build_replica
-        page=build/web/page
-        mkdir -p "$page"
-        (cd web && node build.mjs "../$page")
-        cp build/web/bin/replica.mjs build/web/bin/replica.wasm "$page"
-        # The bundles and replica.wasm contain these works.
-        for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
-            /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do
-            printf '==== %s\n\n' "$licence"
-            cat "$licence"
-        done >"$page/licences.txt"
-        echo "$page: the page"
+        build_page
         ;;
-    *) echo "usage: scripts/web.sh [--replica|--missing]" >&2; exit 2 ;;
+    *) echo "usage: scripts/web.sh [--page|--replica|--missing]" >&2; exit 2 ;;
 esac

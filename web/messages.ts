@@ -28,13 +28,15 @@ export interface SessionMessage {
     lastStep: number;
     hashes: number;
     marks: Int32Array;         // pairs of a step and its kind: 0 is a stroke, 1 to 5 are edits, 6 is a resume
-    look: Float32Array;        // RGB of sand and background, direction to the sun
+    look: Float32Array;        // RGB of sand and background, direction to the sun, 1 if the field has boards, height in the middle [cell]
+    holes?: Uint8Array;        // of a grid: 1 for a cell without ground; undefined if all cells have ground
 }
 
 export interface FrameMessage {
     kind: "frame";
     step: number;
-    tool: Float32Array;        // x, y, z, radius [cell], engaged
+    tool: Float32Array;        // x, y, z, radius [cell], engaged, kind, half width [cell], heading, mirrored
+    humidity: number;          // of the sand, 0 to 1
     heights?: Int32Array;      // of a grid [unit]
     places?: Float32Array;     // of a TIN [cell]
     corners?: Uint32Array;

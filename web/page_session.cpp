@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -68,6 +69,8 @@ PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::
     journal::JournalReader reader(std::make_unique<journal::MemoryParts>(name_, std::move(parts)), release);
     requireMemory(reader, memory);
     scene_ = journal::sceneOf(reader);
+    scene_.material = reader.header().material.value_or(scene::Material());
+    humidity_.emplace(0, scene_.material.humidity);
     read(reader);
     verification_.emplace(name_, sand::Replica(scene_));
 }
@@ -98,6 +101,8 @@ void PageSession::note(journal::JournalRecord& record) {
     const journal::JournalRecord& kept = records_.back();
     if (const auto* const frame = std::get_if<journal::JournalFrame>(&kept)) {
         noteSteps(*frame);
+    } else if (const auto* const material = std::get_if<scene::Material>(&kept)) {
+        humidity_.insert_or_assign(lastStep_ + 1, material->humidity);
     } else if (std::holds_alternative<journal::JournalResumed>(kept)) {
         ++hashes_;
         marks_.push_back({lastStep_, Mark::Kind::resumed});
@@ -124,6 +129,8 @@ void PageSession::noteSteps(const journal::JournalFrame& frame) {
         lastStep_ = step.number;
     }
 }
+
+double PageSession::humidity() const { return std::prev(humidity_.upper_bound(replica().stepNumber()))->second; }
 
 bool PageSession::advance() {
     if (passed()) {

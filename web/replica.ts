@@ -46,7 +46,7 @@ export class Replica {
         return {
             name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
             cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(),
-            marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()), look: this.floats(w._sw_look(), 9),
+            marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()), look: this.floats(w._sw_look(), 11),
         };
     }
     advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
@@ -76,5 +76,11 @@ export class Replica {
             corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
         };
     }
-    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 5); }
+    /** Returns a byte for each cell of the sand that was drawn last, or undefined if all have ground. */
+    holes(columns: number, rows: number): Uint8Array | undefined {
+        const at = this.wasm._sw_holes();
+        return at === 0 ? undefined : this.wasm.HEAPU8.slice(at, at + columns * rows);
+    }
+    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
+    get humidity(): number { return this.wasm._sw_humidity(); }
 }

@@ -41,7 +41,7 @@ function show(): void {
     shownStep = replica!.step;
     const sand = replica!.sand(session!.columns, session!.rows);
     const buffers = [sand.heights, sand.places, sand.corners].filter((array) => array !== undefined).map((array) => array!.buffer);
-    tell({ kind: "frame", step: shownStep, tool: replica!.tool(), ...sand }, buffers as Transferable[]);
+    tell({ kind: "frame", step: shownStep, tool: replica!.tool(), humidity: replica!.humidity, ...sand }, buffers as Transferable[]);
 }
 
 /** Works on the first pass for a slice. */
@@ -150,7 +150,7 @@ async function open({ name, address, parts }: OpenMessage): Promise<void> {
     shownStep = toldStep = -1;
     mayShow = true;
     const sand = replica.sand(opened.columns, opened.rows);
-    tell({ kind: "session", address, tin: sand.heights === undefined, ...opened });
+    tell({ kind: "session", address, tin: sand.heights === undefined, holes: replica.holes(opened.columns, opened.rows), ...opened });
     show();
     again();
 }

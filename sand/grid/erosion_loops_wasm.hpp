@@ -171,4 +171,32 @@ void eastwardsAndNorthwards(const Law eastLaw, const Law northLaw, const std::in
     }
 }
 
+/// The loop of erosion_short_run.hpp. `width` is a multiple of the lanes.
+template <class Law>
+void fluxesOfBlocks(const Law eastLaw, const Law northLaw, const std::int32_t* __restrict heights,
+                    std::ptrdiff_t heightStride, const Sliding* __restrict sliding, std::ptrdiff_t slidingStride,
+                    int rows, int width, std::int32_t* __restrict east, std::int32_t* __restrict north,
+                    std::ptrdiff_t fluxStride) {
+    using namespace lanes;
+    const Lanes<Law> eastFour(eastLaw), northFour(northLaw);
+    for (int x = 0; x < width; x += kLanes) {
+        for (int y = 0; y < rows; ++y) {
+            const std::int32_t* const row = heights + y * heightStride + x;
+            const std::int32_t* const above = row + heightStride;
+            const std::int32_t* const below = row - heightStride;
+            const Sliding* const slides = sliding + y * slidingStride + x;
+            std::int32_t* const toEast = east + y * fluxStride + x;
+            std::int32_t* const toNorth = north + y * fluxStride + x;
+            const v128_t riseNorth = real(difference(above, below));
+            const v128_t riseNorthEast = real(difference(above + 1, below + 1));
+            const v128_t riseEast = real(difference(row + 1, row - 1));
+            const v128_t riseEastAhead = real(difference(above + 1, above - 1));
+            wasm_v128_store(toEast, eastFour(difference(row, row + 1), wasm_f32x4_add(riseNorth, riseNorthEast),
+                                             load(toEast), lanes::eitherOf<Law>(slides, slides + 1)));
+            wasm_v128_store(toNorth, northFour(difference(row, above), wasm_f32x4_add(riseEast, riseEastAhead),
+                                               load(toNorth), lanes::eitherOf<Law>(slides, slides + slidingStride)));
+        }
+    }
+}
+
 }  // namespace sand::grid::SANDWALL_CODE_PATH

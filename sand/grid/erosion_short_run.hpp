@@ -7,6 +7,9 @@
 
 #include "sand/grid/block_marks.hpp"
 #include "sand/grid/erosion_loops.hpp"
+#if defined(__wasm_simd128__)
+#include "sand/grid/erosion_loops_wasm.hpp"
+#endif
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 
@@ -16,6 +19,7 @@ inline constexpr int kShortRun = 64;   // [cell], a longer run is faster row by 
 // The loops over a run go block by block. The loop over the eight columns of a block then becomes one or two vectors,
 // without a remainder and without a test of its length. All pointers are at the first cell of the first row.
 
+#if !defined(__wasm_simd128__)  // erosion_loops_wasm.hpp has this loop for WebAssembly
 /// Computes the fluxes of `rows` rows of cells to their eastern and northern neighbours.
 template <class Law>
 void fluxesOfBlocks(const Law eastLaw, const Law northLaw, const std::int32_t* __restrict heights,
@@ -43,6 +47,7 @@ void fluxesOfBlocks(const Law eastLaw, const Law northLaw, const std::int32_t* _
         }
     }
 }
+#endif
 
 /// Does the same as markRow() for `rows` rows of cells.
 inline void markBlocks(const std::int32_t* __restrict east, const std::int32_t* __restrict north,

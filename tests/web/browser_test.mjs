@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens sessions in a browser, and compares what the page has counted and computed with what the native program wrote.
+// usage: node tests/web/browser_test.mjs chromium|firefox FOLDER LIST [--smoke]
+// LIST is what session_files has printed, with the sessions in FOLDER. With --smoke it opens two of them.
+// tests/web/browser_test.sh calls this script.
+import assert from "node:assert/strict";
+import fs from "node:fs";
+import path from "node:path";
+import { complaintsOf, launch, passed, serve } from "./browser.mjs";
+
+const [name, folder, list, smoke] = process.argv.slice(2);
+const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" ")).filter(([file]) => !smoke || /^(gis_tin|every_tool)/.test(file));
+const browser = await launch(name);
+
+/** Opens one session, and returns the page. */
+async function open([file, , steps, hashes, hash]) {
+    const { address, end } = await serve(path.join(folder, file));
+    const page = await browser.newPage(), complaints = complaintsOf(page, address);
+    await page.setViewport({ width: 900, height: 700 });
+    await page.goto(address);
+    const found = await passed(page);
+    console.log(name, file, `${found.matches} of ${found.hashes} hashes, ${found.mismatches} differ, ${found.hash}`);
+    assert.deepEqual([found.problem, found.mismatches, found.matches, found.hashes, found.steps, found.hash], [undefined, "0", hashes, hashes, steps, hash], file);
+    assert.deepEqual(complaints, []);
+    return { page, end };
+}
+
+/** Returns how many colours the picture has. A blank one has a single colour. */
+const colours = (page) => page.evaluate(async () => {
+    const image = new Image(), canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+    image.src = document.getElementById("sand").toDataURL();
+    await image.decode();
+    [canvas.width, canvas.height] = [image.width, image.height];
+    context.drawImage(image, 0, 0);
+    return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
+});
+
+/** Bad files leave the session as it is, and the page says what to do. Then goes on with a good one. */
+async function badFiles(page, good) {
+    const input = await page.$("#files"), before = await page.evaluate(() => ({ ...document.body.dataset }));
+    const bytes = fs.readFileSync(good), put = (label, content) => {
+        const file = path.join(folder, label);
+        fs.writeFileSync(file, content);
+        return file;
+    };
+    const changed = (at, to) => Buffer.concat([bytes.subarray(0, at), Buffer.from([to]), bytes.subarray(at + 1)]);
+    const bad = [[put("empty.journal", ""), /is empty/], [put("text.journal", "no journal at all"), /not a Sandwall journal/],
+                 [put("other.journal", changed(4, 77)), /A page cannot run another release/], [put("header.journal", changed(60, bytes[60] ^ 1)), /its header is cut off or damaged/]];
+    for (const [file, sentence] of bad) {
+        await page.evaluate(() => { delete document.body.dataset.problem; });
+        await input.uploadFile(file);
+        await page.waitForFunction("document.body.dataset.problem", { timeout: 30_000 });
+        const { problem, hash, matches } = await page.evaluate(() => ({ ...document.body.dataset }));
+        assert.match(problem, sentence);
+        assert.deepEqual([hash, matches], [before.hash, before.matches], "the session stays");
+    }
+    for (const [file, sentence] of [[put("torn.journal", bytes.subarray(0, bytes.length - 3)), /incomplete write/], [put("damaged.journal", changed(Math.floor(bytes.length * 0.9), bytes[Math.floor(bytes.length * 0.9)] ^ 1)), /damaged at byte/]]) {
+        await page.evaluate(() => { document.body.dataset.passed = "no"; });
+        await input.uploadFile(file);
+        const found = await passed(page);
+        assert.equal(found.mismatches, "0");
+        assert.match(await page.$eval("#say", (say) => say.textContent), sentence);
+    }
+}
+
+try {
+    let last;
+    for (const session of sessions) {
+        if (last) {
+            await last.page.close();
+            last.end();
+        }
+        last = await open(session);
+        assert.ok(await colours(last.page) > 100, "the picture shows sand");
+    }
+    await badFiles(last.page, path.join(folder, sessions.at(-1)[0]));
+    last.end();
+    console.log(`${name}: ${sessions.length} sessions equal the native program's, and bad files leave the page as it was`);
+} finally {
+    await browser.close();
+}
+process.exit(0);

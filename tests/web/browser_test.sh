@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Opens sessions in a browser, and compares them with the native program. usage:
+#   browser_test.sh chromium|firefox SESSION_FILES           two sessions, in the test run
+#   browser_test.sh chromium|firefox SESSION_FILES --all     all sessions that SESSION_FILES writes
+#   browser_test.sh chromium|firefox FOLDER_OF_A_SESSION...  these sessions, such as out/demo
+# Builds the page with what scripts/web.sh has fetched. Without that or the browser it says so, and its status is 77.
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+browser=$1
+leave_out() {
+    echo "web_in_${browser}_test is left out: $1" >&2
+    exit 77
+}
+program=/usr/bin/chromium
+[[ $browser == firefox ]] && program=/usr/bin/firefox-esr
+[[ -x $program ]] || leave_out "$program is missing; scripts/install_dependencies.sh --with-browsers"
+if why=$(scripts/web.sh --missing); then
+    leave_out "$why"
+fi
+[[ -d web/node_modules/puppeteer-core && -d web/node_modules/three ]] || leave_out "web/node_modules is not whole; scripts/web.sh"
+scripts/web.sh --page
+display=()
+if [[ $browser == firefox ]]; then
+    command -v xvfb-run >/dev/null || leave_out "xvfb-run is missing; scripts/install_dependencies.sh --with-browsers"
+    display=(xvfb-run -a)
+fi
+folder=$(mktemp -d)
+trap 'rm -r "$folder"' EXIT
+if [[ -d $2 ]]; then
+    for session in "${@:2}"; do
+        name=$(basename "$session")
+        for part in "$session"/session.journal*; do
+            cp "$part" "$folder/$name.journal${part#"$session/session.journal"}"
+        done
+        verified=$(build/release/bin/sandwall-replay "$session" --verify)
+        hashes=$(grep -oE '[0-9]+ (state )?hashes' <<<"$verified" | head -1 | cut -d' ' -f1)
+        steps=$(grep -oE '[0-9]+ steps' <<<"$verified" | head -1 | cut -d' ' -f1)
+        hash=$(build/release/bin/sandwall-replay "$session" --hash | grep -oE '[0-9a-f]{16}' | tail -1)
+        echo "$name.journal 1 $steps $hashes $hash" >>"$folder/list"
+    done
+    "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"
+    exit
+fi
+"$2" "$folder" >"$folder/list"
+if [[ ${3:-} == --all ]]; then
+    "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"
+else
+    "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list" --smoke
+fi
+[[ $browser == firefox ]] || node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
