@@ -21,14 +21,21 @@ double milliseconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-6; }
 
 }  // namespace
 
-Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period, haptic_bridge::Pace pace)
-    : from_(from), period_(period), pace_(pace), ranks_(ranks) {}
+Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period, haptic_bridge::Pace pace,
+                           int stepsPerSecond)
+    : from_(from), period_(period), pace_(pace), ranks_(ranks), slowMotion_(stepsPerSecond) {}
 
 void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
                        const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset) {
     broadcastBytes_.add(static_cast<double>(frame.bytes));
     addSwaps(frame, arrivals);
     addLatency(frame, steps, arrivals, clockOffset);
+    const bool counts = !frame.swap.first && frame.held == haptic_bridge::Held::no;
+    slowMotion_.add(counts ? frame.swap.interval : 0, steps);
+}
+
+std::optional<double> Measurements::slowMotion() const {
+    return pace_ == haptic_bridge::Pace::realtime ? slowMotion_.factor() : std::nullopt;
 }
 
 void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals) {
@@ -100,13 +107,20 @@ void Measurements::printFrameRate(bool last) {
     }
 }
 
-lockstep::WallFigures Measurements::figures(const Incidents& incidents) const {
-    return {lastFrameMs_,          ranks_.recentDrag(), ranks_.frames(),
-            incidents.divergences, incidents.healed,    ranks_.lastSwapsUs()};
+lockstep::WallFigures Measurements::figures(const Incidents& incidents, std::int32_t sweepsOwed) const {
+    return {.frameMs = lastFrameMs_,
+            .slowest = ranks_.recentDrag(),
+            .agreed = ranks_.frames(),
+            .divergences = incidents.divergences,
+            .healed = incidents.healed,
+            .sweepsOwed = sweepsOwed,
+            .slowMotion = slowMotion(),
+            .swaps = ranks_.lastSwapsUs()};
 }
 
 void Measurements::describe(nlohmann::json& status, const std::vector<std::string>& names) const {
     status["fps"] = fps_;
+    status["slow_motion"] = host::jsonOf<nlohmann::json>(slowMotion());
     status["slowest"] = host::jsonOf<nlohmann::json>(slowestRank(ranks_.recentDrag(), names));
 }
 
@@ -115,6 +129,7 @@ void Measurements::fill(Summary& summary) const {
     summary.lateFrames = lateFrames_;
     summary.hand.frames = framesWithHand_;
     summary.hand.atEnd = handed_;
+    summary.hand.slowMotion = slowMotion();
     summary.pausedSeconds = pausedSeconds_;
     summary.fullDiskSeconds = fullDiskSeconds_;
     summary.skewUs = skewUs_;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "lockstep/wall_figures.hpp"
 #include "master/frame_clock.hpp"
 #include "master/incidents.hpp"
+#include "master/steps/slow_motion.hpp"
 #include "master/summary.hpp"
 
 namespace master {
@@ -23,7 +25,8 @@ class Measurements {
 public:
     /// `ranks` is the number of ranks, including the master. Times count only after frame `from`. `period` is the time
     /// between two frames at the wall's refresh rate.
-    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, haptic_bridge::Pace pace);
+    Measurements(std::size_t ranks, std::uint64_t from, double period /* [s] */, haptic_bridge::Pace pace,
+                 int stepsPerSecond);
 
     /// A frame that all ranks have agreed on.
     struct Frame {
@@ -54,9 +57,13 @@ public:
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
     /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.
-    [[nodiscard]] lockstep::WallFigures figures(const Incidents& incidents) const;
-    /// Adds the fields fps and slowest to the answer `status` of `ctl status`. `names` are the names of the ranks in
-    /// messages.
+    /// `sweepsOwed` is the number of sweeps that the tool waits for.
+    [[nodiscard]] lockstep::WallFigures figures(const Incidents& incidents, std::int32_t sweepsOwed) const;
+    /// Returns by how much the tool is slower than the hand; nullopt if that is not known, or under the fast pace,
+    /// whose hand waits for the sand.
+    [[nodiscard]] std::optional<double> slowMotion() const;
+    /// Adds the fields fps, slow_motion and slowest to the answer `status` of `ctl status`. `names` are the names of
+    /// the ranks in messages.
     void describe(nlohmann::json& status, const std::vector<std::string>& names) const;
     /// Fills in the measured fields of `summary`.
     void fill(Summary& summary) const;
@@ -73,6 +80,7 @@ private:
     lockstep::RankStatistics ranks_;
     lockstep::Statistics frameMs_, skewUs_, broadcastBytes_;
     Latency latency_;
+    SlowMotion slowMotion_;
     std::uint64_t lateFrames_ = 0, framesWithHand_ = 0;
     bool handed_ = false;  // whether the last frame had a hand
     double pausedSeconds_ = 0, fullDiskSeconds_ = 0;

@@ -54,7 +54,8 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
             options_.desk,
             {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
              [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
-      measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace),
+      measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace,
+               scene.rules.stepsPerSecond),
       check_(wall, labels_, options_.out,
              {barrier_,
               counted_,
@@ -112,7 +113,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     frame.view = desk_.views().at(clock_.timeOf(frame_, now));
     frame.steps = untimed(steps);
     if (frame.view.layers.shows(lockstep::Overlay::statistics)) {
-        frame.figures = measure_.figures(incidents());
+        frame.figures = measure_.figures(incidents(), sweepsOwed());
     }
     const std::uint64_t shownThen = sand_.replica().stepNumber() + steps.size();
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
@@ -200,6 +201,8 @@ bool Session::showFrame(bool& more) {
     return true;
 }
 
+std::int32_t Session::sweepsOwed() const { return sand_.replica().holdsTool() ? sand_.replica().owed().left() : 0; }
+
 haptic_bridge::FrameCost Session::cost() const {
     haptic_bridge::FrameCost cost{.sweeps = sand_.work().sweeps, .substeps = sand_.work().substeps};
     for (const lockstep::Arrival& rank : barrier_.arrivals()) {
@@ -247,7 +250,7 @@ nlohmann::json Session::status() const {
                           {"checking_journal", check_.pending()},
                           {"edits", sand_.edits()},
                           {"can_undo", sand.canUndo()},
-                          {"sweeps_owed", sand.holdsTool() ? sand.owed().left() : 0},
+                          {"sweeps_owed", sweepsOwed()},
                           {"settling", sand.settling()}};
     const Incidents all = incidents();
     host::JsonWriter writer(status);

@@ -70,6 +70,8 @@ private:
     }
     /// Returns the cost of the last frame on the slowest rank, and the work of its steps.
     [[nodiscard]] haptic_bridge::FrameCost cost() const;
+    /// Returns the sweeps that the tool waits for.
+    [[nodiscard]] std::int32_t sweepsOwed() const;
     /// Meets the ranks at the barrier of `frame`. Returns whether all ranks agreed.
     [[nodiscard]] bool agree(const lockstep::FrameMessage& frame);
     [[nodiscard]] journal::JournalEnd shownSand() const { return {sand_.replica().stepNumber(), sand_.hash()}; }

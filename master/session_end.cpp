@@ -47,6 +47,7 @@ Summary Session::summary() {
     summary.edits = sand_.edits();
     summary.ranks = wall_.ranks();
     summary.stateHash = sand_.hash();
+    summary.sweepsOwed = sweepsOwed();
     summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
     summary.volumeInitial = scene_.volume();

@@ -48,6 +48,7 @@ struct Summary {
     std::uint64_t edits = 0;  // steps with an operator's edit
     int ranks = 0;
     std::uint64_t stateHash = 0;
+    std::int32_t sweepsOwed = 0;  // at the end, that the tool waits for
     Incidents incidents;
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     std::string pace = "realtime";                                       // "realtime", "fast" or "replay"
@@ -93,12 +94,14 @@ struct Summary {
         std::string asked = "none";              // "server" or "pointer" if the command line asked for one
         std::uint64_t frames = 0;                // since the last restart, with a hand (StepSource::handed())
         bool atEnd = false;                      // the last frame had a hand
+        std::optional<double> slowMotion;        // Measurements::slowMotion()
         std::optional<std::string> lastRefusal;  // StepSource::lastRefusal()
         template <class Self, class Visit>
         static void fields(Self& it, Visit& visit) {
             visit("asked", it.asked);
             visit("frames_with_hand", it.frames);
             visit("linked_at_end", it.atEnd);
+            visit("slow_motion", it.slowMotion);
             visit("last_refusal", it.lastRefusal);
         }
     } hand;
@@ -143,6 +146,7 @@ struct Summary {
         visit("refresh_hz", it.refreshHz);
         visit("ranks", it.ranks);
         visit("state_hash", hashText(it.stateHash));
+        visit("sweeps_owed", it.sweepsOwed);
         Incidents::counters(it.incidents, visit);
         visit("master_healed", it.rankStatistics.empty() ? 0 : it.rankStatistics.front().healed);
         visit("unhealed", it.unhealed);

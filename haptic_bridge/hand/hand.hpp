@@ -37,6 +37,9 @@ public:
     /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const { return path_.engagedSinceNs(); }
 
+    /// Returns whether samples wait for the next step.
+    [[nodiscard]] bool waits() const { return path_.waits(); }
+
     /// Returns the number of samples that were dropped while the hand was present (PathBuilder::dropped()).
     [[nodiscard]] virtual std::uint64_t dropped() const { return path_.dropped(); }
 

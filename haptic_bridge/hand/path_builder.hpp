@@ -49,6 +49,8 @@ public:
     static constexpr std::int64_t kNoLimit = INT64_MAX;
     /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const;
+    /// Returns whether samples wait.
+    [[nodiscard]] bool waits() const { return !waiting_.empty(); }
     /// Forgets all waiting samples. The hand now hovers at `probe`.
     void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.

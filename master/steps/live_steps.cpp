@@ -196,7 +196,7 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         if (replica.holdsTool()) {
             next.step.engaged = replica.engaged();
         } else {
-            own_.fill(next, budget_.mostSubsteps());
+            own_.fill(next, budget_.mostSubsteps(), now_());
         }
         next.step.edit = edits_.next();
         next.step.sweeps = budget_.sweepsOf(next.step, replica);

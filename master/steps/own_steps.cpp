@@ -19,13 +19,15 @@ std::size_t OwnSteps::due(std::int64_t nowNs) {
     return static_cast<std::size_t>(due);
 }
 
-void OwnSteps::fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps) {
-    if (!pointer_) {
-        (void)positions_.fill(own.step, mostSubsteps);
-        return;
+void OwnSteps::fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps, std::int64_t nowNs) {
+    haptic_bridge::Hand& hand = pointer_ ? static_cast<haptic_bridge::Hand&>(*pointer_) : positions_;
+    const std::int64_t readNs = hand.fill(own.step, mostSubsteps);
+    // A hand of which no sample waits is where the tool is. A pointer at rest sends none.
+    own.handNs = hand.waits() ? readNs : nowNs;
+    if (pointer_) {
+        own.serverTimeNs = readNs;
+        own.receivedNs = pointedNs_;
     }
-    own.serverTimeNs = pointer_->fill(own.step, mostSubsteps);
-    own.receivedNs = pointedNs_;
 }
 
 void OwnSteps::followPositions(haptic_bridge::Client& client, haptic_bridge::Link link, const sand::Replica& sand,

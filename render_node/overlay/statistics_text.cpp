@@ -46,6 +46,11 @@ void TileStatistics::add(const TileFigures& figures, std::uint64_t frame) {
 
 bool TileStatistics::drags() const { return wall_.slowest && wall_.slowest->rank == rank_; }
 
+bool TileStatistics::motionIsSlow() const {
+    constexpr double kNoticed = 1.1;
+    return wall_.sweepsOwed > 0 || wall_.slowMotion > kNoticed;
+}
+
 std::string TileStatistics::nameOf(int rank) const {
     const auto index = static_cast<std::size_t>(rank);
     return rank < 1 || index > tileNames_.size() ? "THE MASTER"
@@ -61,6 +66,10 @@ std::vector<TileStatistics::Line> TileStatistics::longLines() const {
             {fmt::format("DIFFERED IN {} FRAMES, HEALED {}", wall_.divergences, wall_.healed), Line::Kind::bad});
     } else {
         lines.push_back({fmt::format("HASHES AGREED IN {} FRAMES", wall_.agreed), Line::Kind::good});
+    }
+    if (motionIsSlow()) {
+        lines.push_back({fmt::format("SLOW MOTION {:.1f}, {} OWED", wall_.slowMotion.value_or(1), wall_.sweepsOwed),
+                         Line::Kind::slow});
     }
     if (const auto& slowest = wall_.slowest) {
         lines.push_back(
@@ -80,7 +89,11 @@ std::vector<TileStatistics::Line> TileStatistics::shortLines() const {
     } else {
         lines.push_back({"SLOWEST -"});
     }
-    lines.push_back({fmt::format("DRAW {} MS", milliseconds(drawMs_.latest()))});
+    if (motionIsSlow()) {
+        lines.push_back({fmt::format("SLOW {:.1f}", wall_.slowMotion.value_or(1)), Line::Kind::slow});
+    } else {
+        lines.push_back({fmt::format("DRAW {} MS", milliseconds(drawMs_.latest()))});
+    }
     if (wall_.divergences > 0) {
         lines.push_back({fmt::format("DIFFERED {}", wall_.divergences), Line::Kind::bad});
     } else {

@@ -62,6 +62,8 @@ public:
 
 private:
     [[nodiscard]] std::string nameOf(int rank) const;
+    /// Returns whether the tool waits for sweeps, or has been noticeably slower than the hand.
+    [[nodiscard]] bool motionIsSlow() const;
     [[nodiscard]] std::vector<Line> longLines() const;
     [[nodiscard]] std::vector<Line> shortLines() const;
 

@@ -16,6 +16,7 @@ MOST_LATENCY_P99_MS = 500  # of the 99th percentile [ms]
 MOST_FRAMES_WITHOUT_HAND = 0.1  # of the frames since the last start [1]
 LONGEST_WAIT_FOR_HAND = 5  # after a restart, the time without a hand from which it counts as one that never came [s]
 MOST_TICKS_FAULTED, BAD_TICKS_FAULTED = 0.01, 0.5  # of the ticks with a hand [1]
+MOST_SLOW_MOTION = 1.1  # time of the hand that has passed, divided by that which is in steps [1]
 MOST_SKEW_PERIODS = 1  # of the 99th percentile [period of the wall]
 
 FAULTS = ("not_a_number", "lost", "missed", "jumped", "stale")  # guards that push 0 because of a fault (docs/forces.md)
@@ -139,6 +140,19 @@ def strokes(summary, _):
         found.append(f"{counted(dropped, 'sample')} of the hand left out")
     gaps = by["wall"] or by["disk"] or by["unknown"] or dropped
     return NOTE if gaps else GOOD, f"{', '.join(found) or 'no step withheld'} {SERVER_START}{'; strokes may have gaps' if gaps else ''}"
+
+
+def motion(summary, _):
+    found, owed = summary["hand"]["slow_motion"], summary["sweeps_owed"]
+    if summary["hand"]["asked"] == "none":
+        return None
+    more = f"; the tool waits for {counted(owed, 'sweep')} at the end" if owed else ""
+    if summary["pace"] == "fast":
+        return UNMEASURED, f"not measured: with --pace fast a recorded hand waits for the sand{more}"
+    if found is None:
+        return UNMEASURED, f"not measured: the tool was hardly in the sand {START}{more}"
+    words = f"the tool was {found:.1f} times as slow as the hand {START}" if found > MOST_SLOW_MOTION else f"the tool was as fast as the hand {START}"
+    return NOTE if found > MOST_SLOW_MOTION else GOOD, words + more
 
 
 def refusals(summary, _):

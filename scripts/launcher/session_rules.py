@@ -57,7 +57,7 @@ RULES = (
          f"linked in all but {percent(lines.MOST_FRAMES_WITHOUT_HAND)} of the frames and at the end, by the first link",
          "a link made again, not linked at the end, or more frames without a hand",
          f"never linked; not linked in a last start of {lines.LONGEST_WAIT_FOR_HAND} s or more; a server of the launcher ended for good",
-         "devices.md", ("hand", "frames", "frames_before", "haptic.reconnects", "seconds"), lines.hand),
+         "devices.md", ("hand.asked", "hand.links", "hand.frames_with_hand", "hand.linked_at_end", "hand.last_refusal", "frames", "frames_before", "haptic.reconnects", "seconds"), lines.hand),
     Rule("force", "ticks of the force loop with a force, faults that sent 0, and guards that acted. Sand that stood (`frozen`) has no mark",
          f"a fault in at most {percent(lines.MOST_TICKS_FAULTED)} of the ticks",
          "more ticks with a fault, a place or force that is not a number, or `--guards literal`",
@@ -67,6 +67,9 @@ RULES = (
     Rule("strokes", "steps that the haptic server did not make, and samples of the hand that are in no step", "none because of wall or disk",
          "steps withheld because of the wall or the disk, or samples left out. Steps withheld at the start or in a pause have no mark", "",
          "latency.md", ("hand.asked", "haptic.steps_withheld", "haptic.steps_withheld_by", "haptic.samples_dropped"), lines.strokes),
+    Rule("motion", "time while the tool is in the sand, divided by the time of the hand that is in steps; sweeps that the tool waits for at the end. "
+         "Not measured with `--pace fast`, whose hand waits", f"up to {lines.MOST_SLOW_MOTION}", "more", "", "how_it_works.md",
+         ("hand.asked", "hand.slow_motion", "sweeps_owed", "pace"), lines.motion),
     Rule("refusals", "connections of the haptic link that either side refused", "none", "any", "", "security.md",
          ("hand.asked", "haptic.refused_by_server", "haptic.refused"), lines.refusals),
     Rule("steps", "steps of the sand, edits of an operator, and pauses", "none left out", "steps that all ranks left out", "", "journal.md",

@@ -47,7 +47,7 @@ private:
 };
 
 TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     for (const int ms :
          {1000, 10, 10, 14, 16, 10}) {  // the first frame has no frame before it; 16 is more than 1.5 · 10
@@ -64,7 +64,7 @@ TEST(Measurements, CountFramesFromSwapToSwapAndThoseThatAreLate) {
 }
 
 TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
-    Measurements measurements(3, 3, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 3, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     for (int frame = 1; frame <= 6; ++frame) {
         wall.show(frame <= 4 ? 400 * kMs : 10 * kMs);
@@ -76,7 +76,7 @@ TEST(Measurements, LeaveOutTheFramesBeforeTheyCount) {
 
 TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
     using haptic_bridge::Held;
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     for (const Held held : {Held::pause, Held::no, Held::pause, Held::disk, Held::disk, Held::disk, Held::no}) {
         wall.hold(held);
@@ -87,7 +87,7 @@ TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
 }
 
 TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::fast);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::fast, 60);
     Wall wall(measurements);
     wall.show(10 * kMs);
     wall.show(500 * kMs);
@@ -97,7 +97,7 @@ TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
 // The server read this step 12 ms before the swap on the master's clock. The server's clock is 7 s ahead.
 TEST(Measurements, FollowAStepFromTheHandToTheWall) {
     constexpr std::int64_t kAhead = 7'000 * kMs;
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     wall.show(10 * kMs);
     std::vector<TimedStep> steps(2);
@@ -115,7 +115,7 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
 }
 
 TEST(Measurements, SayHowManyFramesASecondHas) {
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     constexpr std::int64_t kStart = 1'000'000 * kMs;
     measurements.printProgress(1, 1, "", "no hand", false, kStart);
     measurements.printProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
@@ -130,7 +130,7 @@ TEST(Measurements, SayHowManyFramesASecondHas) {
 
 // Frames per second: 30 in the second of the start, which is left out, then 60, 62, 40, 40 and 5 in the end.
 TEST(Measurements, TellAPersonWhoDigsOnlyOfARateThatHasChanged) {
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     testing::internal::CaptureStdout();
     std::uint64_t frame = 1;
     std::int64_t now = 1'000'000 * kMs;
@@ -148,19 +148,46 @@ TEST(Measurements, TellAPersonWhoDigsOnlyOfARateThatHasChanged) {
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "60 pictures a second\n40 pictures a second\n");
 }
 
+/// A tool that takes a frame of 100 ms for each 10 ms of the hand's path.
+TEST(Measurements, ReportTheSlowMotionOfTheTool) {
+    for (const auto pace : {haptic_bridge::Pace::realtime, haptic_bridge::Pace::fast}) {
+        Measurements measurements(3, 0, 0.01, pace, 60);
+        Wall wall(measurements);
+        wall.show(10 * kMs);
+        for (int frame = 0; frame <= 10; ++frame) {
+            TimedStep timed;
+            timed.serverTimeNs = (100 + 10 * frame) * kMs;
+            timed.step.engaged = true;
+            timed.step.path = {{frame, 0, 0}};
+            wall.show(100 * kMs, {timed});
+        }
+        nlohmann::json status;
+        measurements.describe(status, {"the master", "rank 1", "rank 2"});
+        if (pace == haptic_bridge::Pace::fast) {
+            EXPECT_EQ(status["slow_motion"], nullptr) << "the hand waits for the sand";
+            EXPECT_EQ(wall.summary().hand.slowMotion, std::nullopt);
+        } else {
+            EXPECT_DOUBLE_EQ(status["slow_motion"].get<double>(), 10);
+            EXPECT_DOUBLE_EQ(wall.summary().hand.slowMotion.value(), 10);
+        }
+    }
+}
+
 TEST(Measurements, TellTheWallWhatItsRanksCannotKnow) {
-    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime);
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     wall.show(10 * kMs);
     wall.show(11 * kMs);
     master::Incidents incidents;
     incidents.divergences = 4;
     incidents.healed = 3;
-    const lockstep::WallFigures figures = measurements.figures(incidents);
+    const lockstep::WallFigures figures = measurements.figures(incidents, 70);
     EXPECT_NEAR(figures.frameMs, 11, 1e-9);
     EXPECT_EQ(figures.agreed, 2U);
     EXPECT_EQ(figures.divergences, 4U);
     EXPECT_EQ(figures.healed, 3U);
+    EXPECT_EQ(figures.sweepsOwed, 70);
+    EXPECT_EQ(figures.slowMotion, std::nullopt) << "no hand has moved the tool";
     EXPECT_EQ(figures.swaps, (std::vector<std::uint32_t>{0, 100}));
 }
 

@@ -166,15 +166,17 @@ TEST(Summary, SaysHowFarTheSandWasCompared) {
 
 TEST(Summary, SaysWhichHandWasAskedForAndWhetherItCame) {
     master::Summary summary = draggedWall(false);
-    const nlohmann::json none = {
-        {"asked", "none"}, {"links", 0}, {"frames_with_hand", 0}, {"linked_at_end", false}, {"last_refusal", nullptr}};
+    const nlohmann::json none = {{"asked", "none"},        {"links", 0},
+                                 {"frames_with_hand", 0},  {"linked_at_end", false},
+                                 {"slow_motion", nullptr}, {"last_refusal", nullptr}};
     EXPECT_EQ(written(summary)["hand"], none);
-    summary.hand = {"server", 12, true, "refuses: \xff not UTF-8"};
+    summary.hand = {"server", 12, true, 2.5, "refuses: \xff not UTF-8"};
     summary.incidents.links = 2;
     const nlohmann::json hand = written(summary)["hand"];
     EXPECT_EQ(hand["links"], 2);
     EXPECT_EQ(hand["frames_with_hand"], 12);
     EXPECT_EQ(hand["linked_at_end"], true);
+    EXPECT_EQ(hand["slow_motion"], 2.5);
     EXPECT_EQ(hand["last_refusal"], "refuses: \xef\xbf\xbd not UTF-8") << "U+FFFD in its place";
 }
 

@@ -22,14 +22,14 @@ def rank(number):
 # 600 frames at 60 frames/s: 599 periods take 9.983 s.
 SUMMARY = {
     "version": 1, "scene": "dunes", "terrain": [], "wall": "small", "frames": 600, "steps": 590, "frames_before": 0, "steps_before": 0, "pace": "realtime",
-    "refresh_hz": 60.0, "ranks": 2, "state_hash": "0123456789abcdef", "divergences": 0, "healed": 0, "outvoted": 0, "master_healed": 0,
+    "refresh_hz": 60.0, "ranks": 2, "state_hash": "0123456789abcdef", "sweeps_owed": 0, "divergences": 0, "healed": 0, "outvoted": 0, "master_healed": 0,
     "server_divergences": 0, "unhealed": 0, "steps_left_out": 0, "volume_initial": 900, "volume_final": 890, "edits": 0, "volume_outflow": 10,
     "compared": {"at_end": True, "server_at_end": True, "last_whole": 600, "frames_since": 0, "first_difference": None},
     "seconds": 9.99, "fps": 59.96, "frame_ms": {**SPREAD, "count": 590, "mean": 16.7}, "late_frames": 3,
     "held_seconds": {"pause": 0.0, "disk": 0.0}, "skew_us": {"p50": 200.0, "p99": 900.0, "max": 2000.0},
     "latency_ms": DISTRIBUTION, "latency_legs_ms": {leg: DISTRIBUTION for leg in ("to_master", "queued", "drawn", "swapped")},
     "haptic_period_us": {"p50": 1000.0, "p99": 1010.0, "max": 1100.0}, "slowest": None, "broadcast_bytes": SPREAD,
-    "hand": {"asked": "server", "links": 1, "frames_with_hand": 598, "linked_at_end": True, "last_refusal": None},
+    "hand": {"asked": "server", "links": 1, "frames_with_hand": 598, "linked_at_end": True, "slow_motion": 1.02, "last_refusal": None},
     "haptic": {"reconnects": 0, "hand_overs": {"by_steps": 0, "by_state": 0}, "refused_by_server": REFUSALS,
                "refused": {"servers": REFUSALS, "connections": REFUSALS}, "force_us": {"p50": 2.0, "p99": 3.0}, "half_round_trip_ms": TRIP,
                "half_round_trip_to_master_ms": TRIP, "step_message_bytes": 140.0, "steps_withheld": 0,
@@ -58,7 +58,7 @@ def changed(**fields):
 
 def without_hand(**fields):
     """Returns the summary of a session without a haptic server, with other values."""
-    summary = changed(hand={"asked": "none", "links": 0, "frames_with_hand": 0, "linked_at_end": False, "last_refusal": None},
+    summary = changed(hand={"asked": "none", "links": 0, "frames_with_hand": 0, "linked_at_end": False, "slow_motion": None, "last_refusal": None},
                       latency_ms={"mean": 0.0, "stddev": 0.0, "p50": 0.0, "p99": 0.0}, compared__server_at_end=None,
                       haptic={key: SUMMARY["haptic"][key] for key in ("reconnects", "hand_overs", "refused_by_server", "refused")},
                       haptic_period_us={"p50": None, "p99": None, "max": None})

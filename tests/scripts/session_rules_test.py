@@ -234,7 +234,7 @@ class SlowWalls(Lines):
 
 class Hands(Lines):
     def test_a_hand_that_never_came_is_bad(self):
-        never = {"asked": "server", "links": 0, "frames_with_hand": 0, "linked_at_end": False}
+        never = {"asked": "server", "links": 0, "frames_with_hand": 0, "linked_at_end": False, "slow_motion": None}
         self.check("hand", BAD, "never linked in the session: no answer", summary=without_hand(hand={**never, "last_refusal": "no answer"}))
         refused = without_hand(hand={**never, "last_refusal": "another scene"})
         self.check("hand", BAD, "never linked in the session: another scene", summary=refused)
@@ -277,6 +277,13 @@ class Hands(Lines):
             self.check("strokes", mark, f"70 steps withheld {words}", haptic__steps_withheld=70, haptic__steps_withheld_by={**by, cause: 70})
         self.check("strokes", NOTE, "for an unknown cause", haptic__steps_withheld=70)
         self.only("strokes", NOTE, "2 samples of the hand left out", haptic__samples_dropped=2)
+
+    def test_a_tool_that_is_slower_than_the_hand_is_noted(self):
+        self.check("motion", GOOD, "as fast as the hand", hand__slow_motion=1.1)
+        self.only("motion", NOTE, "the tool was 6.3 times as slow as the hand", hand__slow_motion=6.3)
+        self.check("motion", UNMEASURED, "hardly in the sand", hand__slow_motion=None)
+        self.check("motion", GOOD, "waits for 70 sweeps at the end", sweeps_owed=70)
+        self.check("motion", UNMEASURED, "a recorded hand waits for the sand", pace="fast", hand__slow_motion=None)
 
     def test_refusals_are_noted(self):
         self.only("refusals", NOTE, "1 by the server in the session (secret 1)", haptic__refused_by_server={**REFUSALS, "secret": 1})
@@ -343,7 +350,7 @@ SAMPLES = (SUMMARY, without_hand(), film(),
            changed(head_tracking={**HEAD, "lost": 2}, slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0}),
            changed(recoveries=[RECOVERY, {**RECOVERY, "seconds_to_next_frame": None, "seconds_to_link": 1.5}], held_seconds__pause=2.0, edits=2),
            changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),
-           changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "last_refusal": "no answer"},
+           changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "slow_motion": None, "last_refusal": "no answer"},
                    compared__server_at_end=None),
            changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
            changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),

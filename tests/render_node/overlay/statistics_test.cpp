@@ -43,7 +43,11 @@ lockstep::ViewState viewOf(const walls::Wall& wall, const scene::Scene& scene, b
 /// Returns the master's figures for a wall whose rank 5 is slow.
 TileFigures figuresOf(std::uint64_t frame) {
     const double draw = 2 + static_cast<double>(frame * 7 % 5);
-    return {draw, 31 - draw, {33.3, lockstep::Drag{5, 0.97, 30.1}, frame - 1, 0, 0, {0, 12, 500, 7, 90, 131}}};
+    const lockstep::WallFigures wall{.frameMs = 33.3,
+                                     .slowest = lockstep::Drag{5, 0.97, 30.1},
+                                     .agreed = frame - 1,
+                                     .swaps = {0, 12, 500, 7, 90, 131}};
+    return {draw, 31 - draw, wall};
 }
 
 /// Returns whether every byte outside `rect` is equal. `rect` counts pixels from the bottom.
@@ -265,6 +269,22 @@ TEST(OverlayText, AccusesNobodyWhereNoneStandsOut) {
     EXPECT_EQ(joined(wordsOf(5, 15, figures)), "R5 30.0 FPS\nSLOWEST -\nDRAW 31.2 MS\nDIFFERED 2\n");
     figures.slowest = lockstep::Drag{0, 0.5, 12};
     EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("SLOWEST: THE MASTER, 50 %"),
+              std::string::npos);
+}
+
+TEST(OverlayText, ShowsSlowMotionWhileTheToolIsSlowerThanTheHand) {
+    lockstep::WallFigures figures = figuresOf(200).wall;
+    figures.slowest.reset();
+    figures.slowMotion = 1.1;
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("SLOW MOTION"), std::string::npos);
+    figures.slowMotion = 6.34;
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures)),
+              "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nHASHES AGREED IN 199 FRAMES\n"
+              "SLOW MOTION 6.3, 0 OWED\nSLOWEST: NO RANK STANDS OUT\n");
+    EXPECT_EQ(joined(wordsOf(5, 15, figures)), "R5 30.0 FPS\nSLOWEST -\nSLOW 6.3\nAGREED 199\n");
+    figures.slowMotion.reset();
+    figures.sweepsOwed = 3840;
+    EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("SLOW MOTION 1.0, 3840 OWED\n"),
               std::string::npos);
 }
 
