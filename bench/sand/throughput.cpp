@@ -210,7 +210,7 @@ std::vector<Row> rowsFor(const Settings& settings, const sand::HeightField& roug
     }
     for (const std::string& wanted : settings.rows) {
         if (std::ranges::find(rows, wanted, &Row::name) == rows.end()) {
-            throw base::InputError("--rows: there is no \"" + wanted + "\"; choose from " + names);
+            throw base::InputError(fmt::format("--rows: there is no \"{}\"; choose from {}", wanted, names));
         }
     }
     std::erase_if(rows, [&](const Row& row) {
