@@ -102,7 +102,7 @@ std::string answerOf(const lockstep::KeyFound& key, const KeyState& after) {
         return fmt::format("{} {}", lockstep::kOverlayNames.at(static_cast<std::size_t>(which)),
                            after.layers.shows(which) ? "shown" : "hidden");
     };
-    const auto edited = [&](std::string words) {
+    const auto edited = [&](const std::string& words) {
         return words + (after.paused ? "; the sand waits until Space resumes" : "");
     };
     switch (key.entry.action) {

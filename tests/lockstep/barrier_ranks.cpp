@@ -71,7 +71,7 @@ public:
         const lockstep::FrameMessage message =
             barrier_.begin(master ? messageOf(frame, bytes) : lockstep::FrameMessage{}, got);
         // The message's hash stands for the sand. A rank that has received another message therefore differs.
-        Arrival mine{message.frame, 1, 2, 100 + cluster_.rank(), hashOf(base::encoded(message)), 5, 'q'};
+        Arrival mine{message.frame, 1, 2, 100 + cluster_.rank(), hashOf(base::encoded(message)), 5, {'q'}};
         for (const Deed& deed : kDeeds) {
             if (deed.frame == frame && deed.rank == cluster_.rank()) {
                 act(deed.kind, mine);

@@ -205,8 +205,9 @@ TEST_F(SceneFile, TakesColoursAsLinearLightAndAsImageProgramsWriteThem) {
               "s.toml:5: sand must be three numbers from 0 to 1, got -0.1");
     for (const std::string wrong : {"sandy", "#c8b48", "#c8b48g", "#-8b48c", "c8b48c0", "#c8b48c0"}) {
         EXPECT_EQ(
-            complaint(kFlat + "[look]\nsand = \"" + wrong + "\"\n"),
-            "s.toml:5: sand must be a colour such as \"#c8b48c\", or three numbers from 0 to 1, got '" + wrong + "'");
+            complaint(fmt::format("{}[look]\nsand = \"{}\"\n", kFlat, wrong)),
+            fmt::format("s.toml:5: sand must be a colour such as \"#c8b48c\", or three numbers from 0 to 1, got '{}'",
+                        wrong));
     }
 }
 
