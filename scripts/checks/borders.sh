@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Measures the sand at rims, walls, rock faces and holes, and under tools that are held there: one row for each experiment,
-# with the largest value that is right. Fails if a value is larger, as one is on 256 cells (docs/sand.md).
+# with the largest value that is right. Fails if a value is larger, as two are on 256 cells (docs/sand.md).
 # scripts/test.sh does not run it.
 #
 #   scripts/checks/borders.sh              Fields of 64 cells a side, less than a minute.
