@@ -31,6 +31,7 @@ struct WallFigures {
     std::uint64_t agreed = 0;          // frames in which all hashes were equal
     std::uint64_t divergences = 0;     // frames in which hashes differed at first
     std::uint64_t healed = 0;          // times that a rank was healed
+    std::uint64_t unplaced = 0;        // steps whose sand no cell could take
     std::int32_t sweepsOwed = 0;       // that the tool waits for
     std::optional<double> slowMotion;  // time of the hand that has passed, divided by that which is in steps
     std::vector<std::uint32_t> swaps;  // [us] after a frame's first swap, by rank from 1; empty if unknown
@@ -42,6 +43,7 @@ struct WallFigures {
         visit("agreed", base::varint(it.agreed));
         visit("divergences", base::varint(it.divergences));
         visit("healed", base::varint(it.healed));
+        visit("steps_unplaced", base::varint(it.unplaced));
         visit("sweeps_owed", base::varint(it.sweepsOwed));
         visit("slow_motion", it.slowMotion);
         visit("swaps_us", base::upTo(it.swaps, kMostRanks));

@@ -18,6 +18,7 @@ struct Incidents {
     std::uint64_t outvoted = 0;                             // times that the journal outvoted a majority of the ranks
     std::uint64_t serverDivergences = 0;                    // frames in which the haptic server's sand differed
     std::uint64_t stepsLeftOut = 0;                         // steps with a sand::Replica::leftOut()
+    std::uint64_t stepsUnplaced = 0;                        // steps with a sand::Replica::refusedPress()
     std::uint64_t links = 0, reconnects = 0;                // of the haptic link, see LinkCounters
     haptic_bridge::RefusalCounts refusedHere{}, refused{};  // of the haptic link, see LinkCounters
     std::uint64_t stops = 0;                                // times that the sand was stopped because the disk was full
@@ -36,6 +37,7 @@ struct Incidents {
         visit("outvoted", it.outvoted);
         visit("server_divergences", it.serverDivergences);
         visit("steps_left_out", it.stepsLeftOut);
+        visit("steps_unplaced", it.stepsUnplaced);
     }
     /// The keys of incidents.json. Summary::fields() has the keys of summary.json for those below counters().
     template <class Self, class Visit>

@@ -30,13 +30,21 @@ void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::Tim
     source.reached(replica_);
     work_ = {};
     time_ = {};
+    settleEnd_.reset();
     for (const haptic_bridge::TimedStep& timed : steps) {
+        const bool settling = replica_.settling();
         time_ += lockstep::applyTimed(replica_, timed.step);
+        if (settling && !replica_.settling()) {
+            settleEnd_ = timed.step.edit.any()          ? SettleEnd::edit
+                         : replica_.surface().settled() ? SettleEnd::rest
+                                                        : SettleEnd::hand;
+        }
         work_ += replica_.lastWork();
         if (!replica_.leftOut().empty()) {
             leftOut_.push_back({timed.step.number, replica_.leftOut(), replica_.refusedStep()});
         }
         edits_ += timed.step.edit.any() ? 1 : 0;
+        stepsUnplaced_ += replica_.refusedPress() ? 1 : 0;
         source.reached(replica_);
     }
     const std::int64_t applied = host::monotonicNs();

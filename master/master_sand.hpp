@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/names.hpp"
 #include "lockstep/fault.hpp"
 #include "lockstep/sand_time.hpp"
 #include "master/steps/step_source.hpp"
@@ -20,6 +23,17 @@ struct LeftOut {
     std::string what;
     bool refused = false;  // sand::Replica::refusedStep()
 };
+
+/// How a settle that continued from step to step has ended.
+enum class SettleEnd : std::uint8_t {
+    rest,  // all sand came to rest
+    hand,  // an engaged tool moved
+    edit   // another edit took its place
+};
+constexpr auto valuesOf(SettleEnd) {
+    using enum SettleEnd;
+    return std::array{base::Named{rest, "rest"}, base::Named{hand, "hand"}, base::Named{edit, "edit"}};
+}
 
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.
 class MasterSand {
@@ -55,6 +69,10 @@ public:
 
     /// Returns what the steps since the last call have left out.
     [[nodiscard]] std::vector<LeftOut> takeLeftOut() { return std::exchange(leftOut_, {}); }
+    /// Returns how a settle has ended in the last apply(); nullopt if none has.
+    [[nodiscard]] std::optional<SettleEnd> settleEnd() const { return settleEnd_; }
+    /// Returns the number of steps with a press that was refused (sand::Replica::refusedPress()), since the last start.
+    [[nodiscard]] std::uint64_t stepsUnplaced() const { return stepsUnplaced_; }
     /// Returns the number of steps with an edit since the session began.
     [[nodiscard]] std::uint64_t edits() const { return edits_; }
 
@@ -62,8 +80,9 @@ private:
     sand::Replica replica_;
     const lockstep::FaultsOfRank faults_;
     std::uint64_t hash_ = 0;
-    std::uint64_t edits_ = 0;
+    std::uint64_t edits_ = 0, stepsUnplaced_ = 0;
     std::vector<LeftOut> leftOut_;
+    std::optional<SettleEnd> settleEnd_;
     sand::StepWork work_;
     lockstep::SandTime time_;
 };

@@ -113,6 +113,7 @@ lockstep::WallFigures Measurements::figures(const Incidents& incidents, std::int
             .agreed = ranks_.frames(),
             .divergences = incidents.divergences,
             .healed = incidents.healed,
+            .unplaced = incidents.stepsUnplaced,
             .sweepsOwed = sweepsOwed,
             .slowMotion = slowMotion(),
             .swaps = ranks_.lastSwapsUs()};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "walls/stereo_change.hpp"
@@ -124,6 +125,7 @@ bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
         case Verb::pause:
         case Verb::resume:
             paused_ = command.verb == Verb::pause;
+            answerSettle({});  // a paused session would let the client wait
             return true;
         case Verb::pattern:
             views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
@@ -258,21 +260,50 @@ void OperatorDesk::finishJobs(bool wait) {
 
 void OperatorDesk::close() {
     finishJobs(true);
+    answerSettle({});
     control_.reset();
 }
 
 void OperatorDesk::answerEditsThatWaitForRoom() {
+    answerSettle({});
     for (const Client client : edits_.releaseClients()) {
         control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
     }
 }
 
 void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
+    const std::optional<SettleEnd> end = session_.sand.settleEnd();
     for (const haptic_bridge::TimedStep& timed : steps) {
-        if (const auto client = edits_.shown(timed.step.edit.number)) {
+        if (timed.step.edit.kind == sand::Edit::settle) {  // it takes the place of the one before
+            answerSettle(SettleEnd::edit);
+        }
+        const auto client = edits_.shown(timed.step.edit.number);
+        if (!client) {
+            continue;
+        }
+        if (timed.step.edit.kind == sand::Edit::settle && (session_.sand.replica().settling() || end)) {
+            settling_ = {*client, timed.step.number, host::monotonicNs()};
+        } else {
             control_->answer(*client, line({{"ok", true}, {"step", timed.step.number}}));
         }
     }
+    if (settling_ && (end || host::monotonicNs() - settling_->sinceNs > kSettleNs)) {
+        answerSettle(end);
+    }
+}
+
+void OperatorDesk::answerSettle(std::optional<SettleEnd> end) {
+    if (!settling_) {
+        return;
+    }
+    Json json{{"ok", true}, {"step", settling_->step}};
+    if (end) {
+        json["settle_ended_by"] = std::string(base::nameOf(*end));
+    } else {
+        json["settling"] = true;
+    }
+    control_->answer(settling_->client, line(json));
+    settling_.reset();
 }
 
 void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier) {

@@ -84,6 +84,9 @@ public:
 
 private:
     using Client = ControlSocket::Client;
+    static constexpr std::int64_t kSettleNs = 60'000'000'000;  // [ns], longest wait of a client for the end of a settle
+    /// Answers the client that waits for the end of a settle: how it ended, or that it continues.
+    void answerSettle(std::optional<SettleEnd> end);
 
     void obeyLine(const std::string& line, const Asker& asker);
     /// Returns whether the command is done, so that a client gets the answer "ok". Otherwise the answer comes later
@@ -116,6 +119,13 @@ private:
     EditQueue edits_;
     BackgroundJobs jobs_;
     Captures captures_;
+    /// A settle that continues, and whose client waits for its end.
+    struct Settling {
+        Client client = 0;
+        std::uint64_t step = 0;    // that began it
+        std::int64_t sinceNs = 0;  // [ns]
+    };
+    std::optional<Settling> settling_;
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool film_;

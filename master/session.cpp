@@ -158,6 +158,12 @@ void Session::reportLeftOut(const Steps& steps) {
     }
 }
 
+void Session::reportRefusedPress(std::uint64_t before) {
+    if (before == 0 && sand_.stepsUnplaced() > 0) {  // the summary has the others
+        host::printLine("step {}: {}", sand_.replica().stepNumber(), describe(refusedPressOf(sand_.replica())));
+    }
+}
+
 bool Session::showFrame(bool& more) {
     waitForFrame();
     desk_.obey(barrier_.arrivals());
@@ -176,8 +182,10 @@ bool Session::showFrame(bool& more) {
     const lockstep::FrameMessage frame = barrier_.begin(std::move(composed), bytes);
     const std::int64_t broadcast = monotonicNs();
     keep(frame);
+    const std::uint64_t unplaced = sand_.stepsUnplaced();
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
     reportLeftOut(steps);
+    reportRefusedPress(unplaced);
     check_.applied(sand_.replica().stepNumber());
     if (!agree(frame)) {
         return false;
@@ -226,6 +234,7 @@ Incidents Session::incidents() const {
     Incidents all = counted_;
     all.firstDifference = check_.firstDifference();
     all.stops += record_.stops();
+    all.stepsUnplaced += sand_.stepsUnplaced();
     const haptic_bridge::LinkCounters link = steps_->counters();
     all.links += link.links;
     all.reconnects += link.reconnects;

@@ -51,6 +51,8 @@ private:
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
     void reportLeftOut(const Steps& steps);
+    /// Prints a line about the first press that was refused. `before` is MasterSand::stepsUnplaced() before the frame.
+    void reportRefusedPress(std::uint64_t before);
     void waitForFrame();
     [[nodiscard]] Steps takeSteps();
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);

@@ -48,6 +48,9 @@ Summary Session::summary() {
     summary.ranks = wall_.ranks();
     summary.stateHash = sand_.hash();
     summary.sweepsOwed = sweepsOwed();
+    if (sand.firstRefusedPress()) {
+        summary.refusedPress = refusedPressOf(sand);
+    }
     summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
     summary.volumeInitial = scene_.volume();

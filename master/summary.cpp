@@ -87,6 +87,28 @@ std::string describeDrag(const Summary& summary) {
 
 }  // namespace
 
+RefusedPressPart refusedPressOf(const sand::Replica& replica) {
+    const sand::RefusedPress& press = replica.firstRefusedPress().value();
+    const double perProbe = replica.cellSize() / sand::kProbePerCell;
+    RefusedPressPart part{std::string(base::nameOf(press.tool.kind)), press.tool.radius * perProbe, std::nullopt};
+    if (press.largest) {
+        part.largest = *press.largest * perProbe;
+    }
+    return part;
+}
+
+std::string describe(const RefusedPressPart& press) {
+    std::string text =
+        fmt::format("the cells around the {} of radius {:.4g} cannot hold its sand, so the tool passes through it",
+                    press.shape, press.radius);
+    if (press.largest) {
+        text += *press.largest > 0 ? fmt::format("; the largest {} that fits there has a radius of {:.4g}", press.shape,
+                                                 *press.largest)
+                                   : fmt::format("; no {} fits there", press.shape);
+    }
+    return text;
+}
+
 double Summary::framesPerSecond() const {
     const std::uint64_t shown = frames - framesBefore;
     return seconds > 0 ? static_cast<double>(shown - 1) / seconds : 0;

@@ -49,6 +49,7 @@ struct Summary {
     int ranks = 0;
     std::uint64_t stateHash = 0;
     std::int32_t sweepsOwed = 0;  // at the end, that the tool waits for
+    std::optional<RefusedPressPart> refusedPress;
     Incidents incidents;
     std::int64_t volumeInitial = 0, volumeFinal = 0, volumeOutflow = 0;  // [unit · cell]
     std::string pace = "realtime";                                       // "realtime", "fast" or "replay"
@@ -147,6 +148,7 @@ struct Summary {
         visit("ranks", it.ranks);
         visit("state_hash", hashText(it.stateHash));
         visit("sweeps_owed", it.sweepsOwed);
+        visit("refused_press", it.refusedPress);
         Incidents::counters(it.incidents, visit);
         visit("master_healed", it.rankStatistics.empty() ? 0 : it.rankStatistics.front().healed);
         visit("unhealed", it.unhealed);

@@ -11,6 +11,7 @@
 #include "lockstep/rank_statistics.hpp"
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
+#include "sand/replica.hpp"
 
 /// Parts of summary.json that are computed from several values. They are described (base/fields.hpp), and only written.
 namespace master {
@@ -52,6 +53,24 @@ struct SlowestRank {
 /// Returns the rank that keeps the wall waiting; nullopt if no rank stands out. `rankNames` are the names in messages.
 [[nodiscard]] std::optional<SlowestRank> slowestRank(const std::optional<lockstep::Drag>& drag,
                                                      const std::vector<std::string>& rankNames);
+
+/// The first press since the last start that was refused, as summary.json contains it.
+struct RefusedPressPart {
+    std::string shape;
+    double radius = 0;              // [scene unit], of the tool
+    std::optional<double> largest;  // [scene unit], sand::RefusedPress::largest
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("tool_shape", it.shape);
+        visit("tool_radius", it.radius);
+        visit("largest_radius", it.largest);
+    }
+};
+
+/// Returns the first press of `replica` that was refused. Requires that there is one.
+[[nodiscard]] RefusedPressPart refusedPressOf(const sand::Replica& replica);
+/// Returns a sentence for the user.
+[[nodiscard]] std::string describe(const RefusedPressPart& press);
 
 /// Returns a state hash as programs print it.
 [[nodiscard]] std::string hashText(std::uint64_t hash);

@@ -81,6 +81,7 @@ Replica::Replica(const Replica& other)
       owed_(other.owed_),
       leftOut_(other.leftOut_),
       refusedStep_(other.refusedStep_),
+      refusedPress_(other.refusedPress_),
       lastWork_(other.lastWork_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
@@ -93,12 +94,14 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     }
     leftOut_ = whyRefused(step);
     refusedStep_ = !leftOut_.empty();
+    refusedPress_ = false;
     lastWork_ = {};
     if (refusedStep_) {
         stepNumber_ = step.number;
         return;
     }
     const Hand before{rules_.tuning, probe_, heading_};
+    const std::int64_t refusedBefore = surface_->refusedPresses().count;
     try {
         applyToSand(step, moved);
     } catch (const std::bad_alloc&) {
@@ -106,6 +109,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     } catch (const std::exception& error) {
         skip(step, before, error.what());
     }
+    refusedPress_ = surface_->refusedPresses().count != refusedBefore;
 }
 
 void Replica::skip(const Step& step, const Hand& before, const char* why) {
@@ -324,7 +328,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     probe_ = head.probe;
     heading_ = head.heading;
     leftOut_.clear();
-    refusedStep_ = false;
+    refusedStep_ = refusedPress_ = false;
     lastWork_ = {};
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -121,6 +122,13 @@ public:
     /// Returns whether the last apply() has left out the whole step because of what was owed.
     [[nodiscard]] bool refusedStep() const { return refusedStep_; }
 
+    /// Returns whether a press in the last apply() was refused.
+    [[nodiscard]] bool refusedPress() const { return refusedPress_; }
+    /// Returns the first press that was refused since the replica was made; nullopt if there was none.
+    [[nodiscard]] const std::optional<RefusedPress>& firstRefusedPress() const {
+        return surface_->refusedPresses().first;
+    }
+
     /// Returns the sweeps of the last step that are still to be paid. On a TIN only a settle owes any.
     [[nodiscard]] const Owed& owed() const { return owed_; }
     /// Returns whether the tool must stay where it is, because sweeps are owed. A settle does not hold the tool.
@@ -228,7 +236,7 @@ private:
     bool engaged_ = false;
     Owed owed_;
     std::string leftOut_;  // by the last apply()
-    bool refusedStep_ = false;
+    bool refusedStep_ = false, refusedPress_ = false;
     StepWork lastWork_;
 };
 

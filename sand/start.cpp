@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sand/start.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -67,6 +68,31 @@ SurfaceData Start::data() const {
         throw std::logic_error("Start::data: a TIN has no triangles yet");
     }
     return GridData{terrain, ground.get()};
+}
+
+std::optional<Start> Start::middle(int most) const {
+    if (tin != nullptr) {
+        return std::nullopt;
+    }
+    Start part;
+    part.rules = rules;
+    part.rules.columns = std::min(rules.columns, most);
+    part.rules.rows = std::min(rules.rows, most);
+    part.terrain = HeightField(part.rules.columns, part.rules.rows, terrain.cellSize());
+    const auto below = ground ? std::make_shared<Ground>(part.rules.columns, part.rules.rows) : nullptr;
+    const int x0 = (rules.columns - part.rules.columns) / 2, y0 = (rules.rows - part.rules.rows) / 2;
+    for (int y = 0; y < part.rules.rows; ++y) {
+        for (int x = 0; x < part.rules.columns; ++x) {
+            part.terrain.setHeight(x, y, terrain.height(x0 + x, y0 + y));
+            if (below && ground->isWall(x0 + x, y0 + y)) {
+                below->setWall(x, y);
+            } else if (below) {
+                below->setBedrock(x, y, ground->bedrock(x0 + x, y0 + y));
+            }
+        }
+    }
+    part.ground = below;
+    return part;
 }
 
 std::int32_t Start::referenceHeight() const {

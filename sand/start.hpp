@@ -63,6 +63,9 @@ struct Start {
     /// Returns the heights that the sand begins with. Throws std::logic_error for a TIN, which gets its triangles from
     /// a replica.
     [[nodiscard]] SurfaceData data() const;
+    /// Returns the middle of a height field with its rock and walls, at most `most` cells along a side; nullopt for a
+    /// TIN.
+    [[nodiscard]] std::optional<Start> middle(int most) const;
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
     /// Returns the exact volume of the sand, in the unit of Replica::volume(). Triangulates a TIN.

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "scene/load/scene_file.hpp"
+#include "scene/load/step_cost.hpp"
 
 namespace walls {
 
@@ -18,6 +19,9 @@ std::string describeScene(const std::string& file) {
     }
     for (const std::string& warning : scene.warnings) {
         fmt::format_to(std::back_inserter(text), "warning: {}\n", warning);
+    }
+    if (const auto cost = scene::stepCostOf(scene)) {
+        fmt::format_to(std::back_inserter(text), "{}\n", cost->text(scene));
     }
     return text;
 }

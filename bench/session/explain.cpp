@@ -14,6 +14,7 @@
 #include "sand/replica.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
+#include "scene/load/step_cost.hpp"
 
 namespace bench {
 namespace {
@@ -199,6 +200,9 @@ void explain(const Settings& settings, Csv& csv) {
                          static_cast<double>(scene.rules.tuning.tool.radius) / kProbePerCell));
     csv.note(fmt::format("step: median CPU time of one thread, hash included, of {} steps unless `why` says otherwise",
                          settings.runs));
+    if (const auto cost = scene::stepCostOf(scene)) {
+        csv.note(cost->text(scene));
+    }
     Explanation rows(csv);
     explainMemory(scene, rows);
     explainRules(scene, rows);

@@ -10,7 +10,7 @@
 namespace haptic_bridge {
 
 /// Decides how much work of the sand fits into a frame: how many sweeps a step runs, how far it moves the tool, and how
-/// many of a server's steps a frame takes, at least one.
+/// many of the steps that are due a frame takes, at least one.
 ///
 /// The time for sand in a frame is half of the longer of a step's period and the frame's drawing, and at most kMostNs.
 /// The sweeps of a step fit into it by the last wall time of a sweep. They are also at most twice as many as a frame

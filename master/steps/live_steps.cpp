@@ -18,6 +18,23 @@ using haptic_bridge::TimedStep;
 
 namespace {
 
+/// Adds up the work of the next steps of a replica.
+class FrameWork {
+public:
+    explicit FrameWork(const sand::Replica& replica) : probe_(replica.probe()), engaged_(replica.engaged()) {}
+    void add(const sand::Step& step) {
+        all_ += {step.sweeps, sand::substepsOf(step, probe_, engaged_)};
+        probe_ = step.path.empty() ? probe_ : step.path.back();
+        engaged_ = step.engaged;
+    }
+    [[nodiscard]] const sand::StepWork& all() const { return all_; }
+
+private:
+    sand::StepWork all_;
+    sand::ProbePoint probe_;
+    bool engaged_;
+};
+
 constexpr const char* kOtherSand = "the hand felt other sand than the wall has shown";
 
 }  // namespace
@@ -163,21 +180,16 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::ui
 
 std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_t most) {
     std::vector<TimedStep> steps;
-    sand::StepWork taken;
-    sand::ProbePoint probe = replica.probe();
-    bool engaged = replica.engaged();
+    FrameWork taken(replica);
     while (steps.size() < most) {
         std::vector<TimedStep> next = link_.client()->drain(1);
         if (next.empty()) {
             break;
         }
-        const sand::Step& step = next.front().step;
-        taken += {step.sweeps, sand::substepsOf(step, probe, engaged)};
-        probe = step.path.empty() ? probe : step.path.back();
-        engaged = step.engaged;
+        taken.add(next.front().step);
         steps.push_back(std::move(next.front()));
         // One more with as many sweeps must fit, because a step that has been taken cannot be put back.
-        if (!budget_.fits(taken, {steps.back().step.sweeps, 0})) {
+        if (!budget_.fits(taken.all(), {steps.back().step.sweeps, 0})) {
             break;
         }
     }
@@ -188,8 +200,9 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
     // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
     const std::size_t due = std::min(own_.due(now_()), most);
     std::vector<TimedStep> steps;
+    FrameWork taken(replica);
     // What is owed after an edit, or while sweeps are owed, is known only when the step has been applied.
-    for (bool known = true; known && steps.size() < due;) {
+    for (bool more = true; more && steps.size() < due;) {
         TimedStep& next = steps.emplace_back();
         next.step.epoch = epoch_;
         next.step.number = replica.stepNumber() + steps.size();
@@ -200,7 +213,9 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         }
         next.step.edit = edits_.next();
         next.step.sweeps = budget_.sweepsOf(next.step, replica);
-        known = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step);
+        taken.add(next.step);
+        more = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step) &&
+               budget_.fits(taken.all(), {next.step.sweeps, 0});
     }
     return steps;
 }

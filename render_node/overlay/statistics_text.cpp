@@ -67,6 +67,9 @@ std::vector<TileStatistics::Line> TileStatistics::longLines() const {
     } else {
         lines.push_back({fmt::format("HASHES AGREED IN {} FRAMES", wall_.agreed), Line::Kind::good});
     }
+    if (wall_.unplaced > 0) {
+        lines.push_back({fmt::format("NO ROOM FOR SAND IN {} STEPS", wall_.unplaced), Line::Kind::bad});
+    }
     if (motionIsSlow()) {
         lines.push_back({fmt::format("SLOW MOTION {:.1f}, {} OWED", wall_.slowMotion.value_or(1), wall_.sweepsOwed),
                          Line::Kind::slow});

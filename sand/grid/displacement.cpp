@@ -159,8 +159,9 @@ Cut Displacement::findCut(const HeightField& field, const Ground* ground, ProbeP
     return cut;
 }
 
-Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground* ground, ProbePoint probe,
-                                       const Offset& ahead) const {
+Displacement::Work Displacement::press(const HeightField& field, HeightField* into, Rim rim, const Ground* ground,
+                                       const Press& at) const {
+    const auto& [probe, ahead] = at;
     const Cut cut = findCut(field, ground, probe);
     if (cut.taken == 0) {
         return {};
@@ -168,7 +169,7 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
     if (ground != nullptr) {
         const Surroundings surroundings(field, *ground, shape_, probe, cut);
         if (surroundings.barred()) {
-            return pressInParts(field, rim, *ground, probe, ahead, cut, surroundings);
+            return pressInParts(field, into, rim, *ground, at, cut, surroundings);
         }
     }
     std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, probe, shape_, ahead);
@@ -176,29 +177,33 @@ Displacement::Work Displacement::press(HeightField& field, Rim rim, const Ground
         ring = receivers(field.bounds(), rim, ground, probe, shape_, {0, 0});
     }
     if (ring.empty()) {  // the tool is larger than the field, so that no cell can take the sand
-        return {};
+        return {.refused = 1};
     }
     shareOut(ring, cut.taken, probe, shape_);
     if (overflows(field, ring)) {
-        return {};  // the sand stays, and the tool passes through it
+        return {.refused = 1};  // the sand stays, and the tool passes through it
+    }
+    if (into == nullptr) {
+        return {};
     }
     for (std::size_t i = 0; i < cut.rows.size(); ++i) {
-        std::int32_t* const row = field.row(cut.rows[i]) + cut.cells.x0;
+        std::int32_t* const row = into->row(cut.rows[i]) + cut.cells.x0;
         std::transform(cut.lowestOf(i), cut.lowestOf(i) + cut.across(), row, row,
                        [](std::int32_t least, std::int32_t height) { return std::min(height, least); });
     }
-    return {shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds()), raise(field, ring)};
+    return {.cells = shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds()), .outflow = raise(*into, ring)};
 }
 
-Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint probe,
-                                              const Offset& ahead, const Cut& cut,
+Displacement::Work Displacement::pressInParts(const HeightField& field, HeightField* into, Rim rim,
+                                              const Ground& ground, const Press& at, const Cut& cut,
                                               const Surroundings& surroundings) const {
-    const auto ringsOf = [&](const Offset& way) {
-        return divided(receivers(field.bounds(), rim, &ground, probe, shape_, way), surroundings);
+    const auto& [probe, ahead] = at;
+    const auto ringsOf = [&, from = at.probe](const Offset& way) {
+        return divided(receivers(field.bounds(), rim, &ground, from, shape_, way), surroundings);
     };
     std::vector<std::vector<Receiver>> rings = ringsOf(ahead), around;
     std::vector<std::uint8_t> moves(rings.size());
-    Work result{shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds()), 0};
+    Work result{.cells = shape_.cellsChanged(probe.x, probe.y).clippedTo(field.bounds())};
     for (std::int32_t part = 0; part < surroundings.count(); ++part) {
         std::vector<Receiver>& ring = rings[static_cast<std::size_t>(part)];
         if (surroundings.taken(part) == 0) {
@@ -210,35 +215,53 @@ Displacement::Work Displacement::pressInParts(HeightField& field, Rim rim, const
             }
             ring = around[static_cast<std::size_t>(part)];
         }
-        if (ring.empty()) {
-            continue;  // the sand stays, and the tool passes through it
+        if (!ring.empty()) {
+            shareOut(ring, surroundings.taken(part), probe, shape_);
         }
-        shareOut(ring, surroundings.taken(part), probe, shape_);
-        if (!overflows(field, ring)) {
-            moves[static_cast<std::size_t>(part)] = 1;
-            result.outflow += raise(field, ring);
+        if (ring.empty() || overflows(field, ring)) {
+            result.refused = 1;  // the sand stays, and the tool passes through it
+            continue;
         }
+        moves[static_cast<std::size_t>(part)] = 1;
+        result.outflow += into == nullptr ? 0 : raise(*into, ring);
+    }
+    if (into == nullptr) {
+        return result;
     }
     // Receivers are beside the tool, so that raising them has not changed the cells below it.
     for (std::size_t i = 0; i < cut.rows.size(); ++i) {
         for (int x = cut.cells.x0; x < cut.cells.x1; ++x) {
             const std::int32_t lowest = cut.lowestOf(i)[x - cut.cells.x0], height = field.height(x, cut.rows[i]);
             if (height > lowest && moves[static_cast<std::size_t>(surroundings.partOf(x, cut.rows[i]))] != 0) {
-                field.setHeight(x, cut.rows[i], lowest);
+                into->setHeight(x, cut.rows[i], lowest);
             }
         }
     }
     return result;
 }
 
-Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from,
-                                      ProbePoint to) const {
+std::int32_t Displacement::largestRadius(const HeightField& field, Rim rim, const Ground* ground,
+                                         const Press& at) const {
+    std::int32_t fits = 0, refused = tool_.radius / kProbePerCell + 1;  // [cell]
+    while (refused - fits > 1) {
+        const std::int32_t cells = fits + (refused - fits) / 2, radius = cells * kProbePerCell;
+        Tool tool = tool_;
+        tool.radius = radius;
+        tool.halfWidth = static_cast<std::int32_t>(std::int64_t{tool_.halfWidth} * radius / tool_.radius);
+        const bool isRefused = Displacement(tool, path_).press(field, nullptr, rim, ground, at).refused > 0;
+        (isRefused ? refused : fits) = cells;
+    }
+    return fits * kProbePerCell;
+}
+
+Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
+                                      bool measures) const {
     const std::int64_t dx = std::int64_t{to.x} - from.x;
     const std::int64_t dy = std::int64_t{to.y} - from.y;
     const std::int64_t dz = std::int64_t{to.z} - from.z;
     const std::int64_t longest = std::max({std::abs(dx), std::abs(dy), std::abs(dz)});
     const std::int64_t steps = substepsBetween(from, to);
-    Work all{{field.columns(), field.rows(), 0, 0}, 0};
+    Work all{.cells = {field.columns(), field.rows(), 0, 0}};
     for (std::int64_t i = 1; i <= steps; ++i) {
         const ProbePoint probe{static_cast<std::int32_t>(from.x + dx * i / steps),
                                static_cast<std::int32_t>(from.y + dy * i / steps),
@@ -248,7 +271,12 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
         }
         // The direction of one sub-step, in whole probe units, would lose its angle if the hand is slow.
         const std::int64_t scale = std::max<std::int64_t>(longest / kProbePerCell, 1);
-        const Work one = press(field, rim, ground, probe, {dx / scale, dy / scale});
+        const Press at{probe, {dx / scale, dy / scale}};
+        const Work one = press(field, &field, rim, ground, at);
+        if (measures && one.refused > 0 && !all.largest) {
+            all.largest = largestRadius(field, rim, ground, at);  // refused sand has not moved
+        }
+        all.refused += one.refused;
         if (!one.cells.empty()) {
             all.cells = {std::min(all.cells.x0, one.cells.x0), std::min(all.cells.y0, one.cells.y0),
                          std::max(all.cells.x1, one.cells.x1), std::max(all.cells.y1, one.cells.y1)};

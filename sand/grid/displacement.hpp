@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,18 +35,21 @@ class Displacement {
 public:
     /// The results are the same with every `path`.
     explicit Displacement(const Tool& tool, base::CodePath path = base::fastestCodePath())
-        : shape_(tool, path), path_(path) {}
+        : tool_(tool), shape_(tool, path), path_(path) {}
 
     /// Effect of one drag on the sand.
     struct Work {
-        CellRect cells;            // cells that may have changed
-        std::int64_t outflow = 0;  // volume pushed over an open rim [unit · cell]
+        CellRect cells{};                                    // cells that may have changed
+        std::int64_t outflow = 0;                            // volume pushed over an open rim [unit · cell]
+        std::int64_t refused = 0;                            // presses with sand that stayed where it was
+        std::optional<std::int32_t> largest = std::nullopt;  // RefusedPress::largest of the first of them
     };
 
     /// Moves the tool from `from` to `to` in sub-steps of at most one cell, and displaces the sand. Sand that no cell
     /// can take stays where it is. `ground` may be null; its rock and walls do not move. Sand stays on its side of
-    /// walls, and of rock that is higher than the sand that the tool takes.
-    Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to) const;
+    /// walls, and of rock that is higher than the sand that the tool takes. If `measures`, returns Work::largest.
+    Work drag(HeightField& field, Rim rim, const Ground* ground, ProbePoint from, ProbePoint to,
+              bool measures = false) const;
 
     /// Returns the obstacle of a tool whose centre is at `probe`.
     [[nodiscard]] Obstacle obstacle(const HeightField& field, ProbePoint probe) const;
@@ -53,15 +57,25 @@ public:
     [[nodiscard]] CellRect cells(const HeightField& field, ProbePoint probe) const;
 
 private:
-    Work press(HeightField& field, Rim rim, const Ground* ground, ProbePoint probe, const Offset& ahead) const;
+    /// Place of a press, and the direction in which the sand goes; {0, 0} for all sides.
+    struct Press {
+        ProbePoint probe;
+        Offset ahead;
+    };
+    /// Presses the sand of `field`. Changes `into`, which is `field`, or null to find out what would be refused.
+    Work press(const HeightField& field, HeightField* into, Rim rim, const Ground* ground, const Press& at) const;
     /// Does the work of press() part by part of the surroundings, which must be barred.
-    Work pressInParts(HeightField& field, Rim rim, const Ground& ground, ProbePoint probe, const Offset& ahead,
+    Work pressInParts(const HeightField& field, HeightField* into, Rim rim, const Ground& ground, const Press& at,
                       const Cut& cut, const Surroundings& surroundings) const;
+    /// Returns RefusedPress::largest of a press that was refused.
+    [[nodiscard]] std::int32_t largestRadius(const HeightField& field, Rim rim, const Ground* ground,
+                                             const Press& at) const;
     [[nodiscard]] Cut findCut(const HeightField& field, const Ground* ground, ProbePoint probe) const;
     /// Fills `lowest` with the heights to which the tool lowers the cells of a row: its underside, or the rock where
     /// that is higher [unit]. `column` is the first cell of the row.
     void findLowest(const Ground* ground, ProbePoint probe, int column, int row, std::span<std::int32_t> lowest) const;
 
+    Tool tool_;
     TurnedShape shape_;
     base::CodePath path_;
 };

@@ -71,10 +71,15 @@ SurfaceChange GridSurface::takeChange() {
 void GridSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     const Displacement displacement(tool);
     for (std::size_t i = 1; i < path.size(); ++i) {
-        const Displacement::Work done = displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i]);
+        const Displacement::Work done =
+            displacement.drag(field_, rules_.rim, ground_.get(), path[i - 1], path[i], !refused_.first);
         erosion_.touch(done.cells);
         touch(done.cells);
         outflow_ += done.outflow;
+        refused_.count += done.refused;
+        if (done.largest) {
+            refused_.first = {tool, done.largest};
+        }
     }
 }
 

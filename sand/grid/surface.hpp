@@ -25,6 +25,7 @@ public:
     [[nodiscard]] const Erosion& erosion() const { return erosion_; }
 
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
+    [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
     void release(const Tool& tool, const ProbePoint& probe) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
@@ -73,6 +74,7 @@ private:
     HeightField field_;
     Erosion erosion_;
     TileHash hash_;
+    RefusedPresses refused_;
     std::int64_t outflow_ = 0;
     std::shared_ptr<const base::Bytes> start_;  // the scene's heights, compressed; clones share them
     Undo beforeStroke_;                         // sand for an undo

@@ -11,6 +11,7 @@
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
 #include "sand/model/owed.hpp"
+#include "sand/model/refused_press.hpp"
 #include "sand/model/rules.hpp"
 #include "sand/model/step.hpp"
 #include "sand/model/surface_data.hpp"
@@ -78,6 +79,8 @@ public:
     /// Moves the tool along `path`, which begins where the tool is and has at least two points, and displaces the sand.
     /// Two equal points press the sand without a direction.
     virtual void drag(const Tool& tool, std::span<const ProbePoint> path) = 0;
+    /// Returns the presses of drag() that were refused.
+    [[nodiscard]] virtual const RefusedPresses& refusedPresses() const = 0;
     /// Wakes the sand that `tool` held back while its centre was at `probe`.
     virtual void release(const Tool& tool, const ProbePoint& probe) = 0;
     /// Called after the tool has left the sand. A TIN then keeps the tool's outline in its mesh, or removes it,

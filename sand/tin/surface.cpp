@@ -145,6 +145,10 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
 void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     const Displacement::Work done = displacementOf(tool).drag(layer_, state_.imprint, rim_, path);
     state_.outflow += static_cast<std::int64_t>(done.outflow);
+    refused_.count += done.refused;
+    if (done.refused > 0 && !refused_.first) {
+        refused_.first = {tool, std::nullopt};
+    }
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);

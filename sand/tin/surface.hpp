@@ -31,6 +31,7 @@ public:
     [[nodiscard]] const TinStart& start() const { return *start_; }
 
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
+    [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
     /// Does nothing, because Erosion itself finds the sand that the tool held back.
     void release(const Tool&, const ProbePoint&) override {}
     void leave(const Tool& tool) override;
@@ -92,6 +93,7 @@ private:
     VertexSand layer_;
     std::size_t startVertices_;  // of the start's mesh; constraints that cross may have added some
     TinState state_;
+    RefusedPresses refused_;
     Coarsening coarsening_;
     Erosion erosion_;
     TileHash hash_;

@@ -173,6 +173,18 @@ def steps(summary, _):
     return (NOTE, f"{left_out} of {words} left out") if left_out else (GOOD, words)
 
 
+def press(summary, _):
+    found, first = summary["steps_unplaced"], summary["refused_press"]
+    if not found:
+        return None
+    words = f"no cell could take the sand of the tool in {counted(found, 'step')} {SESSION}"
+    if first:
+        words += f"; first of a {first['tool_shape']} of radius {first['tool_radius']:.4g}"
+        if first["largest_radius"] is not None:
+            words += f", of which one of radius {first['largest_radius']:.4g} fits there" if first["largest_radius"] else ", of which none fits there"
+    return NOTE, words
+
+
 def sand(summary, _):
     compared = summary["compared"]
     differed, at_server = summary["divergences"], summary["server_divergences"]

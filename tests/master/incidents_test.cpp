@@ -26,6 +26,7 @@ TEST_F(IncidentFileTest, IsReadByTheTryThatGoesOnAndByNoSessionThatBeginsAnew) {
                            .outvoted = 1,
                            .serverDivergences = 1,
                            .stepsLeftOut = 9,
+                           .stepsUnplaced = 10,
                            .links = 6,
                            .reconnects = 4,
                            .stops = 1,

@@ -22,8 +22,8 @@ def rank(number):
 # 600 frames at 60 frames/s: 599 periods take 9.983 s.
 SUMMARY = {
     "version": 1, "scene": "dunes", "terrain": [], "wall": "small", "frames": 600, "steps": 590, "frames_before": 0, "steps_before": 0, "pace": "realtime",
-    "refresh_hz": 60.0, "ranks": 2, "state_hash": "0123456789abcdef", "sweeps_owed": 0, "divergences": 0, "healed": 0, "outvoted": 0, "master_healed": 0,
-    "server_divergences": 0, "unhealed": 0, "steps_left_out": 0, "volume_initial": 900, "volume_final": 890, "edits": 0, "volume_outflow": 10,
+    "refresh_hz": 60.0, "ranks": 2, "state_hash": "0123456789abcdef", "sweeps_owed": 0, "refused_press": None, "divergences": 0, "healed": 0, "outvoted": 0, "master_healed": 0,
+    "server_divergences": 0, "unhealed": 0, "steps_left_out": 0, "steps_unplaced": 0, "volume_initial": 900, "volume_final": 890, "edits": 0, "volume_outflow": 10,
     "compared": {"at_end": True, "server_at_end": True, "last_whole": 600, "frames_since": 0, "first_difference": None},
     "seconds": 9.99, "fps": 59.96, "frame_ms": {**SPREAD, "count": 590, "mean": 16.7}, "late_frames": 3,
     "held_seconds": {"pause": 0.0, "disk": 0.0}, "skew_us": {"p50": 200.0, "p99": 900.0, "max": 2000.0},

@@ -318,6 +318,14 @@ class Sand(Lines):
     def test_steps_left_out_are_noted(self):
         self.only("steps", NOTE, "70 of 590 in the session", steps_left_out=70)
 
+    def test_a_press_that_no_cell_could_take_is_noted_with_the_largest_radius(self):
+        first = {"tool_shape": "sphere", "tool_radius": 0.61234, "largest_radius": 0.58}
+        self.only("press", NOTE, "in 70 steps in the session", "first of a sphere of radius 0.6123, of which one of radius 0.58 fits there",
+                  steps_unplaced=70, refused_press=first)
+        self.check("press", NOTE, "of which none fits there", steps_unplaced=1, refused_press={**first, "largest_radius": 0})
+        self.check("press", NOTE, "first of a sphere of radius 0.6123;", steps_unplaced=1, refused_press={**first, "largest_radius": None})
+        self.check("press", NOTE, "in 1 step in the session", steps_unplaced=1)  # before the last start
+
     def test_an_inexact_volume_is_bad(self):
         self.only("volume", BAD, "+1 units", volume_final=891)
 
@@ -354,6 +362,7 @@ SAMPLES = (SUMMARY, without_hand(), film(),
                    compared__server_at_end=None),
            changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
            changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
+           changed(steps_unplaced=3, refused_press={"tool_shape": "sphere", "tool_radius": 0.6, "largest_radius": 0.5}),
            changed(hand={**SUMMARY["hand"], "asked": "pointer"}),
            changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))
 

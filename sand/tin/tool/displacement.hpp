@@ -33,6 +33,7 @@ public:
     struct Work {
         std::vector<Vertex> touched;  // living vertices whose sand was taken or raised, ascending, each once
         Volume outflow = 0;           // volume pushed over an open rim; the layer has lost it
+        std::int64_t refused = 0;     // presses with sand that stayed where it was
     };
 
     /// Moves the tool along `path`, which begins where the tool is, and displaces the sand. A path of one point

@@ -106,7 +106,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
             addNeighbours(layer, press.probe, [&](Vertex vertex) { return partOf(vertex) == part; });
         }
-        deal(layer, true, done);
+        done.refused += deal(layer, true, done) ? 0 : 1;
     }
     forgetParts();
 }

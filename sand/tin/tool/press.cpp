@@ -223,7 +223,7 @@ void Displacement::press(VertexSand& layer, Rim rim, const Press& press, Work& d
     if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
         addNeighbours(layer, press.probe, [](Vertex) { return true; });
     }
-    deal(layer, true, done);  // if no vertex can take the sand, it stays, and the tool passes through it
+    done.refused += deal(layer, true, done) ? 0 : 1;  // the sand stays, and the tool passes through it
 }
 
 }  // namespace sand::tin

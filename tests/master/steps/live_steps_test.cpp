@@ -57,6 +57,20 @@ TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunct
     EXPECT_FALSE(live.linked());
 }
 
+// A sweep takes 1 ms, and a frame has 8.3 ms for sand.
+TEST_F(LiveStepsTest, AFrameTakesTheOwnStepsThatFit) {
+    master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
+                           [this] { return nowNs_.load(); });
+    nowNs_ += 4 * kFrameNs + 1000;
+    EXPECT_EQ(show(live).size(), 4U) << "no cost is known";
+    const haptic_bridge::FrameCost cost{.sweeps = 8, .sweepNs = 8'000'000};
+    live.shown({wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no, cost});
+    nowNs_ += 4 * kFrameNs;
+    const std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), 4);
+    ASSERT_EQ(steps.size(), 1U);
+    EXPECT_EQ(steps[0].step.sweeps, 8) << "all that it owes";
+}
+
 TEST_F(LiveStepsTest, AServerWhoseSandDiffersIsLetGoAndStartsAgainFromTheWalls) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
         return link == 1 && step >= 20 ? hash ^ 1 : hash;

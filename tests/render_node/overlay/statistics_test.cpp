@@ -282,6 +282,10 @@ TEST(OverlayText, ShowsSlowMotionWhileTheToolIsSlowerThanTheHand) {
               "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nHASHES AGREED IN 199 FRAMES\n"
               "SLOW MOTION 6.3, 0 OWED\nSLOWEST: NO RANK STANDS OUT\n");
     EXPECT_EQ(joined(wordsOf(5, 15, figures)), "R5 30.0 FPS\nSLOWEST -\nSLOW 6.3\nAGREED 199\n");
+    figures.unplaced = 12;
+    EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures))
+                  .find("HASHES AGREED IN 199 FRAMES\nNO ROOM FOR SAND IN 12 STEPS\nSLOW MOTION 6.3, 0 OWED\n"),
+              std::string::npos);
     figures.slowMotion.reset();
     figures.sweepsOwed = 3840;
     EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("SLOW MOTION 1.0, 3840 OWED\n"),

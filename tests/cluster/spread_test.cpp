@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// Processes that are killed while a step of a large tool is spread over frames.
+#include <csignal>
+
+#include "master/journal/journal.hpp"
+#include "sand/replica.hpp"
+#include "tests/cluster/session_fixture.hpp"
+
+namespace {
+
+/// The tool has a radius of 48 cells, so that a step takes many frames.
+class Spread : public SessionTest {
+protected:
+    std::string largeTool() {
+        return write("scene.toml",
+                     "name = \"test\"\n[field]\ncolumns = 128\nrows = 128\n[terrain]\nheight = 0.9\n"
+                     "[material]\nsettling_time = 0.02\n[tool]\nradius = 0.75\n");
+    }
+    std::unique_ptr<support::ChildProcess> begin() {
+        auto session = start({"--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis", "--out",
+                              out(), "--no-pictures", "--restarts", "100000", "--restart-window", "0.001"});
+        EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}}).is_null()) << session->output();
+        return session;
+    }
+    /// Pauses the session while sweeps are owed, which are not paid meanwhile. Returns the step that owes them.
+    std::uint64_t pauseInAStep() const {
+        for (int tries = 0; tries < 100 && !HasFailure(); ++tries) {
+            awaitStatus([](const nlohmann::json& now) { return now.value("sweeps_owed", 0) > 0; });
+            ask("pause");
+            // The frame that was shown meanwhile may have paid the last of them.
+            const nlohmann::json now = ask("status");
+            if (now.value("sweeps_owed", 0) > 0) {
+                return now["step"];
+            }
+            ask("resume");
+        }
+        ADD_FAILURE() << "no step was spread over frames";
+        return 0;
+    }
+    static void kill(const support::ChildProcess& session, const std::string& program) {
+        ::kill(support::findProgram(session.family(), program).value(), SIGKILL);
+    }
+    /// Returns whether sweeps are owed after step `number` of the journal.
+    [[nodiscard]] bool owesAfter(std::uint64_t number) const {
+        const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
+        sand::Replica replica(whole.scene);
+        for (const journal::JournalFrame& frame : whole.frames) {
+            for (const sand::Step& step : frame.steps) {
+                replica.apply(step);
+                if (step.number == number) {
+                    return replica.owed().any();
+                }
+            }
+        }
+        return false;
+    }
+    void expectOneSand(support::ChildProcess& session) const {
+        session.signal(SIGINT);
+        EXPECT_EQ(session.wait(kLong), 0) << session.output();
+        EXPECT_EQ(summary()["divergences"], 0);
+        EXPECT_EQ(summary()["server_divergences"], 0);
+        EXPECT_EQ(summary()["steps_left_out"], 0);
+        EXPECT_EQ(summary()["state_hash"], replayedHash());
+    }
+};
+
+// The new processes continue in the middle of the step, from the journal.
+TEST_F(Spread, ARankAndTheMasterThatAreKilledInAStepLoseNothing) {
+    const auto session = begin();
+    std::vector<std::uint64_t> killed;
+    for (const char* program : {"sandwall-render-node", "sandwall-master"}) {
+        SCOPED_TRACE(program);
+        killed.push_back(pauseInAStep());
+        const std::size_t recovered = session->events("recovered").size();
+        kill(*session, program);
+        ASSERT_TRUE(session->waitUntil([&] { return session->events("recovered").size() > recovered; }))
+            << session->output();
+        EXPECT_EQ(session->events("recovered").back()["recovery"]["step"], killed.back());
+        awaitStatus([&](const nlohmann::json& now) { return now.value("step", std::uint64_t{0}) > killed.back() + 3; });
+    }
+    expectOneSand(*session);
+    for (const std::uint64_t step : killed) {
+        EXPECT_TRUE(owesAfter(step)) << step;
+    }
+}
+
+// The master pays the rest of the step.
+TEST_F(Spread, TheMasterTakesOverFromAServerThatIsKilledInAStep) {
+    const auto session = begin();
+    const std::uint64_t killed = pauseInAStep();
+    kill(*session, "sandwall-haptic-server");
+    ask("resume");
+    EXPECT_FALSE(session->waitForEvent("without_hand", {{"reason", "lost"}}).is_null()) << session->output();
+    awaitStatus([&](const nlohmann::json& now) { return now.value("step", std::uint64_t{0}) > killed + 30; });
+    expectOneSand(*session);
+    EXPECT_TRUE(owesAfter(killed));
+}
+
+// The healed rank continues in the middle of the step, too.
+TEST_F(Spread, ARankIsHealedInAStep) {
+    const Ended ended =
+        runToEnd({"--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis", "--out", out(),
+                  "--no-pictures", "--pace", "fast", "--steps", "400", "--inject", "diverge:rank=1,frame=60,bit=12"});
+    EXPECT_EQ(ended.status, 0) << ended.output;
+    EXPECT_EQ(summary()["divergences"], 1);
+    EXPECT_EQ(summary()["healed"], 1);
+    EXPECT_EQ(summary()["server_divergences"], 0);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
+    const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
+    const std::uint64_t healed = summary()["compared"]["first_difference"];
+    for (const journal::JournalFrame& frame : whole.frames) {
+        if (frame.frame == healed) {
+            EXPECT_TRUE(owesAfter(frame.steps.back().number));
+        }
+    }
+}
+
+}  // namespace
