@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 
 #include <gtest/gtest.h>
 
