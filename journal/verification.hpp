@@ -44,6 +44,7 @@ public:
     [[nodiscard]] const Counts& counts() const { return counts_; }
     /// Returns the sand after the last step.
     [[nodiscard]] sand::Replica& replica() { return replica_; }
+    [[nodiscard]] const sand::Replica& replica() const { return replica_; }
 
 private:
     struct Visitor;

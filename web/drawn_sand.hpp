@@ -12,6 +12,7 @@ namespace web {
 struct DrawnSand {
     bool meshed = false;
     std::vector<std::int32_t> heights;  // of a grid, row by row from the south-west [unit]
+    std::vector<std::uint8_t> holes;    // of a grid: 1 for a cell without ground; empty if all cells have ground
     std::vector<float> places;          // of a TIN's vertices: x, y, z [cell]
     std::vector<std::int32_t> corners;  // of a TIN's triangles
 

@@ -29,6 +29,7 @@ public:
 
     [[nodiscard]] const scene::Scene& scene() const override { return scene_; }
     [[nodiscard]] sand::Replica& replica() override { return replica_; }
+    [[nodiscard]] double humidity() const override { return material_.humidity; }
     [[nodiscard]] const std::string& shortcoming() const override { return shortcoming_; }
 
     /// Takes a reading of the pointer at `readNs` [ns, any monotonic clock]. `sight` goes from the eye through the

@@ -56,7 +56,8 @@ export interface SandMessage {
     rows: number;
     cell: number;              // scene unit
     stepsPerSecond: number;
-    look: Float32Array;        // RGB of sand and background, direction to the sun
+    look: Float32Array;        // RGB of sand and background, direction to the sun, 1 if the field has boards, height in the middle [cell]
+    holes?: Uint8Array;        // of a grid: 1 for a cell without ground; undefined if all cells have ground
 }
 
 export interface SessionMessage extends SandMessage {
@@ -103,7 +104,8 @@ export interface NoteMessage {
 export interface FrameMessage {
     kind: "frame";
     step: number;
-    tool: Float32Array;        // x, y, z, radius [cell], engaged
+    tool: Float32Array;        // x, y, z, radius [cell], engaged, kind, half width [cell], heading, mirrored
+    humidity: number;          // of the sand, 0 to 1
     heights?: Int32Array;      // of a grid [unit]
     places?: Float32Array;     // of a TIN [cell]
     corners?: Uint32Array;
@@ -124,5 +126,5 @@ export interface ProblemMessage {
     text: string;
 }
 
-export type FromWorker =
-    | SessionMessage | FrameMessage | ProgressMessage | ProblemMessage | DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage;
+export type FromHand = DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage;
+export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage | FromHand;

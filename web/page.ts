@@ -18,10 +18,20 @@ let pendingStep = Number(query.get("step") ?? NaN);
 const worker = new Worker("worker.js", { type: "module" });
 const tell = (message: ToWorker, buffers: Transferable[] = []) => worker.postMessage(message, buffers);
 
+/** Returns the six numbers of the address's `view`, if it has them. */
+function eyeOfAddress(): number[] | undefined {
+    const numbers = (query.get("view") ?? "").split(",").map(Number);
+    return numbers.length === 6 && numbers.every(Number.isFinite) ? numbers : undefined;
+}
+
 let view: View | undefined;
 let noPicture = "";
 try {
     view = new View(canvas, () => tell({ shown: true }));
+    const eye = eyeOfAddress();
+    if (eye) {
+        view.eye = eye;
+    }
 } catch {
     noPicture = "This browser has no WebGL 2, so there is no picture. The sand is computed and compared all the same.";
 }
@@ -177,7 +187,8 @@ element("heights").onclick = () => {
     }
 };
 element("link").onclick = async () => {
-    const link = `${location.origin}${location.pathname}?journal=${encodeURIComponent(session!.address)}&step=${frame?.step ?? 0}`;
+    const eye = view ? `&view=${view.eye.map((n) => n.toFixed(4)).join(",")}` : "";
+    const link = `${location.origin}${location.pathname}?journal=${encodeURIComponent(session!.address)}&step=${frame?.step ?? 0}${eye}`;
     history.replaceState(null, "", link);
     try {
         await navigator.clipboard.writeText(link);

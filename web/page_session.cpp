@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "base/input_error.hpp"
@@ -29,6 +30,7 @@ PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::
     : name_(std::move(name)) {
     journal::JournalReader reader = openedJournal(name_, std::move(parts), release, memory);
     scene_ = sceneWithMaterial(reader);
+    humidity_.emplace(0, scene_.material.humidity);
     read(reader);
     verification_.emplace(name_, sand::Replica(scene_));
 }
@@ -59,6 +61,8 @@ void PageSession::note(journal::JournalRecord& record) {
     const journal::JournalRecord& kept = records_.back();
     if (const auto* const frame = std::get_if<journal::JournalFrame>(&kept)) {
         noteSteps(*frame);
+    } else if (const auto* const material = std::get_if<scene::Material>(&kept)) {
+        humidity_.insert_or_assign(lastStep_ + 1, material->humidity);
     } else if (std::holds_alternative<journal::JournalResumed>(kept)) {
         ++hashes_;
         marks_.push_back({lastStep_, Mark::Kind::resumed});
@@ -85,6 +89,8 @@ void PageSession::noteSteps(const journal::JournalFrame& frame) {
         lastStep_ = step.number;
     }
 }
+
+double PageSession::humidity() const { return std::prev(humidity_.upper_bound(replica().stepNumber()))->second; }
 
 bool PageSession::advance() {
     if (passed()) {

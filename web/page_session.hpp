@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,6 +40,9 @@ public:
     /// Returns the number of hashes that the journal has for its steps.
     [[nodiscard]] std::uint64_t hashes() const { return hashes_; }
 
+    /// Returns the humidity of the sand as the session's operators had set it at the present step, 0 to 1.
+    [[nodiscard]] double humidity() const override;
+
     /// Takes the next record of the first pass. Returns false behind the last one.
     [[nodiscard]] bool advance();
     [[nodiscard]] std::uint64_t matches() const;
@@ -46,6 +50,7 @@ public:
 
     /// Returns the sand of the present step. Only after the first pass may it be put back by decodeState().
     [[nodiscard]] sand::Replica& replica() override { return verification_->replica(); }
+    [[nodiscard]] const sand::Replica& replica() const { return verification_->replica(); }
     /// Applies the next step after the first pass, and compares the hashes that its frame has. Returns false behind the
     /// last step.
     [[nodiscard]] bool stepOn();
@@ -71,6 +76,7 @@ private:
     };
     std::vector<FirstStep> frames_;  // frames with steps, in the order of their steps
     std::vector<Mark> marks_;
+    std::map<std::uint64_t, double> humidity_;  // by the first step that has it
     std::optional<journal::Verification> verification_;
     std::vector<std::uint64_t> differedAgain_;  // steps whose hash was right in the first pass and differed later
     std::uint64_t lastStep_ = 0, hashes_ = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
@@ -76,7 +77,8 @@ API int sw_hashes() { return static_cast<int>(page.recorded->hashes()); }
 /// Pairs of a step and a web::Mark::Kind.
 API const std::int32_t* sw_marks() { return marks.data(); }
 API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
-/// Linear-light RGB of sand and of background, and the direction to the sun.
+/// Linear-light RGB of sand and of background, the direction to the sun, 1 if the field has boards around it, and the
+/// height that lies in the middle of the room [cell].
 API const float* sw_look() {
     static std::vector<float> look;
     look.clear();
@@ -84,6 +86,8 @@ API const float* sw_look() {
     for (const auto* triple : {&from.sandColour, &from.backgroundColour, &from.sunDirection}) {
         look.insert(look.end(), triple->begin(), triple->end());
     }
+    look.push_back(session->scene().rules.rim == sand::Rim::closed ? 1.0F : 0.0F);
+    look.push_back(static_cast<float>(session->scene().referenceHeight()) / float{sand::kUnitsPerCell});
     return look.data();
 }
 
@@ -128,18 +132,31 @@ API int sw_draw() {
     });
 }
 API const std::int32_t* sw_heights() { return drawn.heights.data(); }
+/// One byte for each cell: 1 if it has no ground. nullptr if all cells of the grid have ground.
+API const std::uint8_t* sw_holes() { return drawn.holes.empty() ? nullptr : drawn.holes.data(); }
 API const float* sw_places() { return drawn.places.data(); }
 API int sw_vertices() { return static_cast<int>(drawn.places.size() / 3); }
 API const std::int32_t* sw_corners() { return drawn.corners.data(); }
 API int sw_triangles() { return static_cast<int>(drawn.corners.size() / 3); }
-/// Centre x, y, z and radius of the tool [cell], and 1 if it is engaged.
+/// Centre x, y, z and radius of the tool [cell], 1 if it is engaged, its sand::ToolKind, its half width [cell], its
+/// heading to the east and to the north, and 1 if it is mirrored.
 API const float* sw_tool() {
-    static float tool[5];
+    static float numbers[10];
     const sand::ProbePoint probe = session->replica().probe();
-    const double numbers[5]{probe.x / double{sand::kProbePerCell}, probe.y / double{sand::kProbePerCell},
-                            probe.z / double{sand::kProbePerCell},
-                            session->replica().tool().radius / double{sand::kProbePerCell},
-                            session->replica().engaged() ? 1.0 : 0.0};
-    std::copy(numbers, numbers + 5, tool);
-    return tool;
+    const sand::Tool tool = session->replica().tool();
+    const auto cells = [](std::int32_t length) { return static_cast<float>(length) / float{sand::kProbePerCell}; };
+    const float all[10]{cells(probe.x),
+                        cells(probe.y),
+                        cells(probe.z),
+                        cells(tool.radius),
+                        session->replica().engaged() ? 1.0F : 0.0F,
+                        static_cast<float>(tool.kind),
+                        cells(tool.halfWidth),
+                        static_cast<float>(tool.heading.x),
+                        static_cast<float>(tool.heading.y),
+                        tool.heading.mirrored ? 1.0F : 0.0F};
+    std::copy(std::begin(all), std::end(all), numbers);
+    return numbers;
 }
+/// Humidity of the sand, 0 to 1.
+API double sw_humidity() { return session->humidity(); }

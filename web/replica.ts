@@ -54,7 +54,7 @@ export class Replica {
         const w = this.wasm;
         return {
             name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
-            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), look: this.floats(w._sw_look(), 9),
+            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), look: this.floats(w._sw_look(), 11),
         };
     }
     session() {
@@ -89,7 +89,13 @@ export class Replica {
             corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
         };
     }
-    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 5); }
+    /** Returns a byte for each cell of the sand that was drawn last, or undefined if all have ground. */
+    holes(columns: number, rows: number): Uint8Array | undefined {
+        const at = this.wasm._sw_holes();
+        return at === 0 ? undefined : this.wasm.HEAPU8.slice(at, at + columns * rows);
+    }
+    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
+    get humidity(): number { return this.wasm._sw_humidity(); }
 
     // Digging
 

@@ -18,6 +18,8 @@ public:
 
     [[nodiscard]] virtual const scene::Scene& scene() const = 0;
     [[nodiscard]] virtual sand::Replica& replica() = 0;
+    /// Returns the humidity of the sand that is shown, 0 to 1.
+    [[nodiscard]] virtual double humidity() const = 0;
     /// Returns a line for the user about what is wrong with the file that it began with; empty if nothing is.
     [[nodiscard]] virtual const std::string& shortcoming() const = 0;
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights the vertices of a TIN. They have no open sky and no mottling.
+// Lights the vertices of a TIN. web/tin_light.ts computes their open sky and mottling.
 in vec3 position;
 in vec3 normal;
+in vec2 shade;
 
 void main() {
-    lightVertex(position, normal, 1.0, 0.5);
+    lightVertex(position, normal, shade.x, shade.y);
 }

@@ -29,7 +29,7 @@ function show(): boolean {
     shownStep = replica!.step;
     const sand = replica!.sand(session!.columns, session!.rows);
     const buffers = [sand.heights, sand.places, sand.corners].filter((array) => array !== undefined).map((array) => array!.buffer);
-    tell({ kind: "frame", step: shownStep, tool: replica!.tool(), ...sand }, buffers as Transferable[]);
+    tell({ kind: "frame", step: shownStep, tool: replica!.tool(), humidity: replica!.humidity, ...sand }, buffers as Transferable[]);
     return true;
 }
 
@@ -82,7 +82,7 @@ async function open({ name, address, parts }: OpenMessage): Promise<void> {
     it.open(name, parts);
     const opened = it.session();
     begin(new JournalSource(it, opened, { tell, show }), opened);
-    tell({ kind: "session", address, tin: it.isTin(), ...opened });
+    tell({ kind: "session", address, tin: it.isTin(), holes: it.holes(opened.columns, opened.rows), ...opened });
 }
 
 async function dig(message: DigMessage): Promise<void> {
@@ -95,7 +95,7 @@ async function dig(message: DigMessage): Promise<void> {
     it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
     const begun = it.ground();
     begin(new HandSource(it, begun.stepsPerSecond, { tell, show }), begun);
-    tell({ kind: "dig", tin: it.isTin(), ...begun });
+    tell({ kind: "dig", tin: it.isTin(), holes: it.holes(begun.columns, begun.rows), ...begun });
 }
 
 /** Begins anew. If that is refused, the session before goes on. */

@@ -127,6 +127,32 @@ TEST_F(OpenedSession, MarksStrokesAndEdits) {
     EXPECT_EQ(marks, expected);
 }
 
+TEST_F(OpenedSession, KnowsTheHumidityOfEachStep) {
+    scene::Scene wet = scene_;
+    wet.material.humidity = 0.25;
+    journal_ = test::JournalInMemory(wet);
+    scene::Material wetter = wet.material;
+    wetter.humidity = 0.5;
+    for (std::uint64_t number = 1; number <= 4; ++number) {
+        if (number == 3) {
+            journal_.add(wetter);
+        }
+        sand::Step step = samples::randomStep(number, scene_.rules, random_);
+        journal_.add(journal::JournalFrame{number, sand_.stateHash(), {step}});
+        sand_.apply(step);
+    }
+    web::PageSession session = open();
+    const base::Bytes start = session.replica().encodeState();
+    std::vector<double> humidity{session.humidity()};
+    while (session.advance()) {
+        humidity.push_back(session.humidity());
+    }
+    EXPECT_EQ(humidity,
+              (std::vector<double>{0.25, 0.25, 0.25, 0.25, 0.5, 0.5}));  // the material is a record of its own
+    session.replica().decodeState(start);
+    EXPECT_EQ(session.humidity(), 0.25);
+}
+
 TEST_F(OpenedSession, HasWhatIsIntactBeforeDamage) {
     write();
     base::Bytes& part = journal_.parts()[0];

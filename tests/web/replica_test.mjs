@@ -77,9 +77,21 @@ function replay(file, count, steps, hashes, hash) {
 
 const sessions = fs.readFileSync(list, "utf8").trim().split("\n").map((line) => line.split(" "));
 assert.ok(sessions.length > 5);
+const holes = {};  // cells without ground, by session
+const tools = {};
 for (const [file, count, steps, hashes, hash] of sessions) {
     replay(file, Number(count), Number(steps), Number(hashes), hash);
+    replica._sw_draw();
+    const mask = replica._sw_holes(), cells = replica._sw_columns() * replica._sw_rows();
+    holes[file] = mask === 0 ? 0 : replica.HEAPU8.slice(mask, mask + cells).reduce((sum, one) => sum + one, 0);
+    tools[file] = [...replica.HEAPF32.slice(replica._sw_tool() >> 2, (replica._sw_tool() >> 2) + 10)];
 }
+// What pages draw beside the sand: cells without ground, and the tool.
+assert.equal(holes["every_tool.journal"], 11 * 4);
+assert.equal(holes["dunes.journal"], 0);
+const [, , , radius, engaged, kind, halfWidth, east, north, mirrored] = tools["tool_footprint.journal"];
+assert.deepEqual([radius, engaged, kind, halfWidth.toFixed(1), mirrored], [14, 1, 5, "5.6", 1]);
+assert.equal((Math.atan2(north, east) * 180 / Math.PI).toFixed(1), "25.0");
 
 // Bad files leave the session before open.
 const [file, count, steps] = sessions.at(-1);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes sessions for the test of the page's replica: the sample scenes, rock with walls, and every tool and edit.
-// usage: session_files FOLDER. Prints a line for each: FILE PARTS STEPS HASHES HASH.
+// usage: session_files FOLDER         writes the sessions of the test
+//        session_files FOLDER times   writes longer sessions, for scripts/figures/web_times.mjs
+//        session_files FOLDER hour    writes a session of one hour, for the same script
+// Prints a line for each: FILE PARTS STEPS HASHES HASH.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -178,19 +181,69 @@ void everyTool(const std::filesystem::path& folder) {
     session.end(folder / "every_tool.journal");
 }
 
+/// A short session for each kind of tool, turned and mirrored, whose tool stands in the sand at the end. The last one
+/// has wet sand.
+void everyShape(const std::filesystem::path& folder) {
+    for (int kind = 0; kind <= sand::kToolKinds; ++kind) {
+        const bool wet = kind == sand::kToolKinds;
+        scene::Scene scene = samples::flatScene(160, 120, 14);
+        sand::grid::makeDunes({.bed = 4, .height = 8, .length = 50, .seed = 3}, scene.terrain);
+        sand::Tool& tool = scene.rules.tuning.tool;
+        tool.kind = wet ? sand::ToolKind::sphere : static_cast<sand::ToolKind>(kind);
+        tool.halfWidth =
+            sand::isRound(tool.kind) ? 0 : static_cast<std::int32_t>(tool.radius * sand::usualWidth(tool.kind));
+        tool.heading = sand::headingOf(25, tool.kind == sand::ToolKind::footprint).value();
+        scene.material.humidity = wet ? 0.6 : 0;
+        Written session(scene);
+        for (int frame = 0; frame < 20; ++frame) {
+            session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
+        }
+        session.end(folder / (wet ? "wet.journal"
+                                  : fmt::format("tool_{}.journal",
+                                                sand::valuesOf(tool.kind).at(static_cast<std::size_t>(kind)).name)));
+    }
+}
+
+/// A session of `steps` steps without edits. `radius` replaces the scene's, if it is not 0 [cell].
+void longSession(const std::string& name, const std::string& file, double radius, int steps, int stepsPerFrame,
+                 const std::filesystem::path& folder) {
+    scene::Scene scene = scene::loadScene("scenes/" + name + ".toml");
+    if (radius > 0) {
+        scene.rules.tuning.tool.radius = static_cast<std::int32_t>(radius * sand::kProbePerCell);
+    }
+    Written session(scene, false);
+    for (int frame = 0; frame < steps / stepsPerFrame; ++frame) {
+        session.frame(stepsPerFrame, [&](std::uint64_t number) { return loops(session, number); });
+    }
+    session.end(folder / (file + ".journal"));
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
-    if (count != 2) {
-        fmt::print(stderr, "usage: session_files FOLDER\n");
+    const std::string what = count == 3 ? arguments[2] : "";
+    if (count < 2 || count > 3 || (count == 3 && what != "times" && what != "hour")) {
+        fmt::print(stderr, "usage: session_files FOLDER [times|hour]\n");
         return 2;
     }
     const std::filesystem::path folder = arguments[1];
+    if (what == "times") {
+        longSession("writing", "small_tool", 2.56, 1800, 4, folder);
+        longSession("writing", "large_tool", 12, 1800, 4, folder);
+        longSession("dunes", "dunes", 0, 600, 4, folder);
+        longSession("gis_tin", "gis_tin", 0, 600, 4, folder);
+        return 0;
+    }
+    if (what == "hour") {
+        longSession("writing", "hour", 2.56, 216000, 8, folder);
+        return 0;
+    }
     for (const char* const name : {"writing", "dunes", "gis_tin", "footprints"}) {
         sampleScene(name, folder);
     }
     everyEdit("edits_of_a_grid", scene::loadScene("scenes/stroke.toml"), folder);
     everyEdit("edits_of_a_tin", scene::loadScene("scenes/gis_tin.toml"), folder);
     everyTool(folder);
+    everyShape(folder);
     return 0;
 }

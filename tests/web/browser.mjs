@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A browser with the page, and the page's server, for scripts.
+import { spawn } from "node:child_process";
+import { createRequire } from "node:module";
+import { fileURLToPath } from "node:url";
+
+export const root = fileURLToPath(new URL("../../", import.meta.url));
+const require = createRequire(new URL("../../web/package.json", import.meta.url));
+const puppeteer = require("puppeteer-core").default ?? require("puppeteer-core");
+
+/** Starts `chromium` or `firefox`. Firefox needs a display for its WebGL, such as that of xvfb-run. */
+export function launch(name, { webgl = true } = {}) {
+    if (name === "firefox") {
+        return puppeteer.launch({
+            browser: "firefox", executablePath: "/usr/bin/firefox-esr", headless: !process.env.DISPLAY,
+            extraPrefsFirefox: webgl ? { "webgl.force-enabled": true } : { "webgl.disabled": true },
+        });
+    }
+    const drawing = webgl ? ["--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader"] : ["--disable-gpu", "--disable-3d-apis"];
+    return puppeteer.launch({ executablePath: "/usr/bin/chromium", headless: true, protocolTimeout: 600_000, args: ["--no-sandbox", ...drawing] });
+}
+
+/** Serves the page with a session, or without one. Returns its address and a function that ends the server. */
+export async function serve(session) {
+    const server = spawn("python3", [`${root}scripts/sandwall`, "web", ...(session ? [session] : [])], { stdio: ["ignore", "pipe", "inherit"] });
+    const address = await new Promise((resolve, reject) => {
+        server.stdout.once("data", (line) => resolve(String(line).trim()));
+        server.once("exit", () => reject(new Error("sandwall web has ended")));
+    });
+    return { address, end: () => server.kill() };
+}
+
+/** Collects what a page complains about: errors, and requests to other servers. */
+export function complaintsOf(page, address) {
+    const complaints = [], origin = new URL(address).origin;
+    // A part of a journal that does not exist is how the page finds the last one.
+    page.on("console", (message) => { if (message.type() === "error" && !/\.journal\.\d+$/.test(message.location().url ?? "")) { complaints.push(message.text()); } });
+    page.on("pageerror", (error) => complaints.push(String(error)));
+    page.on("request", (request) => { if (!request.url().startsWith(origin) && !/^(data|blob):/.test(request.url())) { complaints.push(`a request to ${request.url()}`); } });
+    return complaints;
+}
+
+/** Waits until the first pass has ended and its last step is shown, or there is a problem. Returns the page's dataset. */
+export async function passed(page, patience = 240_000) {
+    await page.waitForFunction("document.body.dataset.problem || (document.body.dataset.passed === 'yes' && document.body.dataset.shown === document.body.dataset.steps)",
+                               { timeout: patience });
+    await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+    return page.evaluate(() => ({ ...document.body.dataset }));
+}
