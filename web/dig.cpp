@@ -41,7 +41,7 @@ base::Bytes onlyPart(const char* name) {
 
 }  // namespace
 
-/// Begins on the scene of a journal, of which only the header counts. It was added as a part.
+/// Begins on the scene of a journal, which was added as a part. Only its header counts.
 API int sw_dig_scene(const char* name, std::uint32_t high, std::uint32_t low) {
     return digs.guarded([=] {
         std::vector<base::Bytes> parts;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page does while it digs.
+// The part of the page that digs.
 import { DigPanel } from "./dig_panel";
 import { DigPointer } from "./dig_pointer";
 import type { DigBegunMessage, DugMessage, FromHand, SandMessage, ToWorker } from "./messages";

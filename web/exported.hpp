@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the functions for web/worker.ts share: the sand that is shown, and the sentence about the last failure.
+// State that the functions for web/worker.ts share: the sand that is shown, and the sentence about the last failure.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the steps of the sand come from: a journal (journal_source.ts) or a hand (hand_source.ts).
+// A source of the steps of the sand: a journal (journal_source.ts) or a hand (hand_source.ts).
 import type { FromWorker, ToWorker } from "./messages";
 
 /** What the worker does for a source. */
