@@ -87,7 +87,7 @@ void DugSession::takePointer() {
     for (const haptic_bridge::PointerReport& report : reports_) {
         hand_.take(std::span(&report, 1), depth_, replica_);
     }
-    if (reports_.empty() && touches_ > 0) {
+    if (reports_.empty()) {  // a tool that hovers may have another size now
         haptic_bridge::PointerReport still;
         still.pressed = pressed_ ? 1 : 0;
         still.touch = touches_;

@@ -145,6 +145,22 @@ TEST_F(Dug, DigsAsDeepAsItIsTold) {
     EXPECT_THROW(session_->setDepth(0), base::InputError);
 }
 
+TEST_F(Dug, LiftsAToolThatHoversToTheHeightForItsNewSize) {
+    point(20, 30, false);
+    advance(2);
+    const auto above = [this] {
+        const sand::ProbePoint probe = session_->replica().probe();
+        return (probe.z -
+                session_->replica().surface().height(probe.x, probe.y) * sand::kProbePerCell / sand::kUnitsPerCell) /
+               session_->replica().tool().radius;
+    };
+    EXPECT_NEAR(above(), haptic_bridge::PointerHand::kHover, 0.01);
+    session_->setTool({.radius = 10});
+    advance(3);
+    EXPECT_EQ(session_->replica().tool().radius, 10 * sand::kProbePerCell);
+    EXPECT_NEAR(above(), haptic_bridge::PointerHand::kHover, 0.01);
+}
+
 TEST_F(Dug, SaysWhenASettleComesNext) {
     stroke(8);
     EXPECT_FALSE(session_->settlesNext());
