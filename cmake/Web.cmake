@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The page's replica for WebAssembly: base, sand, the values of a scene and the journal. scripts/web.sh configures it with
+# The page's replica for WebAssembly: base, sand, the values of a scene, the journal and the hand. scripts/web.sh configures it with
 # emscripten's toolchain. Nothing else of the project is built then.
 set(SANDWALL_NODE_MODULES ${PROJECT_SOURCE_DIR}/web/node_modules CACHE PATH "What npm ci has installed")
 
@@ -44,4 +44,5 @@ add_subdirectory(base)
 add_subdirectory(sand)
 add_subdirectory(scene)
 add_subdirectory(journal)
+add_subdirectory(haptic_bridge)
 add_subdirectory(web)

@@ -29,12 +29,20 @@ build_replica() {
     cmake --build build/web --parallel "$(nproc)" --target replica
 }
 
+# Encodes the sample scenes for the page. Only the native program reads scene files.
+build_scenes() {
+    [[ -f build/release/CMakeCache.txt ]] || cmake --preset release >/dev/null
+    cmake --build build/release --parallel "$(nproc)" --target page_scenes
+    build/release/bin/page_scenes "$1" scenes/*.toml
+}
+
 build_page() {
     build_replica
     page=build/web/page
     mkdir -p "$page"
     (cd web && node build.mjs "../$page")
     cp build/web/bin/replica.mjs build/web/bin/replica.wasm "$page"
+    build_scenes "$page"
     # The bundles and replica.wasm contain these works.
     for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
         /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do

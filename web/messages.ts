@@ -9,15 +9,46 @@ export interface OpenMessage {
     parts: ArrayBuffer[];
 }
 
+/** Sand to dig in: a scene that was encoded natively, or a file with an ESRI ASCII grid. */
+export interface DigMessage {
+    name: string;
+    scene?: ArrayBuffer;
+    file?: Blob;
+}
+
+export const kEdits = { settle: 1, reset: 2, undo: 3 };  // sand::Edit::Kind
+export type EditName = keyof typeof kEdits;
+
+/** A part that is missing does not change. */
+export interface ToolChange {
+    kind?: number;             // sand::ToolKind
+    radius?: number;           // scene unit
+    width?: number;            // over the length
+    heading?: number;          // degrees
+    leftFoot?: boolean;
+}
+
+/** For each reading of the pointer: time in ms, eye, direction of the sight in cells, and 1 if it is pressed. */
+export const kReadingNumbers = 8;
+
+export type ToHand =
+    | { hand: Float64Array }
+    | { edit: EditName }
+    | { tool: ToolChange }
+    | { material: string; value: number }   // an operator's word, such as "talus"
+    | { depth: number }                     // of the tool, in radii
+    | { save: true };
+
 export type ToWorker =
+    | ToHand
     | { open: OpenMessage }
+    | { dig: DigMessage }
     | { seek: number }
     | { play: number }     // steps per second; negative: backwards; 0: stop
     | { shown: true };     // the page has drawn a frame, and may get the next
 
-export interface SessionMessage {
-    kind: "session";
-    address: string;           // of the OpenMessage
+/** What is drawn of any sand. */
+export interface SandMessage {
     name: string;
     shortcoming: string;
     tin: boolean;
@@ -25,11 +56,49 @@ export interface SessionMessage {
     rows: number;
     cell: number;              // scene unit
     stepsPerSecond: number;
+    look: Float32Array;        // RGB of sand and background, direction to the sun, 1 if the field has boards, height in the middle [cell]
+    holes?: Uint8Array;        // of a grid: 1 for a cell without ground; undefined if all cells have ground
+}
+
+export interface SessionMessage extends SandMessage {
+    kind: "session";
+    address: string;           // of the OpenMessage
     lastStep: number;
     hashes: number;
     marks: Int32Array;         // pairs of a step and its kind: 0 is a stroke, 1 to 5 are edits, 6 is a resume
-    look: Float32Array;        // RGB of sand and background, direction to the sun, 1 if the field has boards, height in the middle [cell]
-    holes?: Uint8Array;        // of a grid: 1 for a cell without ground; undefined if all cells have ground
+}
+
+/** The page can dig now. */
+export interface DigBegunMessage extends SandMessage {
+    kind: "dig";
+}
+
+/** The material that was asked for, in the units of a scene file. */
+export interface MaterialMessage {
+    kind: "material";
+    numbers: Record<string, number>;  // by an operator's word
+    tool: Required<ToolChange>;
+}
+
+/** How far the hand's steps are. `busy` says what keeps the worker from answering; empty if nothing does. */
+export interface DugMessage {
+    kind: "dug";
+    step: number;
+    hash: string;
+    undo: boolean;             // whether the last stroke can be undone
+    busy: string;
+}
+
+export interface JournalMessage {
+    kind: "journal";
+    name: string;
+    bytes: ArrayBuffer;
+}
+
+/** A sentence about something that was refused. The session goes on. */
+export interface NoteMessage {
+    kind: "note";
+    text: string;
 }
 
 export interface FrameMessage {
@@ -57,4 +126,5 @@ export interface ProblemMessage {
     text: string;
 }
 
-export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage;
+export type FromHand = DigBegunMessage | MaterialMessage | DugMessage | JournalMessage | NoteMessage;
+export type FromWorker = SessionMessage | FrameMessage | ProgressMessage | ProblemMessage | FromHand;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: opens sessions, shows what the worker computes, and says whether its hashes are those of the session.
-import { type FrameMessage, type FromWorker, kUnitsPerCell, type ProgressMessage, type SessionMessage, type ToWorker } from "./messages";
+import { DigPage } from "./dig_page";
+import {
+    type FrameMessage, type FromWorker, kUnitsPerCell, type ProgressMessage, type SandMessage, type SessionMessage, type ToWorker,
+} from "./messages";
 import { View } from "./view";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -8,7 +11,8 @@ const canvas = element<HTMLCanvasElement>("sand"), say = element("say"), numbers
 const playButton = element<HTMLButtonElement>("play"), cutButton = element<HTMLButtonElement>("cut");
 const query = new URLSearchParams(location.search);
 
-let session: SessionMessage | undefined;
+let sand: SandMessage | undefined;      // of the session, or of the hand
+let session: SessionMessage | undefined;  // none while the page digs
 let begun = false;                       // whether the session's first frame has come
 let frame: FrameMessage | undefined;     // the last one
 let progress: ProgressMessage | undefined;
@@ -67,19 +71,26 @@ function showMarks(of: SessionMessage): void {
     }
 }
 
-function begin(opened: SessionMessage): void {
-    session = opened;
+function beginSand(opened: SandMessage): void {
+    setPlaying(false);
+    sand = opened;
+    session = undefined;
     begun = false;
     progress = undefined;
-    setPlaying(false);
     document.title = `${opened.name} – Sandwall`;
     delete document.body.dataset.problem;
-    Object.assign(document.body.dataset, { steps: opened.lastStep, hashes: opened.hashes, passed: "no" });
-    slider.max = String(opened.lastStep);
-    slider.disabled = playButton.disabled = true;
     cutButton.disabled = element<HTMLButtonElement>("heights").disabled = opened.tin;
     cutButton.setAttribute("aria-pressed", "false");
     element<HTMLButtonElement>("picture").disabled = view === undefined;
+}
+
+function begin(opened: SessionMessage): void {
+    beginSand(opened);
+    session = opened;
+    dig.end();
+    Object.assign(document.body.dataset, { steps: opened.lastStep, hashes: opened.hashes, passed: "no" });
+    slider.max = String(opened.lastStep);
+    slider.disabled = playButton.disabled = true;
     element<HTMLButtonElement>("link").disabled = opened.address === "";
     showMarks(opened);
 }
@@ -116,7 +127,7 @@ function show(next: FrameMessage): void {
     } else if (begun) {
         view.show(next);
     } else {
-        view.begin(session!, next);
+        view.begin(sand!, next);
     }
     begun = true;
     describe();
@@ -133,9 +144,12 @@ worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         case "frame": return show(data);
         case "progress": return take(data);
         case "problem": return problem(data.text);
+        default: return dig.take(data);
     }
 };
 worker.onerror = (event) => problem(`The page's worker has failed: ${event.message}`);
+
+const dig = new DigPage({ tell, beginSand, save, problem }, canvas, view, noPicture);
 
 // Moments
 
@@ -171,10 +185,10 @@ function save(blob: Blob, name: string): void {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
-element("picture").onclick = () => canvas.toBlob((blob) => { if (blob) { save(blob, `${session!.name}_${frame!.step}.png`); } });
+element("picture").onclick = () => canvas.toBlob((blob) => { if (blob) { save(blob, `${sand!.name}_${frame!.step}.png`); } });
 
 /** Returns the heights as an ESRI ASCII grid in scene units, with its rows from the north. */
-function asciiGrid(of: SessionMessage, heights: Int32Array): string {
+function asciiGrid(of: SandMessage, heights: Int32Array): string {
     const lines = [`ncols ${of.columns}`, `nrows ${of.rows}`, "xllcorner 0", "yllcorner 0", `cellsize ${of.cell}`];
     for (let y = of.rows - 1; y >= 0; --y) {
         lines.push(Array.from(heights.subarray(y * of.columns, (y + 1) * of.columns), (height) => height * of.cell / kUnitsPerCell).join(" "));
@@ -182,8 +196,8 @@ function asciiGrid(of: SessionMessage, heights: Int32Array): string {
     return lines.join("\n") + "\n";
 }
 element("heights").onclick = () => {
-    if (session && frame?.heights) {
-        save(new Blob([asciiGrid(session, frame.heights)], { type: "text/plain" }), `${session.name}_${frame.step}.asc`);
+    if (sand && frame?.heights) {
+        save(new Blob([asciiGrid(sand, frame.heights)], { type: "text/plain" }), `${sand.name}_${frame.step}.asc`);
     }
 };
 element("link").onclick = async () => {
@@ -205,6 +219,11 @@ const partOf = (name: string) => Number(/\.journal\.(\d+)$/.exec(name)?.[1] ?? 1
 
 async function openFiles(files: File[]): Promise<void> {
     if (files.length === 0) {
+        return;
+    }
+    const grid = files.find((file) => !/\.journal(\.\d+)?$/.test(file.name) && /\.(asc|txt|grd)$/i.test(file.name));
+    if (grid) {
+        tell({ dig: { name: grid.name, file: grid } });
         return;
     }
     files.sort((a, b) => partOf(a.name) - partOf(b.name));
@@ -243,8 +262,10 @@ async function fetchJournal(path: string): Promise<void> {
     }
     tell({ open: { name: url.pathname.slice(url.pathname.lastIndexOf("/") + 1), address: url.pathname, parts } }, parts);
 }
-const named = query.get("journal");
-if (named !== null) {
+const named = query.get("journal"), scene = query.get("dig");
+if (scene !== null) {
+    void dig.open(scene);
+} else if (named !== null) {
     say.textContent = `Fetching ${named}`;
     fetchJournal(named).catch((error: Error) => problem(`${named}: cannot be fetched (${error.message})`));
 } else if (noPicture !== "") {

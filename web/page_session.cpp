@@ -5,17 +5,13 @@
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "journal/journal.hpp"
-#include "journal/memory_parts.hpp"
+#include "web/opening.hpp"
 
 namespace web {
 namespace {
-
-constexpr double kMebibyte = 1 << 20;
 
 /// Returns the mark of an edit.
 Mark::Kind markOf(sand::Edit::Kind edit) {
@@ -27,49 +23,13 @@ Mark::Kind markOf(sand::Edit::Kind edit) {
     return static_cast<Mark::Kind>(edit);
 }
 
-/// Throws base::InputError if the sand cannot fit, before any height is made.
-void requireMemory(const journal::JournalReader& reader, std::int64_t memory) {
-    const sand::FieldSize size = sand::FieldSize::of(journal::rulesOf(reader));
-    if (size.leastBytes() > memory) {
-        throw base::InputError(
-            fmt::format("{}: {} need at least {:.0f} MiB, and a page has {:.0f} MiB; use sandwall-replay on a computer",
-                        reader.place().journal, size.text(), static_cast<double>(size.leastBytes()) / kMebibyte,
-                        static_cast<double>(memory) / kMebibyte));
-    }
-}
-
-/// Throws base::InputError, with what a page can do, if another release wrote the journal.
-void requireOurs(const std::string& name, const std::vector<base::Bytes>& parts, std::string_view release) {
-    try {
-        base::ByteReader reader(parts.at(0));
-        std::uint64_t chain = 0;
-        (void)journal::decodeHeader(reader, release, chain);
-    } catch (const journal::ForeignFile& error) {
-        const std::string why = error.what();
-        const std::size_t advice = why.rfind(": ");
-        throw base::InputError(
-            advice == std::string::npos
-                ? fmt::format("{}: {}", name, why)
-                : fmt::format("{}: {}. A page cannot run another release; open it with the page of that release", name,
-                              why.substr(0, advice)));
-    } catch (const base::FormatError&) {
-        return;  // the reader says more about it
-    }
-}
-
 }  // namespace
 
 PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::string_view release,
                          std::int64_t memory)
     : name_(std::move(name)) {
-    if (parts.empty()) {
-        throw base::InputError(name_ + ": has no part");
-    }
-    requireOurs(name_, parts, release);
-    journal::JournalReader reader(std::make_unique<journal::MemoryParts>(name_, std::move(parts)), release);
-    requireMemory(reader, memory);
-    scene_ = journal::sceneOf(reader);
-    scene_.material = reader.header().material.value_or(scene::Material());
+    journal::JournalReader reader = openedJournal(name_, std::move(parts), release, memory);
+    scene_ = sceneWithMaterial(reader);
     humidity_.emplace(0, scene_.material.humidity);
     read(reader);
     verification_.emplace(name_, sand::Replica(scene_));

@@ -10,7 +10,7 @@
 
 #include "journal/reader.hpp"
 #include "journal/verification.hpp"
-#include "scene/model/scene.hpp"
+#include "web/step_source.hpp"
 
 namespace web {
 
@@ -26,22 +26,22 @@ struct Mark {
 /// The first pass computes every step once, as sandwall-replay --verify does, and compares every hash. After it the
 /// sand can be put back to a kept state, and be computed forwards from there. Hashes that are passed again are compared
 /// again, and counted once.
-class PageSession {
+class PageSession : public StepSource {
 public:
     /// Reads all records of a journal. If it is damaged or cut off, the session has what is intact before. Throws
     /// base::InputError if nothing can be read, or if its sand needs more than `memory` bytes.
     PageSession(std::string name, std::vector<base::Bytes> parts, std::string_view release, std::int64_t memory);
 
-    [[nodiscard]] const scene::Scene& scene() const { return scene_; }
+    [[nodiscard]] const scene::Scene& scene() const override { return scene_; }
     [[nodiscard]] std::uint64_t lastStep() const { return lastStep_; }
     /// Returns a line about missing parts of the session; empty if it is whole.
-    [[nodiscard]] const std::string& shortcoming() const { return shortcoming_; }
+    [[nodiscard]] const std::string& shortcoming() const override { return shortcoming_; }
     [[nodiscard]] const std::vector<Mark>& marks() const { return marks_; }
     /// Returns the number of hashes that the journal has for its steps.
     [[nodiscard]] std::uint64_t hashes() const { return hashes_; }
 
     /// Returns the humidity of the sand as the session's operators had set it at the present step, 0 to 1.
-    [[nodiscard]] double humidity() const;
+    [[nodiscard]] double humidity() const override;
 
     /// Takes the next record of the first pass. Returns false behind the last one.
     [[nodiscard]] bool advance();
@@ -49,7 +49,7 @@ public:
     [[nodiscard]] std::uint64_t mismatches() const;
 
     /// Returns the sand of the present step. Only after the first pass may it be put back by decodeState().
-    [[nodiscard]] sand::Replica& replica() { return verification_->replica(); }
+    [[nodiscard]] sand::Replica& replica() override { return verification_->replica(); }
     [[nodiscard]] const sand::Replica& replica() const { return verification_->replica(); }
     /// Applies the next step after the first pass, and compares the hashes that its frame has. Returns false behind the
     /// last step.

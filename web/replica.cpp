@@ -6,77 +6,47 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <exception>
+#include <iterator>
 #include <memory>
-#include <new>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "web/drawn_sand.hpp"
-#include "web/page_session.hpp"
+#include "web/exported.hpp"
 
-#if defined(__EMSCRIPTEN__)
-#include <emscripten.h>
-#define API extern "C" EMSCRIPTEN_KEEPALIVE
-#else  // only compiled
-#define API extern "C"
-#endif
+#define API SANDWALL_PAGE_API
 
 namespace {
 
-// A 32-bit heap that may grow to 2 GiB, less what journal and states take.
-constexpr std::int64_t kMemory = std::int64_t{1536} << 20;
-constexpr const char* kNoMemory = "This page has no more memory";
-
-std::vector<base::Bytes> parts;
-std::unique_ptr<web::PageSession> session;
 std::vector<std::int32_t> marks;
 web::DrawnSand drawn;
-base::Bytes state;
-std::string problem, text;
+std::string text;
+
+auto& page = web::exported;
+const std::unique_ptr<web::StepSource>& session = web::exported.session;
 
 template <class Work>
 int guarded(Work&& work) {
-    try {
-        return work();
-    } catch (const std::bad_alloc&) {
-        problem = kNoMemory;
-    } catch (const std::length_error&) {  // more than a container of 32 bits can have
-        problem = kNoMemory;
-    } catch (const std::exception& error) {
-        problem = error.what();
-    }
-    return -1;
-}
-
-/// Gives `bytes` a new size. Returns their address, or nullptr if there is no memory.
-std::uint8_t* resized(base::Bytes& bytes, std::uint32_t size) {
-    const auto resize = [&bytes, size] {
-        bytes.reserve(std::max(size, 1U));  // an empty part has an address, too
-        bytes.resize(size);
-        return 0;
-    };
-    return guarded(resize) == 0 ? bytes.data() : nullptr;
+    return page.guarded(std::forward<Work>(work));
 }
 
 }  // namespace
 
-API const char* sw_problem() { return problem.c_str(); }
+API const char* sw_problem() { return page.problem.c_str(); }
 
 /// Drops the parts of a journal that was not opened.
-API void sw_begin() { parts.clear(); }
+API void sw_begin() { page.parts.clear(); }
 /// Adds the next part of a journal. Returns where its bytes go. If there is no memory, drops all parts.
 API std::uint8_t* sw_add_part(std::uint32_t size) {
     base::Bytes part;
-    std::uint8_t* const at = resized(part, size);
+    std::uint8_t* const at = page.resized(part, size);
     const auto add = [&part] {
-        parts.push_back(std::move(part));
+        page.parts.push_back(std::move(part));
         return 0;
     };
     if (at == nullptr || guarded(add) != 0) {
-        parts = {};
+        page.parts = {};
         return nullptr;
     }
     return at;
@@ -84,14 +54,14 @@ API std::uint8_t* sw_add_part(std::uint32_t size) {
 /// Opens the journal of all parts. If it fails, the session before stays open.
 API int sw_open(const char* name) {
     return guarded([name] {
-        auto opened =
-            std::make_unique<web::PageSession>(name, std::exchange(parts, {}), SANDWALL_RELEASE_NAME, kMemory);
-        session = std::move(opened);
+        auto opened = std::make_unique<web::PageSession>(name, std::exchange(page.parts, {}), SANDWALL_RELEASE_NAME,
+                                                         web::Exported::kMemory);
         marks.clear();
-        for (const web::Mark& mark : session->marks()) {
+        for (const web::Mark& mark : opened->marks()) {
             marks.push_back(static_cast<std::int32_t>(mark.step));
             marks.push_back(static_cast<std::int32_t>(mark.kind));
         }
+        page.show(std::move(opened));
         return 0;
     });
 }
@@ -102,8 +72,8 @@ API int sw_columns() { return session->scene().rules.columns; }
 API int sw_rows() { return session->scene().rules.rows; }
 API double sw_cell_size() { return session->replica().cellSize(); }  // [scene unit]
 API int sw_steps_per_second() { return session->scene().rules.stepsPerSecond; }
-API int sw_last_step() { return static_cast<int>(session->lastStep()); }
-API int sw_hashes() { return static_cast<int>(session->hashes()); }
+API int sw_last_step() { return static_cast<int>(page.recorded->lastStep()); }
+API int sw_hashes() { return static_cast<int>(page.recorded->hashes()); }
 /// Pairs of a step and a web::Mark::Kind.
 API const std::int32_t* sw_marks() { return marks.data(); }
 API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
@@ -123,15 +93,15 @@ API const float* sw_look() {
 
 /// Takes the next record of the first pass. Returns 1, or 0 behind the last one.
 API int sw_advance() {
-    return guarded([] { return session->advance() ? 1 : 0; });
+    return guarded([] { return page.recorded->advance() ? 1 : 0; });
 }
 /// Applies the next step after the first pass. Returns 1, or 0 behind the last one.
 API int sw_step_on() {
-    return guarded([] { return session->stepOn() ? 1 : 0; });
+    return guarded([] { return page.recorded->stepOn() ? 1 : 0; });
 }
 API int sw_step() { return static_cast<int>(session->replica().stepNumber()); }
-API int sw_matches() { return static_cast<int>(session->matches()); }
-API int sw_mismatches() { return static_cast<int>(session->mismatches()); }
+API int sw_matches() { return static_cast<int>(page.recorded->matches()); }
+API int sw_mismatches() { return static_cast<int>(page.recorded->mismatches()); }
 API const char* sw_hash() {
     text = fmt::format("{:016x}", session->replica().stateHash());
     return text.c_str();
@@ -140,16 +110,16 @@ API const char* sw_hash() {
 /// Encodes the whole state. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_state() {
     return guarded([] {
-        state = session->replica().encodeState();
-        return static_cast<int>(state.size());
+        page.bytes = session->replica().encodeState();
+        return static_cast<int>(page.bytes.size());
     });
 }
-API const std::uint8_t* sw_state_bytes() { return state.data(); }
+API const std::uint8_t* sw_state_bytes() { return page.bytes.data(); }
 /// Makes room for a state, which sw_restore() then puts back.
-API std::uint8_t* sw_room_for_state(std::uint32_t size) { return resized(state, size); }
+API std::uint8_t* sw_room_for_state(std::uint32_t size) { return page.resized(page.bytes, size); }
 API int sw_restore() {
     return guarded([] {
-        session->replica().decodeState(state);
+        session->replica().decodeState(page.bytes);
         return 0;
     });
 }

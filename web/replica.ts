@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The replica's C functions (replica.cpp) as a class.
 
+import { kReadingNumbers, type ToolChange } from "./messages";
+
 type Module = Record<string, any>;
 
 const kMostBytes = 2 ** 32 - 1;  // that a size of 32 bits can name; more than a page has
@@ -27,28 +29,39 @@ export class Replica {
     private floats(at: number, count: number): Float32Array { return this.wasm.HEAPF32.slice(at >> 2, (at >> 2) + count); }
     private ints(at: number, count: number): Int32Array { return this.wasm.HEAP32.slice(at >> 2, (at >> 2) + count); }
 
-    /** Opens a journal. If it cannot be read, throws the sentence for the user, and the session before stays open. */
-    open(name: string, parts: ArrayBuffer[]): void {
+    private withText(text: string, call: (address: number) => number): number {
+        const bytes = new TextEncoder().encode(text + "\0");
+        const at = this.wasm._malloc(bytes.length);
+        this.wasm.HEAPU8.set(bytes, at);
+        const result = call(at);
+        this.wasm._free(at);
+        return this.require(result);
+    }
+    private add(parts: ArrayBuffer[]): void {
         this.wasm._sw_begin();
         for (const part of parts) {
             const at = this.room(this.wasm._sw_add_part(Math.min(part.byteLength, kMostBytes)));
             this.wasm.HEAPU8.set(new Uint8Array(part), at);
         }
-        const bytes = new TextEncoder().encode(name + "\0");
-        const at = this.wasm._malloc(bytes.length);
-        this.wasm.HEAPU8.set(bytes, at);
-        const result = this.wasm._sw_open(at);
-        this.wasm._free(at);
-        this.require(result);
     }
-    session() {
+
+    /** Opens a journal. If it cannot be read, throws the sentence for the user, and the session before stays open. */
+    open(name: string, parts: ArrayBuffer[]): void {
+        this.add(parts);
+        this.withText(name, (at) => this.wasm._sw_open(at));
+    }
+    ground() {
         const w = this.wasm;
         return {
             name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
-            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(),
-            marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()), look: this.floats(w._sw_look(), 11),
+            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), look: this.floats(w._sw_look(), 11),
         };
     }
+    session() {
+        const w = this.wasm;
+        return { ...this.ground(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(), marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()) };
+    }
+    isTin(): boolean { return this.require(this.wasm._sw_draw()) === 1; }
     advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
     stepOn(): boolean { return this.require(this.wasm._sw_step_on()) === 1; }
     get step(): number { return this.wasm._sw_step(); }
@@ -83,4 +96,41 @@ export class Replica {
     }
     tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
     get humidity(): number { return this.wasm._sw_humidity(); }
+
+    // Digging
+
+    /** Begins to dig in an encoded scene or in the text of a grid. Refuses as open() does. */
+    dig(name: string, bytes: ArrayBuffer, isScene: boolean): void {
+        const [high, low] = crypto.getRandomValues(new Uint32Array(2));
+        this.add([bytes]);
+        this.withText(name, (at) => isScene ? this.wasm._sw_dig_scene(at, high, low) : this.wasm._sw_dig_grid(at, high, low));
+    }
+    /** Checks the header of a grid, of which all has `size` bytes. */
+    checkGrid(name: string, first: ArrayBuffer, size: number): void {
+        this.add([first]);
+        this.withText(name, (at) => this.wasm._sw_check_grid(at, size));
+    }
+    point(readings: Float64Array): void {
+        for (let i = 0; i + kReadingNumbers <= readings.length; i += kReadingNumbers) {
+            this.require(this.wasm._sw_point(...readings.subarray(i, i + kReadingNumbers)));
+        }
+    }
+    digOn(): boolean { return this.require(this.wasm._sw_dig_on()) === 1; }
+    get settlesNext(): boolean { return this.wasm._sw_settles_next() === 1; }
+    ask(edit: number): void { this.require(this.wasm._sw_ask(edit)); }
+    setDepth(depth: number): void { this.require(this.wasm._sw_set_depth(depth)); }
+    setMaterial(word: string, value: number): void { this.withText(word, (at) => this.wasm._sw_set_material(at, value)); }
+    setTool({ kind = -1, radius = NaN, width = NaN, heading = NaN, leftFoot }: ToolChange): void {
+        this.require(this.wasm._sw_set_tool(kind, radius, width, heading, leftFoot === undefined ? -1 : Number(leftFoot)));
+    }
+    /** Returns the twelve numbers of sw_material(). */
+    material(): number[] {
+        const at = this.wasm._sw_material() >> 3;
+        return [...this.wasm.HEAPF64.slice(at, at + 12)];
+    }
+    journal(): ArrayBuffer {
+        const length = this.require(this.wasm._sw_journal());
+        const at = this.wasm._sw_state_bytes();
+        return this.wasm.HEAPU8.slice(at, at + length).buffer;
+    }
 }

@@ -2,7 +2,7 @@
 // Draws the sand with the wall's own shaders.
 import {
     BufferAttribute, BufferGeometry, Color, DataTexture, GLSL3, IntType, LinearFilter, LinearMipmapNearestFilter, LinearSRGBColorSpace,
-    Matrix3, Matrix4, Mesh, NearestFilter, PerspectiveCamera, RawShaderMaterial, RedIntegerFormat, RepeatWrapping, RGBAFormat, Scene, Vector2,
+    Matrix3, Matrix4, Mesh, MOUSE, NearestFilter, PerspectiveCamera, RawShaderMaterial, RedIntegerFormat, RepeatWrapping, RGBAFormat, Scene, TOUCH, Vector2,
     Vector3, Vector4, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -20,7 +20,7 @@ import { type GrainLevel, makeGrain } from "./grain";
 import { GridField } from "./grid_field";
 import heightsVertex from "./heights.vert.glsl";
 import lightVertex from "./light_vertex.glsl";
-import { type FrameMessage, kUnitsPerCell, type SessionMessage } from "./messages";
+import { type FrameMessage, kUnitsPerCell, type SandMessage } from "./messages";
 import { SandBox } from "./sand_box";
 import tinVertex from "./tin.vert.glsl";
 import { cutsOfTin, lightTin } from "./tin_light";
@@ -65,7 +65,7 @@ function grainTexture(grain: GrainLevel[]): DataTexture {
 }
 
 /** Returns the lowest height of a frame [scene unit]. */
-function lowestOf(session: SessionMessage, frame: FrameMessage): number {
+function lowestOf(session: SandMessage, frame: FrameMessage): number {
     if (frame.heights) {
         return frame.heights.reduce((least, height) => Math.min(least, height)) * session.cell / kUnitsPerCell;
     }
@@ -81,7 +81,7 @@ export class View {
     private uniforms: Uniforms = {};
     private meshes: { mesh: Mesh; vertex: string; fragment: string; uniforms: Uniforms }[] = [];
     private programs = "";      // which the meshes have
-    private session?: SessionMessage;
+    private session?: SandMessage;
     private sand?: Mesh;
     private sides?: Mesh;
     private tool?: Mesh;
@@ -142,6 +142,23 @@ export class View {
         this.controls.update();
     }
 
+    /** The left button and one finger dig; the other buttons and two fingers move the view. */
+    set digging(on: boolean) {
+        const { mouseButtons, touches } = this.controls;
+        Object.assign(mouseButtons, on ? { LEFT: null, MIDDLE: MOUSE.PAN, RIGHT: MOUSE.ROTATE } : { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.PAN });
+        touches.ONE = on ? null : TOUCH.ROTATE;
+        touches.TWO = on ? TOUCH.DOLLY_ROTATE : TOUCH.DOLLY_PAN;
+    }
+    /** The eye, and the direction of its sight through a place in the window [CSS pixel], both in cells of the field. */
+    sightThrough(clientX: number, clientY: number): number[] {
+        const { left, top, width, height } = this.canvas.getBoundingClientRect();
+        this.camera.updateMatrixWorld();
+        const roomToScene = new Matrix4().copy(this.sceneToRoom).invert();
+        const eye = new Vector3().copy(this.camera.position).applyMatrix4(roomToScene);
+        const point = new Vector3(2 * (clientX - left) / width - 1, 1 - 2 * (clientY - top) / height, 0.5).unproject(this.camera).applyMatrix4(roomToScene);
+        return [...eye.toArray(), ...point.sub(eye).toArray()].map((length) => length / this.session!.cell);
+    }
+
     private resize(): void {
         this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
         const width = Math.max(this.canvas.clientWidth, 1), height = Math.max(this.canvas.clientHeight, 1);
@@ -175,7 +192,7 @@ export class View {
     }
 
     /** Begins to draw a session, whose first frame is `frame`. */
-    begin(session: SessionMessage, frame: FrameMessage): void {
+    begin(session: SandMessage, frame: FrameMessage): void {
         for (const { mesh } of this.meshes) {
             mesh.geometry.dispose();
             (mesh.material as RawShaderMaterial).dispose();
@@ -217,7 +234,7 @@ export class View {
         }
         this.show(frame);
     }
-    private beginGrid({ columns, rows, cell }: SessionMessage, heights: Int32Array, grain: DataTexture, holes?: Uint8Array): void {
+    private beginGrid({ columns, rows, cell }: SandMessage, heights: Int32Array, grain: DataTexture, holes?: Uint8Array): void {
         const start = heightTexture(columns, rows), mask = heightTexture(holes ? columns : 1, holes ? rows : 1);
         start.image.data.set(heights);
         mask.image.data.set(holes ?? [0]);

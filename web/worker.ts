@@ -1,125 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the sand. It works in slices, so that it answers the page between them.
-import { Keyframes } from "./keyframes";
-import type { FromWorker, OpenMessage, ToWorker } from "./messages";
+import { HandSource } from "./hand_source";
+import { JournalSource } from "./journal_source";
+import type { DigMessage, FromWorker, OpenMessage, ToWorker } from "./messages";
 import { Replica } from "./replica";
-
-const kSliceMs = 12;
-const kProgressMs = 100;
+import type { StepSource } from "./step_source";
 
 // A module with one vector instruction. A browser without vectors refuses it.
 const kVectors = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
 
 let replica: Replica | undefined;
-let keyframes = new Keyframes();
-let session: { columns: number; rows: number; lastStep: number } | undefined;
-let passed = false;           // whether the first pass has ended
-let wanted = 0;               // step to show, after the first pass
-let rate = 0;                 // steps per second
-let playedAt = 0, playedFrom = 0;
+let source: StepSource | undefined;
+let session: { columns: number; rows: number } | undefined;
 let mayShow = true, shownStep = -1;
-let lastProgress = -kProgressMs, toldStep = -1;
 let working = false;
+let failed = false;           // a step has failed, so that no other follows
 
 function tell(message: FromWorker, buffers: Transferable[] = []): void {
     (self as unknown as Worker).postMessage(message, buffers);
 }
 
-function tellProgress(now: number): void {
-    const it = replica!;
-    lastProgress = now;
-    toldStep = passed ? it.step : -1;
-    tell({ kind: "progress", step: it.step, hash: it.hash, matches: it.matches, mismatches: it.mismatches, passed });
-}
-
 /** Sends the present sand, if the page has drawn the frame before. */
-function show(): void {
+function show(): boolean {
     if (!mayShow || replica!.step === shownStep) {
-        return;
+        return false;
     }
     mayShow = false;
     shownStep = replica!.step;
     const sand = replica!.sand(session!.columns, session!.rows);
     const buffers = [sand.heights, sand.places, sand.corners].filter((array) => array !== undefined).map((array) => array!.buffer);
     tell({ kind: "frame", step: shownStep, tool: replica!.tool(), humidity: replica!.humidity, ...sand }, buffers as Transferable[]);
-}
-
-/** Works on the first pass for a slice. */
-function pass(): void {
-    const it = replica!, began = performance.now();
-    let before = began;
-    while (performance.now() - began < kSliceMs) {
-        if (!it.advance()) {
-            passed = true;
-            wanted = it.step;
-            break;
-        }
-        const now = performance.now();
-        keyframes.passed(it.step, now - before, () => it.state());
-        before = performance.now();
-    }
-}
-
-/** Goes towards the wanted step for a slice. Returns whether it is reached. */
-function goOn(): boolean {
-    const it = replica!;
-    const keyframe = keyframes.before(wanted);
-    if (it.step > wanted || it.step < keyframe.step) {
-        it.restore(keyframe.state);
-    }
-    const began = performance.now();
-    while (it.step < wanted && performance.now() - began < kSliceMs) {
-        if (!it.stepOn()) {
-            break;
-        }
-    }
-    return it.step >= wanted;
-}
-
-function nextWanted(now: number): void {
-    const last = session!.lastStep;
-    wanted = Math.max(0, Math.min(last, Math.round(playedFrom + (now - playedAt) * rate / 1000)));
-    if (wanted === (rate > 0 ? last : 0)) {
-        rate = 0;
-    }
+    return true;
 }
 
 function work(): void {
     working = false;
-    if (!replica || !session) {
+    if (failed) {
         return;
     }
     try {
-        let rests = false;
-        if (!passed) {
-            pass();
-            show();
-        } else {
-            rests = goOn();
-            if (rests) {
-                show();
-            }
-            if (rests && rate !== 0) {
-                nextWanted(performance.now());
-                rests = false;
-            }
-        }
-        const now = performance.now();
-        if (toldStep !== replica.step && ((passed && rests) || now - lastProgress >= kProgressMs)) {
-            tellProgress(now);
-        }
-        if (!rests) {
-            again(rate !== 0 ? 4 : 0);
+        const pause = source?.work();
+        if (pause !== undefined) {
+            again(pause);
         }
     } catch (error) {
         fail(error as Error);
     }
 }
 
-/** Ends the session. */
+/** Ends the work on the session. What was dug can still be saved. */
 function fail(error: Error): void {
-    rate = 0;
-    session = undefined;
+    failed = true;
     tell({ kind: "problem", text: error.message });
 }
 
@@ -130,48 +61,62 @@ function again(ms = 0): void {
     }
 }
 
-async function open({ name, address, parts }: OpenMessage): Promise<void> {
-    try {
-        if (!WebAssembly.validate(kVectors)) {
-            throw new Error("This browser has no vectors in WebAssembly; use a browser of 2023 or later");
-        }
-        replica ??= await Replica.load();
-        replica.open(name, parts);
-    } catch (error) {
-        tell({ kind: "problem", text: (error as Error).message });
-        return;
+async function loaded(): Promise<Replica> {
+    if (!WebAssembly.validate(kVectors)) {
+        throw new Error("This browser has no vectors in WebAssembly; use a browser of 2023 or later");
     }
-    const opened = replica.session();
+    return replica ??= await Replica.load();
+}
+
+/** Begins with the sand that the replica has now. */
+function begin(next: StepSource, opened: { columns: number; rows: number }): void {
+    source = next;
     session = opened;
-    keyframes = new Keyframes();
-    keyframes.passed(0, 0, () => replica!.state());
-    passed = false;
-    rate = 0;
-    shownStep = toldStep = -1;
+    shownStep = -1;
     mayShow = true;
-    const sand = replica.sand(opened.columns, opened.rows);
-    tell({ kind: "session", address, tin: sand.heights === undefined, holes: replica.holes(opened.columns, opened.rows), ...opened });
-    show();
-    again();
+    failed = false;
+}
+
+async function open({ name, address, parts }: OpenMessage): Promise<void> {
+    const it = await loaded();
+    it.open(name, parts);
+    const opened = it.session();
+    begin(new JournalSource(it, opened, { tell, show }), opened);
+    tell({ kind: "session", address, tin: it.isTin(), holes: it.holes(opened.columns, opened.rows), ...opened });
+}
+
+async function dig(message: DigMessage): Promise<void> {
+    const it = await loaded();
+    const text = message.file;
+    if (text) {
+        // The header says whether the sand fits, before all of a large file is read.
+        it.checkGrid(message.name, await text.slice(0, 1 << 16).arrayBuffer(), text.size);
+    }
+    it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
+    const begun = it.ground();
+    begin(new HandSource(it, begun.stepsPerSecond, { tell, show }), begun);
+    tell({ kind: "dig", tin: it.isTin(), holes: it.holes(begun.columns, begun.rows), ...begun });
+}
+
+/** Begins anew. If that is refused, the session before goes on. */
+function start(beginning: Promise<void>): void {
+    beginning.then(() => {
+        show();
+        again();
+    }, (error: Error) => tell({ kind: "problem", text: error.message }));
 }
 
 self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     if ("open" in data) {
-        open(data.open).catch(fail);
-        return;
+        return start(open(data.open));
+    }
+    if ("dig" in data) {
+        return start(dig(data.dig));
     }
     if ("shown" in data) {
         mayShow = true;
-    } else if ("seek" in data) {
-        rate = 0;
-        wanted = data.seek;
-    } else if ("play" in data) {
-        rate = data.play;
-        playedAt = performance.now();
-        playedFrom = replica?.step ?? 0;
-        if (rate > 0 && playedFrom === session?.lastStep) {
-            playedFrom = 0;
-        }
+    } else {
+        source?.take(data);
     }
     again();
 };

@@ -9,7 +9,7 @@
 #include "bench/report/curves.hpp"
 #include "bench/report/timing.hpp"
 #include "sand/grid/dunes.hpp"
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 
 namespace bench {
 namespace {

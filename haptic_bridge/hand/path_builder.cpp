@@ -56,8 +56,9 @@ void PathBuilder::letGoIfFarAhead() {
 }
 
 std::optional<std::int64_t> PathBuilder::engagedSinceNs() const {
-    const auto first = std::ranges::find_if(
-        waiting_, [this](const HandSample& sample) { return sample.engaged && (!engaged_ || sample.probe != last_); });
+    const auto first = std::find_if(waiting_.begin(), waiting_.end(), [this](const HandSample& sample) {
+        return sample.engaged && (!engaged_ || sample.probe != last_);
+    });
     return first == waiting_.end() ? std::nullopt : std::optional(first->readNs);
 }
 

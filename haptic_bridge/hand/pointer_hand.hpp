@@ -20,6 +20,9 @@ namespace haptic_bridge {
 class PointerHand : public Hand {
 public:
     static constexpr double kHover = 1.3;  // [tool radius] from the surface to the centre of a tool that hovers
+    // Depth of the pressed tool: how far its underside is below the sand's surface [tool radius].
+    static constexpr double kUsualDepth = 0.5;
+    static constexpr double kShallowest = 0.1, kDeepest = 2;  // at 0 the tool would dig nothing
 
     /// Begins on `sand`.
     PointerHand(int stepsPerSecond, const sand::Replica& sand);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "haptic_bridge/hand/pointer_hand.hpp"
 #include "scene/model/material.hpp"
 #include "scene/model/scene.hpp"
 
@@ -20,8 +21,9 @@ struct ToolLimits {
 };
 
 // Depth of the pointer's tool: how far its underside is below the sand's surface [tool radius].
-inline constexpr double kUsualDepth = 0.5, kDepthPerNotch = 0.1;
-inline constexpr double kShallowest = 0.1, kDeepest = 2;  // at 0 the tool would dig nothing
+inline constexpr double kUsualDepth = haptic_bridge::PointerHand::kUsualDepth, kDepthPerNotch = 0.1;
+inline constexpr double kShallowest = haptic_bridge::PointerHand::kShallowest;
+inline constexpr double kDeepest = haptic_bridge::PointerHand::kDeepest;
 /// Returns the depth after `notches` of the wheel, positive towards the user, within its limits.
 [[nodiscard]] double deepened(double depth, double notches);
 

@@ -6,9 +6,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
-#include "render_node/pointer/sand_ray.hpp"
-#include "sand/model/mean_height.hpp"
-
 namespace render_node {
 namespace {
 
@@ -61,6 +58,10 @@ void fill(std::vector<Reading>& readings) {
     }
 }
 
+sand::HeightSpan inCells(const HeightRange& heights /* [scene unit] */, double cell) {
+    return {heights.lowest / cell, heights.highest / cell};
+}
+
 }  // namespace
 
 void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
@@ -102,7 +103,7 @@ void PointerReader::follow(const PointerEvent& event, PointerReport& report) {
         case Kind::press:
             pressed_ = true;
             ++touches_;
-            touched_.reset();
+            touched_.forget();
             break;
         case Kind::release:
             pressed_ = false;
@@ -147,55 +148,26 @@ PointerReport PointerReader::read(std::span<const PointerEvent> events, const sa
         readings_.erase(readings_.begin());
     }
     for (const Reading& reading : readings_) {
-        if (reading.pressed && touched_ == nullptr && !replica.surface().readsKept()) {
-            touched_ = replica.surface().clone();
-        }
-        haptic_bridge::PointerSample& sample = report.samples[report.count++] = this->sample(reading, shown);
+        haptic_bridge::PointerSample& sample = report.samples[report.count++] = touched_.sample(
+            sight(reading.place, shown), reading.pressed, replica, inCells(heights, replica.cellSize()));
         sample.readNs = reading.ns - clockAhead;
     }
     report.pressed = pressed_ ? 1 : 0;
     report.touch = touches_;
     if (!pressed_) {
-        touched_.reset();
+        touched_.forget();
     }
     return report;
 }
 
-std::optional<glm::dvec2> PointerReader::meet(const WindowPlace& place, bool pressed, const Shown& shown) const {
+haptic_bridge::Ray PointerReader::sight(const WindowPlace& place, const Shown& shown) const {
     const lockstep::ViewState& view = shown.view;
     const glm::dvec3 eye(view.head[0], view.head[1], view.head[2]);
     const Ray units = sightRay(eye, roomPoint(wall_, tile(), place), glm::make_mat4(view.sceneToRoom.data()));
-    const double cell = shown.replica.cellSize();
-    const Ray cells{units.from / cell, units.along / cell};
-    const sand::Rules& rules = shown.replica.rules();
-    const double margin = 2 * shown.replica.toolRadius() / cell;  // sand that this tile has not drawn may be higher
-    constexpr double kProbe = sand::kProbePerCell;
-    const SandBody sand{static_cast<double>(rules.columns),
-                        static_cast<double>(rules.rows),
-                        shown.heights.lowest / cell - margin,
-                        shown.heights.highest / cell + margin,
-                        0.5,
-                        [&](double x, double y) {
-                            return heightOf(shown.replica, pressed, x * kProbe, y * kProbe) / sand::kUnitsPerCell;
-                        }};
-    return meetSand(cells, sand);
-}
-
-haptic_bridge::PointerSample PointerReader::sample(const Reading& reading, const Shown& shown) const {
-    haptic_bridge::PointerSample sample;
-    sample.pressed = reading.pressed ? 1 : 0;
-    const std::optional<glm::dvec2> place = meet(reading.place, reading.pressed, shown);
-    if (!place) {
-        return sample;
-    }
-    constexpr double kProbe = sand::kProbePerCell;
-    constexpr int kSamples = 5;  // across and along the tool
-    const auto heightAt = [&](double x, double y) { return heightOf(shown.replica, reading.pressed, x, y); };
-    const double height = sand::meanHeight(heightAt, place->x * kProbe, place->y * kProbe,
-                                           shown.replica.rules().tuning.tool.radius, kSamples);
-    sample.probe = sand::probePoint(place->x, place->y, height / sand::kUnitsPerCell);
-    sample.meets = 1;
-    return sample;
+    const auto cells = [cell = shown.replica.cellSize()](glm::dvec3 point) {
+        return sand::force::Vec3{point.x / cell, point.y / cell, point.z / cell};
+    };
+    return {cells(units.from), cells(units.along)};
 }
 
 glm::dvec3 PointerReader::pointAt(const WindowPlace& place, double depth, const lockstep::ViewState& view) const {
@@ -207,27 +179,15 @@ glm::dvec3 PointerReader::pointAt(const WindowPlace& place, double depth, const 
 double PointerReader::depthAt(const WindowPlace& place, const Shown& shown) const {
     const glm::dvec3 eye(shown.view.head[0], shown.view.head[1], shown.view.head[2]);
     glm::dvec3 point = wall_.stage.centre;
-    if (const std::optional<glm::dvec2> sand = meet(place, false, shown)) {
+    const double cell = shown.replica.cellSize();
+    if (const auto sand = touched_.meet(sight(place, shown), false, shown.replica, inCells(shown.heights, cell))) {
         constexpr double kProbe = sand::kProbePerCell;
-        const double height = heightOf(shown.replica, false, sand->x * kProbe, sand->y * kProbe);
-        const glm::dvec3 cells(*sand, height / sand::kUnitsPerCell);
+        const double height = touched_.height(shown.replica, false, sand->x * kProbe, sand->y * kProbe);
+        const glm::dvec3 cells(sand->x, sand->y, height / sand::kUnitsPerCell);
         const glm::dmat4 toRoom = glm::make_mat4(shown.view.sceneToRoom.data());
-        point = glm::dvec3(toRoom * glm::dvec4(cells * shown.replica.cellSize(), 1));
+        point = glm::dvec3(toRoom * glm::dvec4(cells * cell, 1));
     }
     return glm::dot(point - eye, -tile().screen.normal());
-}
-
-double PointerReader::heightOf(const sand::Replica& replica, bool pressed, double x, double y) const {
-    const sand::Surface& now = replica.surface();
-    if (pressed && touched_ != nullptr) {
-        return touched_->height(x, y);
-    }
-    if (pressed && replica.engaged()) {
-        if (const std::optional<double> before = now.keptHeight(x, y)) {
-            return *before;
-        }
-    }
-    return now.height(x, y);
 }
 
 }  // namespace render_node

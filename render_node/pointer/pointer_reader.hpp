@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "haptic_bridge/hand/pointer.hpp"
+#include "haptic_bridge/hand/touched_sand.hpp"
 #include "lockstep/frame_message.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/pointer/window_ray.hpp"
@@ -54,17 +54,13 @@ private:
     void follow(const PointerEvent& event, haptic_bridge::PointerReport& report);
     void followView(const Shown& shown, haptic_bridge::PointerReport& report);
     [[nodiscard]] const walls::Tile& tile() const { return wall_.tiles.at(static_cast<std::size_t>(rank_ - 1)); }
-    [[nodiscard]] haptic_bridge::PointerSample sample(const Reading& reading, const Shown& shown) const;
-    /// Returns the place of the sand that a place in a window shows [cell], from the field's south-west corner.
-    [[nodiscard]] std::optional<glm::dvec2> meet(const WindowPlace& place, bool pressed, const Shown& shown) const;
+    /// Returns the sight through a place in a window [cell], from the field's south-west corner.
+    [[nodiscard]] haptic_bridge::Ray sight(const WindowPlace& place, const Shown& shown) const;
     /// Returns the point of the room [m] that a place in a window shows at `depth` [m] from the eye.
     [[nodiscard]] glm::dvec3 pointAt(const WindowPlace& place, double depth, const lockstep::ViewState& view) const;
     /// Returns the distance from the eye, across the screen, of the sand at a place in a window [m]. Beside the sand,
     /// returns that of the middle of the stage.
     [[nodiscard]] double depthAt(const WindowPlace& place, const Shown& shown) const;
-    /// Returns a height [unit] of the current sand, or of the sand from before the stroke if `pressed`.
-    [[nodiscard]] double heightOf(const sand::Replica& replica, bool pressed, double x,
-                                  double y /* [probe unit] */) const;
 
     const walls::Wall& wall_;
     int rank_;
@@ -77,7 +73,7 @@ private:
     std::optional<WindowPlace> panFrom_, panTo_;  // part of a pan that no report has
     std::optional<double> panDepth_;              // [m], of the point that is dragged; nullopt: not computed yet
     std::uint32_t touches_ = 0;
-    std::unique_ptr<sand::Surface> touched_;  // sand at the touch, if the replica itself cannot return its heights
+    haptic_bridge::TouchedSand touched_;
 };
 
 }  // namespace render_node

@@ -2,12 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <filesystem>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/text_reader.hpp"
 #include "sand/model/cell_array.hpp"
 #include "scene/model/georeference.hpp"
 
@@ -55,13 +56,12 @@ struct EsriGrid {
 /// the header marks no number as no data, so that every pixel has a height.
 using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 
-/// Reads an ESRI ASCII grid piece by piece. `check` may be empty. Cells that are not square have dx and dy in place of
-/// cellsize, as GDAL writes them. The units of a .prj file are left to readTextWithUnits(), but degrees are refused.
-/// Throws base::InputError with file and line for an invalid header, and for values that
-/// are missing, too many or not finite.
-[[nodiscard]] EsriGrid readEsriGrid(const std::filesystem::path& file, const RasterCheck& check = {});
-/// Returns whether a regular file is an ESRI ASCII grid by its first word, which must be a key of the header.
-[[nodiscard]] bool holdsEsriGrid(const std::filesystem::path& file);
+/// Reads an ESRI ASCII grid. `check` may be empty. Cells that are not square have dx and dy in place of cellsize, as
+/// GDAL writes them. `mostHeights` bounds the memory that the header alone makes it allocate [height]. Throws
+/// base::InputError with file and line for an invalid header, and for values that are missing, too many or not finite.
+[[nodiscard]] EsriGrid readEsriText(base::TextReader& text, const RasterCheck& check, std::size_t mostHeights);
+/// Reads only the header of an ESRI ASCII grid, and calls `check`.
+void checkEsriHeader(base::TextReader& text, const RasterCheck& check);
 
 /// Returns the smallest rectangle that contains every cell with data, counted from the south-west cell. Returns an
 /// empty one if no cell has data.
@@ -70,10 +70,6 @@ using RasterCheck = std::function<void(int columns, int rows, bool complete)>;
 /// Returns the grid without the rows and columns at its edges that hold no data at all. Exporters leave such edges
 /// around a rotated or resampled raster. Throws base::InputError if no cell has data.
 [[nodiscard]] EsriGrid withoutEmptyEdges(const EsriGrid& grid);
-
-/// Writes the shortest decimals from which the same numbers are read again. An existing `file` is replaced when
-/// everything is written. Throws base::InputError if the file cannot be written completely.
-void writeEsriGrid(const EsriGrid& grid, const std::filesystem::path& file);
 
 /// Returns a height with as few decimals as distinguish it from heights a `unit` away. The error is at most a hundredth
 /// of a unit.

@@ -86,7 +86,7 @@ std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::strin
     return warnings;
 }
 
-std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file) {
+std::vector<std::string> undeclaredNoData(const std::vector<std::array<double, 3>>& points, const std::string& file) {
     refuseLargest(
         points, [](const auto& point) { return point[2]; }, file, "point", "leave such lines out");
     std::vector<std::string> warnings;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "scene/import/esri_grid.hpp"
-#include "scene/import/points_file.hpp"
 
 namespace scene {
 
@@ -22,6 +22,7 @@ namespace scene {
 /// cannot be heights.
 [[nodiscard]] std::vector<std::string> undeclaredNoData(const EsriGrid& grid, const std::string& how);
 /// Returns a warning for each such number among the heights of points from `file`.
-[[nodiscard]] std::vector<std::string> undeclaredNoData(const Points& points, const std::string& file);
+[[nodiscard]] std::vector<std::string> undeclaredNoData(const std::vector<std::array<double, 3>>& points,
+                                                        const std::string& file);
 
 }  // namespace scene

@@ -7,6 +7,7 @@
 #include "base/input_error.hpp"
 #include "base/text.hpp"
 #include "host/whole_file.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/import/importer.hpp"
 #include "scene/import/no_data.hpp"
 #include "scene/import/prj_file.hpp"

@@ -9,6 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "sand/model/height_field.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/import/gsf_file.hpp"
 #include "scene/import/importer.hpp"
 #include "scene/import/no_data.hpp"

@@ -12,7 +12,8 @@ from rank_hosts import BadInput
 
 HOST = "127.0.0.1"
 TYPES = {".html": "text/html; charset=utf-8", ".js": "text/javascript", ".mjs": "text/javascript", ".css": "text/css",
-         ".wasm": "application/wasm", ".txt": "text/plain; charset=utf-8"}
+         ".wasm": "application/wasm", ".txt": "text/plain; charset=utf-8",
+         ".scene": "application/octet-stream"}
 # The policy of index.html. A worker obeys only that of its own file, so every answer has it.
 POLICY = ("default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; connect-src 'self'; style-src 'self'; "
           "img-src data:")

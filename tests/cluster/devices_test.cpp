@@ -7,7 +7,7 @@
 #include <regex>
 #include <sstream>
 
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 

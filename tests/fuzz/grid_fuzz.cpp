@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fuzzes an ESRI ASCII grid.
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 
 SANDWALL_FUZZER(grid) {

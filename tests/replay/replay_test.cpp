@@ -14,7 +14,7 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/support/scene_fixture.hpp"
 

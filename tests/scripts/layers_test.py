@@ -137,9 +137,9 @@ class Layers(unittest.TestCase):
             self.assertNotIn("haptic_loop", linked(name), name)
 
     def test_a_replica_with_its_journal_and_its_hand_links_neither_files_nor_threads_nor_sockets(self):
-        pure = {"base", "sand", "sand_force", "sand_grid", "sand_model", "sand_tin", "scene_model", "journal", "haptic_hand",
-                "PkgConfig::XXHASH", "PkgConfig::ZSTD"}
-        for name in ("journal", "haptic_hand"):
+        pure = {"base", "sand", "sand_force", "sand_grid", "sand_model", "sand_tin", "scene_model", "scene_text", "journal", "haptic_hand",
+                "fmt::fmt", "PkgConfig::XXHASH", "PkgConfig::ZSTD"}
+        for name in ("journal", "haptic_hand", "scene_text", "web"):
             self.assertIn("scene_model", linked(name))
             self.assertEqual(linked(name) - pure, set(), name)
         self.assertIn("host", linked("journal_files"))

@@ -8,12 +8,12 @@ export const root = fileURLToPath(new URL("../../", import.meta.url));
 const require = createRequire(new URL("../../web/package.json", import.meta.url));
 const puppeteer = require("puppeteer-core").default ?? require("puppeteer-core");
 
-/** Starts `chromium` or `firefox`. Firefox needs a display for its WebGL, such as that of xvfb-run. */
-export function launch(name, { webgl = true } = {}) {
+/** Starts `chromium` or `firefox`, with further preferences of Firefox. It needs a display for its WebGL, such as that of xvfb-run. */
+export function launch(name, { webgl = true, prefs = {} } = {}) {
     if (name === "firefox") {
         return puppeteer.launch({
             browser: "firefox", executablePath: "/usr/bin/firefox-esr", headless: !process.env.DISPLAY,
-            extraPrefsFirefox: webgl ? { "webgl.force-enabled": true } : { "webgl.disabled": true },
+            extraPrefsFirefox: { ...prefs, ...(webgl ? { "webgl.force-enabled": true } : { "webgl.disabled": true }) },
         });
     }
     const drawing = webgl ? ["--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader"] : ["--disable-gpu", "--disable-3d-apis"];

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "scene/import/esri_file.hpp"
 #include "scene/import/importer.hpp"
 #include "scene/import/raster_file.hpp"
 #include "tests/scene/import/classic_netcdf.hpp"

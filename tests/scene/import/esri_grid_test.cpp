@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/import/esri_grid.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
@@ -10,6 +8,7 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
+#include "scene/import/esri_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/text_forms.hpp"
 

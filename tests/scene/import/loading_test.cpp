@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/import/importer.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 

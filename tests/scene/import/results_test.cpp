@@ -12,6 +12,7 @@
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "scene/export/raster.hpp"
+#include "scene/import/esri_file.hpp"
 #include "scene/import/importer.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"

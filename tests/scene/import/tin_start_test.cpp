@@ -12,7 +12,7 @@
 
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/import/esri_grid.hpp"
+#include "scene/import/esri_file.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/run_program.hpp"
 

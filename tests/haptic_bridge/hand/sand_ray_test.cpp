@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render_node/pointer/sand_ray.hpp"
+#include "haptic_bridge/hand/sand_ray.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace render_node {
+namespace haptic_bridge {
 namespace {
 
 constexpr double kExact = 0.02;  // a hundredth of a step, from above
@@ -54,4 +54,4 @@ TEST(SandRay, IgnoresTheSidesOfTheSandFromOutside) {
 }
 
 }  // namespace
-}  // namespace render_node
+}  // namespace haptic_bridge

@@ -2,12 +2,22 @@
 #pragma once
 
 #include <functional>
-#include <glm/glm.hpp>
 #include <optional>
 
-#include "render_node/pointer/window_ray.hpp"
+#include "sand/force/vec3.hpp"
 
-namespace render_node {
+namespace haptic_bridge {
+
+/// Line of sight through a pointer.
+struct Ray {
+    sand::force::Vec3 from;
+    sand::force::Vec3 along{0, 0, -1};  // need not be a unit vector
+};
+
+/// A place of a field, seen from above.
+struct FieldPlace {
+    double x = 0, y = 0;
+};
 
 /// Sand as a ray meets it. All numbers have the same unit of length, such as cells.
 struct SandBody {
@@ -20,6 +30,6 @@ struct SandBody {
 /// Returns the first place at which the ray is at or below the sand's surface. Returns nullopt if it passes beside the
 /// sand, meets the box of sand from its side or from below, or points away. The place is exact to a hundredth of a
 /// step.
-[[nodiscard]] std::optional<glm::dvec2> meetSand(const Ray& ray, const SandBody& sand);
+[[nodiscard]] std::optional<FieldPlace> meetSand(const Ray& ray, const SandBody& sand);
 
-}  // namespace render_node
+}  // namespace haptic_bridge

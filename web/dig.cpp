@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions with which web/hand_source.ts digs. They fail as those of replica.cpp do.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "web/exported.hpp"
+#include "web/grid_scene.hpp"
+#include "web/opening.hpp"
+
+#define API SANDWALL_PAGE_API
+
+namespace {
+
+auto& digs = web::exported;
+
+std::string_view textOf(const base::Bytes& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Begins to dig. `high` and `low` are the two halves of the session's random number.
+int begin(scene::Scene scene, std::uint32_t high, std::uint32_t low) {
+    const std::uint64_t session = std::uint64_t{high} << 32 | low;
+    digs.show(std::make_unique<web::DugSession>(std::move(scene), session, SANDWALL_RELEASE_NAME));
+    return 0;
+}
+
+/// Returns the only part that was added, and drops it.
+base::Bytes onlyPart(const char* name) {
+    std::vector<base::Bytes> parts = std::exchange(digs.parts, {});
+    if (parts.size() != 1) {
+        throw base::InputError(fmt::format("{}: drop one file", name));
+    }
+    return std::move(parts.front());
+}
+
+}  // namespace
+
+/// Begins on the scene of a journal, which was added as a part. Only its header counts.
+API int sw_dig_scene(const char* name, std::uint32_t high, std::uint32_t low) {
+    return digs.guarded([=] {
+        std::vector<base::Bytes> parts;
+        parts.push_back(onlyPart(name));
+        return begin(web::sceneWithMaterial(
+                         web::openedJournal(name, std::move(parts), SANDWALL_RELEASE_NAME, web::Exported::kMemory)),
+                     high, low);
+    });
+}
+/// Begins on an ESRI ASCII grid, whose text was added as a part.
+API int sw_dig_grid(const char* name, std::uint32_t high, std::uint32_t low) {
+    return digs.guarded([=] {
+        const base::Bytes text = onlyPart(name);
+        return begin(web::sceneOfGrid(textOf(text), name, web::Exported::kMemory), high, low);
+    });
+}
+/// Checks the size of a grid. Its first bytes were added as a part; all of it has `bytes`.
+API int sw_check_grid(const char* name, double bytes) {
+    return digs.guarded([=] {
+        const base::Bytes text = onlyPart(name);
+        web::requireGridFits(textOf(text), static_cast<std::int64_t>(bytes), name, web::Exported::kMemory);
+        return 0;
+    });
+}
+
+/// Takes a reading of the pointer at `ms` [ms]: the eye, the direction of its sight [cell], and whether it is pressed.
+API int sw_point(double ms, double fromX, double fromY, double fromZ, double alongX, double alongY, double alongZ,
+                 int pressed) {
+    return digs.guarded([=] {
+        constexpr double kLatest = 1e12;  // [ms]
+        if (ms >= 0 && ms < kLatest) {
+            digs.dug->point(static_cast<std::int64_t>(ms * 1e6), {{fromX, fromY, fromZ}, {alongX, alongY, alongZ}},
+                            pressed != 0);
+        }
+        return 0;
+    });
+}
+API int sw_set_depth(double depth) {
+    return digs.guarded([=] {
+        digs.dug->setDepth(depth);
+        return 0;
+    });
+}
+/// Applies the next step. Returns 1 if the picture may have changed, or else 0.
+API int sw_dig_on() {
+    return digs.guarded([] { return digs.dug->advance() ? 1 : 0; });
+}
+/// Returns 1 if the next step is a settle that blocks this thread.
+API int sw_settles_next() { return digs.dug->settlesNext() ? 1 : 0; }
+
+/// Asks for a sand::Edit::Kind: 1 settle, 2 reset, 3 undo.
+API int sw_ask(int kind) {
+    return digs.guarded([=] {
+        if (kind < static_cast<int>(sand::Edit::settle) || kind > static_cast<int>(sand::Edit::undo)) {
+            throw base::InputError("there is no such edit");
+        }
+        digs.dug->ask(static_cast<sand::Edit::Kind>(kind));
+        return 0;
+    });
+}
+/// Sets a number of the material by the word of an operator's command.
+API int sw_set_material(const char* word, double value) {
+    return digs.guarded([=] {
+        digs.dug->setNumber(word, value);
+        return 0;
+    });
+}
+/// Changes the tool. A negative kind or foot, and a number that is NaN, leave their part as it is.
+API int sw_set_tool(int kind, double radius, double width, double heading, int leftFoot) {
+    return digs.guarded([=] {
+        const auto given = [](double number) { return std::isnan(number) ? std::nullopt : std::optional(number); };
+        scene::ToolChange change{.radius = given(radius), .width = given(width), .heading = given(heading)};
+        if (kind >= static_cast<int>(valuesOf(sand::ToolKind{}).size())) {
+            throw base::InputError("there is no such tool");
+        }
+        if (kind >= 0) {
+            change.kind = static_cast<sand::ToolKind>(kind);
+        }
+        if (leftFoot >= 0) {
+            change.leftFoot = leftFoot != 0;
+        }
+        digs.dug->setTool(change);
+        return 0;
+    });
+}
+/// Twelve numbers: talus, wet talus, humidity, cohesion, band and settling time of the material; kind, radius, width,
+/// heading and foot of the tool; and 1 if an undo is possible.
+API const double* sw_material() {
+    static double numbers[12];
+    const scene::Material& now = digs.dug->material();
+    const double values[12]{now.dryTalus,
+                            now.wetTalusNow(),
+                            now.humidity,
+                            now.cohesionLength,
+                            now.band,
+                            now.settlingSeconds,
+                            static_cast<double>(now.toolKind),
+                            now.toolRadius,
+                            sand::isRound(now.toolKind) ? 1 : now.toolWidth.value_or(sand::usualWidth(now.toolKind)),
+                            now.toolHeading,
+                            now.leftFoot ? 1.0 : 0.0,
+                            digs.dug->replica().surface().hasKept() ? 1.0 : 0.0};
+    std::copy(values, values + 12, numbers);
+    return numbers;
+}
+
+/// Encodes the journal of all steps. Returns its length [byte]; the bytes are at sw_state_bytes().
+API int sw_journal() {
+    return digs.guarded([] {
+        digs.bytes = digs.dug->journal();
+        return static_cast<int>(digs.bytes.size());
+    });
+}

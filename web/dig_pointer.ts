@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads the pointer over the sand: mouse, pen or first finger. The worker finds the place of the sand under it.
+import { kReadingNumbers } from "./messages";
+import type { View } from "./view";
+
+const kMostPlaces = 6;      // between two readings of a stroke, as in the report of a wall's pointer
+const kNear = 4;            // CSS pixels
+// Between two motions of a usual mouse. A pointer that rested began to move just before its first motion was read. The
+// time at which it came to rest would put the places far apart in time, and the hand would lift the tool.
+const kMotionMs = 8;
+
+interface Reading {
+    ms: number;
+    x: number;
+    y: number;
+    pressed: boolean;
+}
+
+export class DigPointer {
+    private before?: Reading;
+    private pressedBy?: number;  // pointerId
+
+    /** `send` gets the readings of an event, in the order of time. */
+    constructor(private readonly canvas: HTMLCanvasElement, private readonly view: View, private readonly send: (readings: Float64Array) => void,
+                private readonly digs: () => boolean) {
+        canvas.addEventListener("pointerdown", (event) => this.down(event));
+        canvas.addEventListener("pointermove", (event) => this.move(event));
+        canvas.addEventListener("pointerup", (event) => this.up(event));
+        canvas.addEventListener("pointercancel", (event) => this.up(event));
+    }
+
+    private down(event: PointerEvent): void {
+        if (!this.digs()) {
+            return;
+        }
+        if (event.isPrimary && event.button === 0) {
+            this.canvas.setPointerCapture(event.pointerId);
+            this.pressedBy = event.pointerId;
+            this.take([event], true);
+        } else if (this.pressedBy !== undefined && event.pointerType === "touch") {
+            this.pressedBy = undefined;  // two fingers move the view
+            this.take([event], false);
+        }
+    }
+    private move(event: PointerEvent): void {
+        if (!this.digs() || !event.isPrimary || (event.buttons !== 0 && this.pressedBy === undefined)) {
+            return;  // a drag of the view
+        }
+        const all = event.getCoalescedEvents?.() ?? [];
+        this.take(all.length > 0 ? all : [event], this.pressedBy === event.pointerId);
+    }
+    private up(event: PointerEvent): void {
+        if (event.pointerId === this.pressedBy && (event.type === "pointercancel" || (event.buttons & 1) === 0)) {
+            this.pressedBy = undefined;
+            this.take([event], false);
+        }
+    }
+
+    private take(events: PointerEvent[], pressed: boolean): void {
+        const numbers: number[] = [];
+        for (const event of events) {
+            const reading = { ms: event.timeStamp, x: event.clientX, y: event.clientY, pressed };
+            this.between(reading, numbers);
+            this.add(reading, numbers);
+            this.before = reading;
+        }
+        this.send(new Float64Array(numbers));
+    }
+
+    /** Adds places between two far readings of a stroke, so that the tool follows dunes also under a fast pointer. */
+    private between(now: Reading, numbers: number[]): void {
+        const before = this.before;
+        if (!before?.pressed || !now.pressed) {
+            return;
+        }
+        const from = Math.max(before.ms, now.ms - kMotionMs);
+        const parts = Math.min(kMostPlaces, Math.ceil(Math.hypot(now.x - before.x, now.y - before.y) / kNear));
+        for (let i = 1; i < parts; ++i) {
+            const at = (a: number, b: number) => a + (b - a) * i / parts;
+            this.add({ ms: at(from, now.ms), x: at(before.x, now.x), y: at(before.y, now.y), pressed: true }, numbers);
+        }
+    }
+
+    private add({ ms, x, y, pressed }: Reading, numbers: number[]): void {
+        numbers.push(ms, ...this.view.sightThrough(x, y), pressed ? 1 : 0);
+        console.assert(numbers.length % kReadingNumbers === 0);
+    }
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "haptic_bridge/hand/pointer_hand.hpp"
+#include "haptic_bridge/hand/sweep_budget.hpp"
+#include "haptic_bridge/hand/touched_sand.hpp"
+#include "journal/memory_writer.hpp"
+#include "web/step_source.hpp"
+
+namespace web {
+
+/// Sand in which the hand of a page digs. The steps are those of a session whose hand is a pointer, at the fast pace: a
+/// step runs at most 64 sweeps, and the steps after it pay the rest. Each step is written to a journal before it is
+/// applied. Used by one thread.
+class DugSession : public StepSource {
+public:
+    static constexpr std::size_t kMostEdits = 16;  // that wait for their steps
+
+    /// Begins on the sand of `scene`. `session` is a random number for the journal, and `release` is this program's.
+    DugSession(scene::Scene scene, std::uint64_t session, std::string_view release);
+
+    [[nodiscard]] const scene::Scene& scene() const override { return scene_; }
+    [[nodiscard]] sand::Replica& replica() override { return replica_; }
+    [[nodiscard]] double humidity() const override { return material_.humidity; }
+    [[nodiscard]] const std::string& shortcoming() const override { return shortcoming_; }
+
+    /// Takes a reading of the pointer at `readNs` [ns, any monotonic clock]. `sight` goes from the eye through the
+    /// pointer [cell].
+    void point(std::int64_t readNs, const haptic_bridge::Ray& sight, bool pressed);
+    /// Sets how far the underside of the pressed tool is below the sand's surface. Throws base::InputError beyond
+    /// PointerHand's limits.
+    void setDepth(double depth /* [tool radius] */);
+    /// Asks for an undo, a reset or a settle. Throws base::InputError if there is nothing to undo, or if too many edits
+    /// wait.
+    void ask(sand::Edit edit) { ask(std::move(edit), std::nullopt); }
+    /// Changes the material, or the tool, as an operator's command does. Throws base::InputError.
+    void setNumber(std::string_view word, double value) { ask(scene::withNumber(material_, word, value, grid_)); }
+    void setTool(const scene::ToolChange& change) { ask(scene::withTool(material_, change, grid_)); }
+    /// Returns the material with all changes that were asked for.
+    [[nodiscard]] const scene::Material& material() const { return material_; }
+
+    /// Applies the next step. Returns whether the picture may have changed.
+    bool advance();
+    /// Returns whether the next step brings all sand to rest at once, which takes long.
+    [[nodiscard]] bool settlesNext() const;
+    /// Returns the journal of all steps so far, with an orderly end.
+    [[nodiscard]] base::Bytes journal();
+
+private:
+    struct Asked {
+        sand::Edit edit;
+        std::optional<scene::Material> material;  // after the edit; nullopt if unchanged
+    };
+    void ask(const scene::Material& material);
+    void ask(sand::Edit edit, std::optional<scene::Material> material);
+    void takePointer();
+    [[nodiscard]] sand::Step nextStep();
+    void write(const sand::Step& step);
+
+    scene::Scene scene_;
+    scene::MaterialGrid grid_;
+    scene::Material material_;
+    std::string shortcoming_;
+    sand::Replica replica_;
+    haptic_bridge::PointerHand hand_;
+    haptic_bridge::TouchedSand touched_;
+    haptic_bridge::SweepBudget budget_;
+    journal::MemoryWriter journal_;
+    std::vector<haptic_bridge::PointerReport> reports_;  // since the step before
+    bool pressed_ = false;
+    std::uint32_t touches_ = 0;
+    double depth_;
+    std::deque<Asked> asked_;
+    std::uint64_t lastEdit_ = 0;
+};
+
+}  // namespace web

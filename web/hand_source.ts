@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page's hand as the source of steps. A step is due whenever the time of one has passed, as in a session. Its sweeps
+// are spread, so the worker answers between two steps.
+import { kEdits, type MaterialMessage, type ToWorker } from "./messages";
+import type { Replica } from "./replica";
+import { kSliceMs, type Stage, type StepSource } from "./step_source";
+
+const kMostDue = 4;        // steps. A slow browser leaves out the rest, and so does a slow wall
+const kProgressMs = 100;
+const kLongMs = 100;       // a step that takes longer is felt
+
+/** Returns what an operator's `status` has, from the numbers of sw_material(). */
+function materialOf(numbers: number[]): MaterialMessage {
+    const [talus, wetTalus, humidity, cohesion, band, settling, kind, radius, width, heading, foot] = numbers;
+    return {
+        kind: "material", numbers: { talus, "wet-talus": wetTalus, humidity, cohesion, band, "settling-time": settling },
+        tool: { kind, radius, width, heading, leftFoot: foot === 1 },
+    };
+}
+
+export class HandSource implements StepSource {
+    private due = 0;               // steps
+    private last = performance.now();
+    private changed = true;        // since the frame that was sent last
+    private told = -kProgressMs;
+    private toldStep = -1;
+    private longest = 0;           // ms, of a step since the message before
+
+    constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage) {
+        stage.tell(materialOf(replica.material()));
+    }
+
+    take(message: ToWorker): void {
+        try {
+            if ("hand" in message) {
+                this.replica.point(message.hand);
+            } else if ("edit" in message) {
+                this.replica.ask(kEdits[message.edit]);
+            } else if ("tool" in message) {
+                this.replica.setTool(message.tool);
+            } else if ("material" in message) {
+                this.replica.setMaterial(message.material, message.value);
+            } else if ("depth" in message) {
+                this.replica.setDepth(message.depth);
+            } else if ("save" in message) {
+                const bytes = this.replica.journal();
+                this.stage.tell({ kind: "journal", name: "session.journal", bytes }, [bytes]);
+            }
+        } catch (error) {
+            this.stage.tell({ kind: "note", text: (error as Error).message });
+        }
+        if ("tool" in message || "material" in message) {
+            this.stage.tell(materialOf(this.replica.material()));
+        }
+    }
+
+    work(): number | undefined {
+        const began = performance.now();
+        this.due = Math.min(this.due + (began - this.last) * this.stepsPerSecond / 1000, kMostDue);
+        this.last = began;
+        while (this.due >= 1 && performance.now() - began < kSliceMs) {
+            this.due -= 1;
+            this.step();
+        }
+        if (this.changed && this.stage.show()) {
+            this.changed = false;
+        }
+        const now = performance.now();
+        if (now - this.told >= kProgressMs && this.toldStep !== this.replica.step) {
+            this.tellStep(this.longest >= kLongMs ? `A step of this sand takes ${Math.round(this.longest)} ms; the page waits for it.` : "");
+            this.longest = 0;
+        }
+        return Math.max(0, (1 - this.due) * 1000 / this.stepsPerSecond);
+    }
+
+    private step(): void {
+        if (this.replica.settlesNext) {
+            this.tellStep("All sand settles; the page waits for it.");
+        }
+        const before = performance.now();
+        this.changed = this.replica.digOn() || this.changed;
+        this.longest = Math.max(this.longest, performance.now() - before);
+    }
+
+    private tellStep(busy: string): void {
+        this.told = performance.now();
+        this.toldStep = this.replica.step;
+        this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.material()[11] === 1, busy });
+    }
+}
