@@ -10,7 +10,7 @@
 namespace web {
 namespace {
 
-/// Returns 1 for each cell without ground, or nothing if all cells have ground.
+/// Returns 1 for each cell without ground. The list is empty if all cells have ground.
 std::vector<std::uint8_t> holesOf(const sand::GridData& grid) {
     std::vector<std::uint8_t> holes;
     for (int y = 0; y < grid.field.rows() && grid.ground != nullptr; ++y) {

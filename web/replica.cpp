@@ -77,8 +77,8 @@ API int sw_hashes() { return static_cast<int>(page.recorded->hashes()); }
 /// Pairs of a step and a web::Mark::Kind.
 API const std::int32_t* sw_marks() { return marks.data(); }
 API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
-/// Linear-light RGB of sand and of background, the direction to the sun, 1 if the field has boards around it, and the
-/// height that lies in the middle of the room [cell].
+/// Linear-light RGB of sand and of background, and the direction to the sun. Behind them: 1 if the field has boards
+/// around it, and the height that lies in the middle of the room [cell].
 API const float* sw_look() {
     static std::vector<float> look;
     look.clear();
@@ -138,8 +138,8 @@ API const float* sw_places() { return drawn.places.data(); }
 API int sw_vertices() { return static_cast<int>(drawn.places.size() / 3); }
 API const std::int32_t* sw_corners() { return drawn.corners.data(); }
 API int sw_triangles() { return static_cast<int>(drawn.corners.size() / 3); }
-/// Centre x, y, z and radius of the tool [cell], 1 if it is engaged, its sand::ToolKind, its half width [cell], its
-/// heading to the east and to the north, and 1 if it is mirrored.
+/// Centre x, y, z and radius of the tool [cell], and 1 if it is engaged. Behind them: its sand::ToolKind, its half
+/// width [cell], its heading to the east and to the north, and 1 if it is mirrored.
 API const float* sw_tool() {
     static float numbers[10];
     const sand::ProbePoint probe = session->replica().probe();

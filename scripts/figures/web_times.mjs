@@ -111,13 +111,15 @@ function hour() {
     const [name] = write("hour"), samples = [];
     // More keyframes than in the page, so that they reach their limit early.
     const keyframes = passWithKeyframes(path.join(folder, name), 20, (kept) => {
-        if (kept.pause > 20) {  // the limit was reached
-            samples.push([wasm._sw_step(), wasm.HEAPU8.length, kept.sum, process.memoryUsage().rss]);
-        }
+        samples.push({ step: wasm._sw_step(), limited: kept.pause > 20, heap: wasm.HEAPU8.length, process: process.memoryUsage().rss });
     });
-    const rss = samples.map((sample) => sample[3]), heap = samples.map((sample) => sample[1]), mebibytes = (n) => (n / 2 ** 20).toFixed(0);
-    console.log(`${name}: ${wasm._sw_step()} steps, ${wasm._sw_matches()} hashes equal; the limit was reached at step ${samples[0]?.[0]}`);
-    console.log(`from there: heap of WebAssembly ${mebibytes(Math.min(...heap))} to ${mebibytes(Math.max(...heap))} MiB, process ${mebibytes(Math.min(...rss))} to ${mebibytes(Math.max(...rss))} MiB`);
+    // At the limit every second keyframe goes, so the process shrinks and grows. Its peaks show whether it grows for good.
+    const limit = samples.findIndex((sample) => sample.limited);
+    const peak = (some, what) => (Math.max(...some.map((sample) => sample[what])) / 2 ** 20).toFixed(0);
+    console.log(`${name}: ${wasm._sw_step()} steps, ${wasm._sw_matches()} hashes equal; the keyframes reached 256 MiB before step ${samples[limit]?.step}`);
+    for (const what of ["heap", "process"]) {
+        console.log(`largest ${what}: ${peak(samples.slice(0, limit), what)} MiB until then, ${peak(samples.slice(limit), what)} MiB afterwards`);
+    }
     moments(name, keyframes);
 }
 

@@ -21,6 +21,7 @@ NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-6
          "sand/CMakeLists.txt": "the same",
          "sand/grid/erosion_fluxes.hpp": "chooses the loops for WebAssembly",
          "sand/grid/erosion_loops.hpp": "leaves out the loops that it replaces",
+         "sand/grid/erosion_short_run.hpp": "the same",
          "sand/grid/erosion_loops_wasm.hpp": "the loops for WebAssembly",
          "cmake/Web.cmake": "the flags of WebAssembly",
          "scene/CMakeLists.txt": "ends where a page needs no more",

@@ -34,9 +34,9 @@ if [[ -d $2 ]]; then
             cp "$part" "$folder/$name.journal${part#"$session/session.journal"}"
         done
         verified=$(build/release/bin/sandwall-replay "$session" --verify)
-        hashes=$(grep -oE '[0-9]+ (state )?hashes' <<<"$verified" | head -1 | cut -d' ' -f1)
-        steps=$(grep -oE '[0-9]+ steps' <<<"$verified" | head -1 | cut -d' ' -f1)
-        hash=$(build/release/bin/sandwall-replay "$session" --hash | grep -oE '[0-9a-f]{16}' | tail -1)
+        hashes=$(sed -n 's/^hashes *\([0-9]*\) of .*/\1/p' <<<"$verified")
+        steps=$(sed -n 's/^steps *\([0-9]*\) .*/\1/p' <<<"$verified")
+        hash=$(build/release/bin/sandwall-replay "$session" --hash)
         echo "$name.journal 1 $steps $hashes $hash" >>"$folder/list"
     done
     "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes sessions for the test of the page's replica: the sample scenes, rock with walls, and every tool and edit.
-// usage: session_files FOLDER         writes the sessions of the test
-//        session_files FOLDER times   writes longer sessions, for scripts/figures/web_times.mjs
-//        session_files FOLDER hour    writes a session of one hour, for the same script
-// Prints a line for each: FILE PARTS STEPS HASHES HASH.
+// usage: session_files FOLDER [times|hour]. Prints a line for each: FILE PARTS STEPS HASHES HASH.
+// `times` and `hour` write the longer sessions of scripts/figures/web_times.mjs.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -181,8 +179,8 @@ void everyTool(const std::filesystem::path& folder) {
     session.end(folder / "every_tool.journal");
 }
 
-/// A short session for each kind of tool, turned and mirrored, whose tool stands in the sand at the end. The last one
-/// has wet sand.
+/// A short session for each kind of tool, turned and mirrored. Its tool is in the sand at the end. The last session has
+/// wet sand.
 void everyShape(const std::filesystem::path& folder) {
     for (int kind = 0; kind <= sand::kToolKinds; ++kind) {
         const bool wet = kind == sand::kToolKinds;
