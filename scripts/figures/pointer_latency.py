@@ -24,18 +24,20 @@ from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, p
 from x_server import XServer
 
 SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml
-SCREEN = "1600x900"  # the first size of a window is at most 90 % of its screen
+SCREEN = (1600, 900)  # the first size of a window is at most 90 % of its screen
+FULL_HD = (1920, 1080)
 MOTIONS = 125  # a second, as a usual mouse sends them
 REFRESH = 60  # Hz
 
 
-def circles(display, seconds):
-    """Starts a process that presses the left button and moves the pointer in circles for so long."""
-    words = ["mousemove 640 330", "mousedown 1"]
+def circles(display, size, seconds):
+    """Starts a process that presses the left button and moves the pointer in circles for so long, on a picture of this size."""
+    across, down = size[0] // 2, round(0.458 * size[1])
+    words = [f"mousemove {across} {down}", "mousedown 1"]
     for i in range(round(seconds * MOTIONS)):
         angle = 2 * math.pi * i / MOTIONS  # one circle a second
-        radius = 150 + 60 * math.sin(angle / 7)
-        words += [f"mousemove {640 + radius * math.cos(angle):.0f} {330 + 0.6 * radius * math.sin(angle):.0f}", f"sleep {1 / MOTIONS}"]
+        radius = (0.208 + 0.083 * math.sin(angle / 7)) * size[1]
+        words += [f"mousemove {across + radius * math.cos(angle):.0f} {down + 0.6 * radius * math.sin(angle):.0f}", f"sleep {1 / MOTIONS}"]
     words.append("mouseup 1")
     mover = subprocess.Popen(["xdotool", "-"], stdin=subprocess.PIPE, env=display.environment, text=True, preexec_fn=die_with_parent)
     mover.stdin.write("\n".join(words) + "\n")
@@ -45,19 +47,22 @@ def circles(display, seconds):
 
 def measure(args):
     """Returns the summary of a session in which the pointer digs all the time."""
-    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer(SCREEN) as display:
+    full, size = args.full_hd, FULL_HD if args.full_hd else SIZE
+    with tempfile.TemporaryDirectory(prefix="sandwall-pointer-") as name, XServer("{}x{}".format(*(FULL_HD if full else SCREEN))) as display:
         folder = pathlib.Path(name)
         log, out = folder / "log.txt", folder / "out"
-        command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", ROOT / "walls" / "configs" / "desktop.toml",
-                   "--scene", args.scene, "--device", "pointer", "--no-pictures", "--out", out, "--refresh", REFRESH,
-                   "--warm-up", round(args.warm_up * REFRESH)]
+        desk = ["--desk", f"{size[0]}x{size[1]}+0+0"] if args.on_desk else []
+        command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", args.wall, *desk, "--scene", args.scene,
+                   "--device", "pointer", "--no-pictures", "--out", out, "--refresh", REFRESH, "--warm-up", round(args.warm_up * REFRESH)]
         with log.open("w") as said:
             run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
                                    env={**display.environment, "SANDWALL_BIN": str(BIN), events.VARIABLE: "1"}, preexec_fn=die_with_parent)
         try:
             if events.wait_for(log, "progress", START_SECONDS, lambda: run.poll() is None) is None:
                 raise Failed(f"no frame was shown: {log.read_text(errors='replace').strip()[-300:]}")
-            mover = circles(display, args.warm_up + args.seconds)
+            if full and not desk:
+                subprocess.run(["xdotool", "mousemove", "200", "200", "key", "F11"], env=display.environment, check=True, timeout=START_SECONDS)
+            mover = circles(display, size, args.warm_up + args.seconds)
             time.sleep(args.warm_up + args.seconds)
             run.stdin.write("stop\n")
             run.stdin.flush()
@@ -76,14 +81,14 @@ def row(name, figures):
     return f"| {name} | {pm(figures['mean'], figures['stddev'])} | {figures['p50']:.1f} | {figures['p99']:.1f} |"
 
 
-def report(summary, before):
+def report(summary, before, size):
     """Returns the table in Markdown, and notes."""
     legs = summary["latency_legs_ms"]
     lines = ["| leg | mean ± standard deviation [ms] | p50 | p99 |", "|---|---|---|---|",
              row("event to master", legs["to_master"]), row("waits for the next frame", legs["queued"]), row("drawn", legs["drawn"]),
              row("swapped", legs["swapped"]), row("**event to picture**", summary["latency_ms"])]
     frames = summary["frame_ms"]
-    lines += ["", f"- {1000 / frames['mean']:.1f} frames a second while digging at {SIZE[0]} × {SIZE[1]}: frame p50 {frames['p50']:.1f} ms, p99 "
+    lines += ["", f"- {1000 / frames['mean']:.1f} frames a second while digging at {size[0]} × {size[1]}: frame p50 {frames['p50']:.1f} ms, p99 "
               f"{frames['p99']:.1f} ms; two frames at {REFRESH} Hz are {2000 / REFRESH:.1f} ms",
               f"- machine: {processor()}, {len(os.sched_getaffinity(0))} cores for X server, master, rank and llvmpipe; load average "
               f"{before:.1f} before and {os.getloadavg()[0]:.1f} after"]
@@ -95,6 +100,9 @@ def main():
     parser.add_argument("--seconds", type=above(float, 0), default=20, help="seconds of the session after its warm-up (default: 20)")
     parser.add_argument("--warm-up", type=at_least(float, 0), default=5, help="seconds at the start that do not count as frames (default: 5)")
     parser.add_argument("--scene", default=ROOT / "scenes" / "writing.toml", help="scene file (default: scenes/writing.toml)")
+    parser.add_argument("--wall", default=ROOT / "walls" / "configs" / "desktop.toml", help="wall: a sample's name or a file (default: desktop)")
+    parser.add_argument("--on-desk", action="store_true", help="place all tiles of the wall side by side")
+    parser.add_argument("--full-hd", action="store_true", help="fill 1920 × 1080 pixels instead of 1280 × 720")
     parser.add_argument("--json", action="store_true", help="print the session's summary as JSON")
     args = parser.parse_args()
     for program in ("Xvfb", "xdotool"):
@@ -106,7 +114,7 @@ def main():
     except Failed as complaint:
         print(f"pointer_latency.py: {complaint}", file=sys.stderr)
         return 1
-    print(json.dumps(summary) if args.json else report(summary, before))
+    print(json.dumps(summary) if args.json else report(summary, before, FULL_HD if args.full_hd else SIZE))
     return 0
 
 

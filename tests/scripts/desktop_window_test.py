@@ -32,6 +32,7 @@ GONE = 30  # [s], longest time in which a hint or an answer goes away
 SCREEN = (1024, 768)
 CURSOR = 24  # [pixel], more than the cursor's part right of and below its place
 RESIZES = 200
+LAST_SIZE = (601, 403)
 CELLS, WIDTH = 96, 2.0  # of the field
 
 # A mountain whose summit is above the screen at the stage of walls/configs/desktop.toml.
@@ -215,7 +216,7 @@ class DesktopWindow(unittest.TestCase):
         self.assertGreater(top, 0, "background above the summit")
         self.assertLess(top, picture.height // 4, "not smaller than needed")
 
-    def test_3_the_wheel_zooms_to_the_pointer_and_the_middle_button_moves_the_sand(self):
+    def test_3_the_wheel_zooms_to_the_pointer_and_drags_move_and_turn_the_sand(self):
         width, height = self.place()[2:]
         here, there = (width // 3, height * 2 // 3), (width // 2, height // 2)
         before, = self.dig(here)
@@ -229,6 +230,9 @@ class DesktopWindow(unittest.TestCase):
         self.expect_near(self.dig(there)[0], before)
         self.drag(there, here, "shift", button=3)
         self.expect_near(self.dig(here)[0], before)
+        self.drag(here, there, button=3)
+        turned, = self.dig(here)
+        self.assertGreater(max(abs(a - b) for a, b in zip(turned, before)), 4, "the right button has turned the sand")
         # The same sand in the same view has the same place under the pointer.
         self.desktop.do("key", "shift+r", "key", "Home")
         self.frames_pass()
@@ -251,28 +255,64 @@ class DesktopWindow(unittest.TestCase):
         self.comes_to(640, 400)
         self.expect_whole()
 
-    def test_6_a_window_of_one_pixel_is_no_end(self):
+    def test_6_the_title_bar_maximises_the_window(self):
+        self.resize(640, 400)
+        x, y, width = self.place()[:3]
+        self.desktop.do("mousemove", x + width // 2, y - 8, "click", "--repeat", 2, "--delay", 50, 1)
+        deadline = time.monotonic() + PATIENCE
+        while self.place()[2] < 0.97 * SCREEN[0]:
+            self.assertLess(time.monotonic(), deadline, self.place())
+            time.sleep(0.05)
+        self.frames_pass()
+        self.expect_whole()
+        x, y, width = self.place()[:3]
+        self.desktop.do("mousemove", x + width // 2, y - 8, "click", "--repeat", 2, "--delay", 50, 1)
+        self.comes_to(640, 400)
+
+    def test_7_a_window_of_one_pixel_is_no_end(self):
         self.desktop.do("windowsize", self.window, 1, 1)
         self.frames_pass(10)
         self.resize(640, 400)
         self.expect_whole()
 
-    def test_7_many_sizes_while_digging(self):
+    def test_8_wet_sand_is_darker(self):
+        dry = self.expect_whole()
+        self.desktop.do("key", "--delay", 100, *"wwwww")
+        self.frames_pass()
+        self.assertAlmostEqual(self.status()["material"]["humidity"], 0.5)
+        wet = self.expect_whole()
+        background, middle = (2, 2), (320, 200)
+        self.assertEqual(wet.pixel(*background), dry.pixel(*background))
+        self.assertLess(sum(wet.pixel(*middle)), 0.9 * sum(dry.pixel(*middle)))
+        self.desktop.do("key", "0")
+        self.frames_pass()
+        self.assertEqual(self.expect_whole(), dry, "the humidity of the scene is back")
+
+    def test_9_many_sizes_while_digging(self):
+        """Compares what was drawn while digging with a fresh drawing, which each change of the size begins."""
         self.desktop.do("windowmove", self.window, 100, 100)
         self.frames_pass()
         x, y = self.place()[:2]
-        words = ["mousemove", x + 200, y + 150, "mousedown", 1]
-        for i in range(RESIZES):
-            words += ["windowsize", self.window, 400 + 37 * i % 401, 300 + 53 * i % 203, "mousemove", x + 150 + 11 * i % 120, y + 120 + 7 * i % 60,
-                      "sleep", 0.02]
-        self.desktop.do(*words, "mouseup", 1)
-        self.resize(601, 403)
-        self.expect_whole()
+        for part in range(2):
+            words = ["mousemove", x + 200, y + 150, "mousedown", 1]
+            for i in range(part * RESIZES // 2, (part + 1) * RESIZES // 2):
+                words += ["windowsize", self.window, 400 + 37 * i % 401, 300 + 53 * i % 203,
+                          "mousemove", x + 150 + 11 * i % 120, y + 120 + 7 * i % 60, "sleep", 0.02]
+            self.desktop.do(*words)
+            self.resize(*LAST_SIZE)
+            for i in range(5):
+                self.desktop.do("mousemove", x + 160 + 30 * i, y + 130 + 20 * part)
+                self.frames_pass(2)
+            self.desktop.do("mouseup", 1)
+            dug = self.expect_whole()
+            self.resize(LAST_SIZE[0] - 100, LAST_SIZE[1])
+            self.resize(*LAST_SIZE)
+            self.assertEqual(self.expect_whole(), dug)
         status = self.status()
         self.assertEqual((status["divergences"], status["healed"]), (0, 0))
         self.assertTrue(status["can_undo"])
 
-    def test_8_closing_the_window_ends_the_session(self):
+    def test_a_closing_the_window_ends_the_session(self):
         self.desktop.do("windowactivate", "--sync", self.window, "key", "alt+F4")
         self.assertEqual(self.session.wait(PATIENCE), 0, self.log.read_text())
         summary = json.loads((self.out / "summary.json").read_text())
@@ -281,7 +321,7 @@ class DesktopWindow(unittest.TestCase):
                                   timeout=PATIENCE, check=True)
         self.assertEqual(replayed.stdout.strip(), summary["state_hash"])
         picture = picture_files.read_png(self.out / "wall.png")
-        self.assertEqual((picture.width, picture.height), (601, 403), "the last picture has the size of the window")
+        self.assertEqual((picture.width, picture.height), LAST_SIZE, "the last picture has the size of the window")
 
 
 if __name__ == "__main__":

@@ -344,9 +344,12 @@ class Refused(unittest.TestCase):
         return ran.stderr
 
     def test_try_without_a_display_names_the_alternatives(self):
-        line = self.tried(DISPLAY="")
+        line = self.tried(DISPLAY="", WAYLAND_DISPLAY="")
         self.assertIn("DISPLAY", line)
         self.assertIn("--gl osmesa", line)
+
+    def test_try_on_wayland_without_xwayland_names_what_to_install(self):
+        self.assertIn("install Xwayland", self.tried(DISPLAY="", WAYLAND_DISPLAY="wayland-0"))
 
     def test_try_on_a_display_that_is_gone_names_the_alternatives(self):
         line = self.tried(DISPLAY=":987")

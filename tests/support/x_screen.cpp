@@ -104,6 +104,21 @@ double XScreen::refreshRate() const {
     return 0;
 }
 
+void XScreen::switchMonitorOff() const {
+    const Resources resources = resourcesOf(display_.get(), root_);
+    if (XRRSetCrtcConfig(display_.get(), resources.get(), resources->crtcs[0], CurrentTime, 0, 0, None, RR_Rotate_0,
+                         nullptr, 0) != RRSetConfigSuccess) {
+        throw std::runtime_error("the X server keeps its monitor on");
+    }
+}
+
+void XScreen::setScale(double scale) const {
+    const std::string resources = "Xft.dpi:\t" + std::to_string(std::lround(96 * scale)) + "\n";
+    XChangeProperty(display_.get(), root_, XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(resources.data()), static_cast<int>(resources.size()));
+    XSync(display_.get(), False);
+}
+
 std::vector<unsigned long> XScreen::windows() const {
     Window root = 0;
     Window parent = 0;

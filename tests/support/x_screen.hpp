@@ -27,6 +27,11 @@ public:
     /// Returns the refresh rate of the monitor's current mode [Hz], or 0 for a mode without a pixel clock.
     [[nodiscard]] double refreshRate() const;
 
+    /// Switches the only monitor off, as when its cable is pulled out.
+    void switchMonitorOff() const;
+    /// Sets the scale that the desktop asks programs for. A program reads it when it connects.
+    void setScale(double scale) const;
+
     /// Returns the visible windows, the lowest one first.
     [[nodiscard]] std::vector<unsigned long> windows() const;
     [[nodiscard]] std::string title(unsigned long window) const;
@@ -38,7 +43,8 @@ public:
     /// Sends the message that a window manager sends when the user presses the close button.
     void askToClose(unsigned long window) const;
     // Symbols of keys, as X has them. A small letter is its own symbol.
-    static constexpr unsigned long kEscape = 0xff1b, kHome = 0xff50, kPageUp = 0xff55, kF1 = 0xffbe, kF12 = 0xffc9;
+    static constexpr unsigned long kEscape = 0xff1b, kHome = 0xff50, kPageUp = 0xff55, kF1 = 0xffbe;
+    static constexpr unsigned long kF11 = 0xffc8, kF12 = 0xffc9;
     static constexpr unsigned kShift = 1, kControl = 4;  // states of modifiers
     /// Sends a key press and its release. `symbol` is the key's symbol without modifiers, such as 't' or kF1, and
     /// `state` the sum of the modifiers that are held.

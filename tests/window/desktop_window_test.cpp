@@ -80,6 +80,34 @@ TEST_F(DesktopWindow, BeginsWithAtMostNineTenthsOfTheScreen) {
     EXPECT_EQ(context_->followedWindow(), glm::ivec2(576, 288));
 }
 
+TEST_F(DesktopWindow, BeginsLargerByTheScaleOfTheMonitor) {
+    support::XScreen(server_->display()).setScale(1.5);
+    open({200, 100});
+    EXPECT_EQ(context_->followedWindow(), glm::ivec2(300, 150));
+}
+
+TEST_F(DesktopWindow, OpensWithoutAMonitor) {
+    support::XScreen(server_->display()).switchMonitorOff();
+    open({200, 100});
+    EXPECT_EQ(context_->followedWindow(), glm::ivec2(200, 100));
+    screen_->type(window_, support::XScreen::kF11);
+    screen_->resize(window_, 300, 200);
+    EXPECT_TRUE(comes([&] { return context_->followedWindow() == glm::ivec2(300, 200); })) << "no monitor to fill";
+}
+
+TEST_F(DesktopWindow, ContinuesWhenItsMonitorGoesAway) {
+    open({200, 100});
+    screen_->type(window_, support::XScreen::kF11);
+    ASSERT_TRUE(comes([&] { return context_->followedWindow() == glm::ivec2(640, 480); }));
+    screen_->switchMonitorOff();
+    // The size of a window may change, and that of a full screen may not.
+    EXPECT_TRUE(comes([&] {
+        screen_->resize(window_, 300, 200);
+        return context_->followedWindow() == glm::ivec2(300, 200);
+    }));
+    EXPECT_EQ(context_->takeKeys().size(), 1U) << "F11 alone; the session does not end";
+}
+
 TEST_F(DesktopWindow, ReportsItsPresentSize) {
     open({200, 100});
     for (const glm::ivec2 size : {glm::ivec2(300, 333), glm::ivec2(1, 1), glm::ivec2(700, 50)}) {
