@@ -46,6 +46,7 @@ TileFigures figuresOf(std::uint64_t frame) {
     const lockstep::WallFigures wall{.frameMs = 33.3,
                                      .slowest = lockstep::Drag{5, 0.97, 30.1},
                                      .agreed = frame - 1,
+                                     .slowMotion = {},
                                      .swaps = {0, 12, 500, 7, 90, 131}};
     return {draw, 31 - draw, wall};
 }
