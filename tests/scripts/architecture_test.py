@@ -25,8 +25,9 @@ NAMED = {"base/code_path.hpp": "asks the processor for the instructions of x86-6
          "sand/grid/erosion_loops_wasm.hpp": "the loops for WebAssembly",
          "cmake/Web.cmake": "the flags of WebAssembly",
          "scene/CMakeLists.txt": "ends where a page needs no more",
+         "haptic_bridge/CMakeLists.txt": "the same",
          "web/CMakeLists.txt": "the program for WebAssembly",
-         "web/replica.cpp": "its functions"}
+         "web/exported.hpp": "how its functions are exported"}
 KNOWS = re.compile(r"[<\"][a-z]*intrin\.h|\b_mm[0-9]*_|__m(128|256|512)|__builtin_(cpu_|ia32_)|\basm\b|__(x86_64|aarch64|i386|arm|amd64|SSE|AVX|wasm)\w*\b|\bwasm_\w+|EMSCRIPTEN|"
                    r"-m(simd128|arch|tune|fma|avx|sse|cpu)\b|aarch64|cpuid")
 
