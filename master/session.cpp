@@ -16,6 +16,7 @@
 #include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "master/failure_report.hpp"
+#include "master/frame_cost.hpp"
 #include "master/wall_pictures.hpp"
 
 namespace master {
@@ -40,6 +41,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       wall_(wall),
       options_(completed(std::move(options))),
       labels_(RankLabels::of(cluster, wall)),
+      hosts_(cluster.hosts()),
       barrier_(cluster, labels_.names, options_.frameTimeout,
                [this](int rank, const std::string& line) {
                    (void)writeFailure(labels_.failure("hung", rank, line), options_.out);
@@ -212,13 +214,9 @@ bool Session::showFrame(bool& more) {
 std::int32_t Session::sweepsOwed() const { return sand_.replica().holdsTool() ? sand_.replica().owed().left() : 0; }
 
 haptic_bridge::FrameCost Session::cost() const {
-    haptic_bridge::FrameCost cost{.sweeps = sand_.work().sweeps, .substeps = sand_.work().substeps};
-    for (const lockstep::Arrival& rank : barrier_.arrivals()) {
-        cost.dragNs = std::max(cost.dragNs, rank.dragged);
-        cost.sweepNs = std::max(cost.sweepNs, rank.swept);
-        cost.hashNs = std::max(cost.hashNs, rank.hashed);
-        cost.drawNs = std::max(cost.drawNs, rank.drawn);
-    }
+    haptic_bridge::FrameCost cost = costOf(barrier_.arrivals(), hosts_);
+    cost.sweeps = sand_.work().sweeps;
+    cost.substeps = sand_.work().substeps;
     return cost;
 }
 

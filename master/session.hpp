@@ -70,7 +70,7 @@ private:
                : record_.full() ? haptic_bridge::Held::disk
                                 : haptic_bridge::Held::no;
     }
-    /// Returns the cost of the last frame on the slowest rank, and the work of its steps.
+    /// Returns the cost of the last frame, and the work of its steps.
     [[nodiscard]] haptic_bridge::FrameCost cost() const;
     /// Returns the sweeps that the tool waits for.
     [[nodiscard]] std::int32_t sweepsOwed() const;
@@ -90,6 +90,7 @@ private:
     const walls::Wall& wall_;
     const SessionOptions options_;
     const RankLabels labels_;
+    const std::vector<lockstep::RankHost> hosts_;  // by rank
     lockstep::FrameBarrier barrier_;
     std::uint64_t frame_ = 0;
     FrameClock clock_;

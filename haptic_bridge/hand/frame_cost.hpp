@@ -7,7 +7,7 @@
 
 namespace haptic_bridge {
 
-/// Work of a frame's steps, and the wall time that it took on the slowest rank.
+/// Work of a frame's steps, and the wall time that it took on the slowest host (master::costOf).
 struct FrameCost {
     std::int64_t sweeps = 0, substeps = 0;  // sub-steps of the tool
     std::int64_t sweepNs = 0;               // [ns], of all sweeps

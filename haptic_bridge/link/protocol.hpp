@@ -86,7 +86,7 @@ struct Shown {
     std::uint64_t stepNumber = 0;      // the last step that the wall shows
     std::int64_t frameIntervalNs = 0;  // from the swap of the frame before to the swap of this frame
     Held held = Held::no;
-    FrameCost cost{};  // of this frame, on the slowest rank
+    FrameCost cost{};  // of this frame, on the slowest host
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("step", it.stepNumber);
