@@ -18,7 +18,8 @@
 
 namespace {
 
-constexpr int kSizes[] = {10, 13, 16, 20, 26, 34, 44};  // [pixel] of the em square; about a quarter from one to the next
+constexpr int kSizes[] = {10, 13, 16, 20,
+                          26, 34, 44};  // [pixel] of the em square; about a quarter from one to the next
 
 std::vector<int> letters() {
     std::vector<int> codes;

@@ -90,9 +90,9 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_EQ(before[0]["cut_bytes"], 8);
     EXPECT_GT(before[0]["checkpoint_step"], 0);
     const std::uint64_t end = before[0]["step"].get<std::uint64_t>() + 400;
-    nlohmann::json incidents{
-        {"divergences", 3}, {"healed", 2}, {"outvoted", 1},       {"server_divergences", 0}, {"links", 5},
-        {"reconnects", 4},  {"stands", 1}, {"steps_left_out", 8}, {"steps_unplaced", 9}, {"first_difference", 17}};
+    nlohmann::json incidents{{"divergences", 3},    {"healed", 2},           {"outvoted", 1}, {"server_divergences", 0},
+                             {"links", 5},          {"reconnects", 4},       {"stands", 1},   {"steps_left_out", 8},
+                             {"steps_unplaced", 9}, {"first_difference", 17}};
     for (const auto& [code, kind] : valuesOf(haptic_bridge::RefusalCode{})) {
         incidents["refused_by_server"][std::string(kind)] = 6;
         incidents["refused"][std::string(kind)] = 7;
