@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures the stiffest springs on which an arm comes to rest, with and without the guards.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -91,7 +93,7 @@ std::vector<SweptArm> swept(const Settings& settings, const std::vector<double>&
     }
     for (const std::string& wanted : settings.rows) {
         if (std::ranges::find(arms, wanted, &SweptArm::name) == arms.end()) {
-            throw base::InputError("--rows: there is no \"" + wanted + "\"; choose from " + names);
+            throw base::InputError(fmt::format("--rows: there is no \"{}\"; choose from {}", wanted, names));
         }
     }
     std::erase_if(arms, [&](const SweptArm& arm) {

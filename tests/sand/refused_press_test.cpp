@@ -16,7 +16,6 @@ namespace {
 using sand::kProbePerCell;
 using sand::ProbePoint;
 using sand::Replica;
-using sand::Step;
 
 constexpr int kSide = 64;
 constexpr std::int32_t kLevel = sand::kMaxHeight - 6 * sand::kUnitsPerCell;  // [unit]

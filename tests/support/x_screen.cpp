@@ -139,7 +139,7 @@ std::vector<unsigned long> XScreen::windows() const {
 std::string XScreen::title(unsigned long window) const {
     char* name = nullptr;
     XFetchName(display_.get(), window, &name);
-    const std::string title = name == nullptr ? "" : name;
+    std::string title = name == nullptr ? "" : name;
     XFree(name);
     return title;
 }

@@ -91,7 +91,7 @@ TEST(Client, RefusesSweepsThatNoStepHas) {
         FakeServer server(
             toTheFirst([&, given = offer.sweeps.least, wrong = sweeps](FakeServer::Connection& connection) {
                 if (linkUp(connection)) {
-                    for (const std::uint64_t number : {1, 2}) {
+                    for (const std::uint64_t number : {1U, 2U}) {
                         StepMessage message = stepOf(1, number);
                         message.step.sweeps = number == 1 ? given : wrong;
                         connection.send(message);

@@ -146,6 +146,7 @@ TEST(Help, IsDividedAmongSmallTilesOfARow) {
 TEST(Help, HasSmallLettersOnTheSmallTilesOfARow) {
     const glm::ivec2 tile(254, 142);
     std::vector<Sheet> sheets;
+    sheets.reserve(4);
     for (int i = 0; i < 4; ++i) {
         sheets.push_back(helpSheet({i, 4, tile}, tile));
     }

@@ -13,7 +13,6 @@ namespace tools {
 namespace {
 
 using namespace tin_samples;
-using sand::Heading;
 using sand::ProbePoint;
 using sand::Rim;
 using sand::ToolKind;
