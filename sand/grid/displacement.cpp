@@ -91,11 +91,24 @@ void shareOut(std::vector<Receiver>& ring, std::int64_t amount, ProbePoint probe
     }
 }
 
-/// Returns whether a height would exceed kMaxHeight if the receivers got their shares.
-bool overflows(const HeightField& field, const std::vector<Receiver>& ring) {
-    return std::any_of(ring.begin(), ring.end(), [&](const Receiver& receiver) {
+/// Shares out `amount` as shareOut() does. If a height would exceed kMaxHeight, leaves out the cells that are too high
+/// with `toSome`. Returns false if no cells can take the sand.
+bool deal(const HeightField& field, std::vector<Receiver>& ring, std::int64_t amount, bool toSome, ProbePoint probe,
+          const TurnedShape& shape) {
+    const auto isFull = [&](const Receiver& receiver) {
         return !receiver.outside && field.height(receiver.column, receiver.row) + receiver.share > kMaxHeight;
-    });
+    };
+    while (!ring.empty()) {
+        shareOut(ring, amount, probe, shape);
+        if (std::none_of(ring.begin(), ring.end(), isFull)) {
+            return true;
+        }
+        if (!toSome) {
+            return false;
+        }
+        std::erase_if(ring, isFull);
+    }
+    return false;
 }
 
 /// Gives the receivers their shares. Returns the volume that leaves the field.
@@ -173,15 +186,12 @@ Displacement::Work Displacement::press(const HeightField& field, HeightField* in
         }
     }
     std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, probe, shape_, ahead);
-    if (ring.empty()) {  // dragged against a closed rim: the sand escapes to the sides and behind
+    if (!deal(field, ring, cut.taken, false, probe, shape_)) {
+        // Dragged against a closed rim, or where the cells ahead have no room: the sand escapes to the sides and behind.
         ring = receivers(field.bounds(), rim, ground, probe, shape_, {0, 0});
-    }
-    if (ring.empty()) {  // the tool is larger than the field, so that no cell can take the sand
-        return {.refused = 1};
-    }
-    shareOut(ring, cut.taken, probe, shape_);
-    if (overflows(field, ring)) {
-        return {.refused = 1};  // the sand stays, and the tool passes through it
+        if (!deal(field, ring, cut.taken, true, probe, shape_)) {
+            return {.refused = 1};  // the sand stays, and the tool passes through it
+        }
     }
     if (into == nullptr) {
         return {};
@@ -209,18 +219,16 @@ Displacement::Work Displacement::pressInParts(const HeightField& field, HeightFi
         if (surroundings.taken(part) == 0) {
             continue;
         }
-        if (ring.empty()) {
+        const std::int64_t taken = surroundings.taken(part);
+        if (!deal(field, ring, taken, false, probe, shape_)) {
             if (around.empty()) {
                 around = ringsOf({0, 0});
             }
             ring = around[static_cast<std::size_t>(part)];
-        }
-        if (!ring.empty()) {
-            shareOut(ring, surroundings.taken(part), probe, shape_);
-        }
-        if (ring.empty() || overflows(field, ring)) {
-            result.refused = 1;  // the sand stays, and the tool passes through it
-            continue;
+            if (!deal(field, ring, taken, true, probe, shape_)) {
+                result.refused = 1;  // the sand stays, and the tool passes through it
+                continue;
+            }
         }
         moves[static_cast<std::size_t>(part)] = 1;
         result.outflow += into == nullptr ? 0 : raise(*into, ring);

@@ -104,6 +104,23 @@ TEST(RefusedPress, IsSeenBesideAWall) {
     EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
 }
 
+/// Cells that have no room for their share take none. The others take theirs.
+TEST(RefusedPress, IsNoneIfOtherCellsHaveRoom) {
+    scene::Scene scene = highScene(14);
+    for (int row = 0; row < kSide / 2; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            scene.terrain.setHeight(column, row, kLevel - 100 * sand::kUnitsPerCell);
+        }
+    }
+    Replica replica(scene);
+    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    EXPECT_FALSE(replica.refusedPress());
+    const sand::HeightField after = samples::fieldOf(replica);
+    EXPECT_EQ(replica.volume(), Replica(scene).volume());
+    EXPECT_LT(after.height(kSide / 2, kSide / 2 + 2), kLevel) << "the tool has taken sand there";
+    EXPECT_GT(after.height(kSide / 2, kSide / 2 - 16), kLevel - 100 * sand::kUnitsPerCell);
+}
+
 TEST(RefusedPress, IsNoneThatFits) {
     EXPECT_FALSE(isRefused(4));
     EXPECT_FALSE(isRefused(4, sand::ToolKind::footprint));
