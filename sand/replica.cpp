@@ -229,6 +229,9 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
         surface_->leave(toolBefore);
     }
     const Tool here = tool();
+    if (wasEngaged && engaged_ && step.path.empty() && !turned) {
+        surface_->hold(here, probe_);
+    }
     const std::int32_t sweeps = step.sweeps != 0 ? step.sweeps : wholeOf(owed_);
     moved();
     const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);

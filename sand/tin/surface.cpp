@@ -143,7 +143,16 @@ void TinSurface::sandMoved(const std::vector<Vertex>& vertices) {
 }
 
 void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
-    const Displacement::Work done = displacementOf(tool).drag(layer_, state_.imprint, rim_, path);
+    displaced(tool, displacementOf(tool).drag(layer_, state_.imprint, rim_, path));
+    sawAll_ = state_.imprint.pose && state_.imprint.pose->probe == path.back();
+}
+
+void TinSurface::hold(const Tool& tool, const ProbePoint& probe) {
+    sawAll_ = false;
+    displaced(tool, displacementOf(tool).hold(layer_, state_.imprint, rim_, probe));
+}
+
+void TinSurface::displaced(const Tool& tool, const Displacement::Work& done) {
     state_.outflow += static_cast<std::int64_t>(done.outflow);
     refused_.count += done.refused;
     if (done.refused > 0 && !refused_.first) {
@@ -152,7 +161,6 @@ void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
     meshChanged();
     sandMoved(done.touched);
     erosion_.wake(done.touched);
-    sawAll_ = state_.imprint.pose && state_.imprint.pose->probe == path.back();
 }
 
 void TinSurface::leave(const Tool& tool) {
@@ -287,14 +295,7 @@ double TinSurface::height(double x, double y) const {
     const Triangles& mesh = layer_.triangles();
     const Located found = locate(mesh, {lattice(x, mesh.width), lattice(y, mesh.depth)}, lastFound_);
     lastFound_ = found.triangle;
-    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(found.triangle)];
-    double sum = 0, weights = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto weight = static_cast<double>(found.weights[k]);
-        sum += weight * layer_.heights()[static_cast<std::size_t>(triangle.corner[k])];
-        weights += weight;
-    }
-    return sum / weights;
+    return layer_.heightAt(found);
 }
 
 SurfaceChange TinSurface::takeChange() {

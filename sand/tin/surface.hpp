@@ -34,6 +34,7 @@ public:
     [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
     /// Does nothing, because Erosion itself finds the sand that the tool held back.
     void release(const Tool&, const ProbePoint&) override {}
+    void hold(const Tool& tool, const ProbePoint& probe) override;
     void leave(const Tool& tool) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
@@ -76,6 +77,8 @@ private:
     [[nodiscard]] SandLimits limits() const;
     /// Prepares a layer_ that has just been put in place.
     void layerReplaced();
+    /// Counts what a tool has done to the sand, and wakes the sand.
+    void displaced(const Tool& tool, const Displacement::Work& done);
     /// Passes the changes of the mesh to erosion, hash, undo, coarsening and takeChange().
     void meshChanged();
     /// Reserves memory for further vertices, so that few steps have to move all vertices' data to a larger array.

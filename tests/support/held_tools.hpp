@@ -89,4 +89,41 @@ inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind,
     return result;
 }
 
+/// A tool is pressed into uneven sand at the east rim of an open table. The operator settles the sand, with the tool
+/// held, or lifted first. The sand slides away below the tool, which is higher than the slope that stays.
+struct OpenTable {
+    double missing = 0, deepest = 0;  // of the sand beside the tool against an open table [cell³], [cell] at n = 64
+    bool atRest = false;
+};
+inline OpenTable slideFromTool(int n, sand::ToolKind kind, double east, bool held) {
+    const double scale = n / 64.0, north = 30.2 * scale;
+    Case given = caseOf(kTin, n);
+    given.tool = kind;
+    given.sweeps = 4;
+    given.maxError = 0;
+    given.rim = sand::Rim::open;
+    given.height = [=](double, double) { return 20 * scale; };
+    sand::Replica sand(sceneOf(given));
+    Hand hand(sand);
+    hand.drag((east + 4) * scale, north + 7 * scale, east * scale, north, 20 * scale);
+    if (!held) {
+        hand.hover();
+    }
+    hand.apply(held, {}, sand::Edit::settle);
+    for (int i = 0; i < 1000 && !sand.settled(); ++i) {
+        hand.apply(held, {});
+    }
+    OpenTable result;
+    for (int y = 18 * n / 64; y < 42 * n / 64; ++y) {
+        for (int x = 40 * n / 64; x < n; ++x) {
+            const double toRim = std::min({n - x - 0.5, y + 0.5, n - y - 0.5});
+            const double less = kTalus * toRim - heightAt(sand, x + 0.5, y + 0.5);
+            result.missing += std::max(less, 0.0) / scale / scale / scale;
+            result.deepest = std::max(result.deepest, less / scale);
+        }
+    }
+    result.atRest = sand.settled();
+    return result;
+}
+
 }  // namespace borders

@@ -148,9 +148,16 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
     for (const Press& press : chunk.presses) {
         lowest = std::min<std::int64_t>(lowest, press.probe.z);
     }
+    return isAnyAbove(layer, lowestUnderside(lowest));
+}
+
+double Displacement::lowestUnderside(std::int64_t z) const {
     constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
-    const auto underside = static_cast<double>((lowest - tool_.radius) * kUnitsPerProbe);
-    const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > underside; };
+    return static_cast<double>((z - tool_.radius) * kUnitsPerProbe);
+}
+
+bool Displacement::isAnyAbove(const VertexSand& layer, double height) const {
+    const auto isHigher = [&](Vertex vertex) { return layer.heights()[static_cast<std::size_t>(vertex)] > height; };
     return std::any_of(neighbourhood_->triangles().begin(), neighbourhood_->triangles().end(), [&](std::int32_t slot) {
         const Triangle& triangle = layer.triangles().triangles[static_cast<std::size_t>(slot)];
         return !triangle.hole && std::any_of(triangle.corner.begin(), triangle.corner.end(), isHigher);

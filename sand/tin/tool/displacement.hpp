@@ -53,9 +53,13 @@ public:
     /// Holes divide the vertices below the tool and beside it into parts. Two vertices are joined by an edge of a
     /// triangle on ground. Each part shares out its own sand.
     ///
-    /// A tool that is held still changes nothing after its press. If the tool does not reach the sand at all, it
-    /// leaves the sand as with leave().
+    /// A tool that is held still changes nothing after its press, except in hold(). If the tool does not reach the sand
+    /// at all, it leaves the sand as with leave().
     Work drag(VertexSand& layer, Imprint& imprint, Rim rim, std::span<const ProbePoint> path);
+    /// Follows a tool that is held at `probe`. When all sand around it has sunk clearly below it, leaves the sand as
+    /// with leave(), because a slope would erode along the slivers between the points of the outline. When sand comes
+    /// to a tool that has left it, presses once.
+    Work hold(VertexSand& layer, Imprint& imprint, Rim rim, const ProbePoint& probe);
     /// Ends the imprint, because the tool is lifted. The rules decide whether the outline stays with its constraints
     /// or is removed.
     void leave(VertexSand& layer, Imprint& imprint);
@@ -89,7 +93,13 @@ private:
     };
 
     void work(VertexSand& layer, Imprint& imprint, Rim rim, const Chunk& chunk, Work& work);
+    /// Returns the lowest height of a tool whose centre is at height `z` [unit].
+    [[nodiscard]] double lowestUnderside(std::int64_t z) const;
     [[nodiscard]] bool reachesSand(const VertexSand& layer, const Chunk& chunk) const;
+    /// Returns whether a corner of a triangle of the neighbourhood is higher than `height` [unit].
+    [[nodiscard]] bool isAnyAbove(const VertexSand& layer, double height) const;
+    /// Returns whether sand is above the underside at a point of the outline.
+    [[nodiscard]] bool isEntered(const VertexSand& layer, const ProbePoint& probe) const;
     /// Returns the vertices that VertexSand::edit() returns.
     std::vector<Vertex> changeMesh(VertexSand& layer, Imprint& imprint, const Chunk& chunk) const;
     void thin(Mesh& mesh, const PlacedOutline& outline) const;

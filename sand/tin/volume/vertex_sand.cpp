@@ -192,6 +192,17 @@ void VertexSand::remap() {
     }
 }
 
+double VertexSand::heightAt(const Located& found) const {
+    const Triangle& triangle = triangles().triangles[index(found.triangle)];
+    double sum = 0, weights = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const auto weight = static_cast<double>(found.weights[k]);
+        sum += weight * heights_[at(triangle.corner[k])];
+        weights += weight;
+    }
+    return sum / weights;
+}
+
 void VertexSand::take(const Remapped& result) {
     for (const Remapped::Share& share : result.shares) {
         if (magnitudeOf(share.volume) >= kVolumeLimit) {  // possible only if the sand before was beyond the limits

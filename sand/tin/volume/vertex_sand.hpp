@@ -59,6 +59,8 @@ public:
     [[nodiscard]] const std::vector<std::int64_t>& stars() const { return stars_; }      // by vertex [probe unit²]
     /// By vertex [unit]: IEEE quotients volume / star, the same on every machine. Exact if they are integers.
     [[nodiscard]] const std::vector<double>& heights() const { return heights_; }
+    /// Returns the height of the linear surface at a place that locate() has found [unit].
+    [[nodiscard]] double heightAt(const Located& found) const;
     [[nodiscard]] const std::vector<std::uint8_t>& moving() const { return moving_; }  // by vertex: 1 or 0
     [[nodiscard]] Wide volume() const;
     [[nodiscard]] Wide ground() const;  // sum of all stars [probe unit²]: six times the area

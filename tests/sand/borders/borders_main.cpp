@@ -183,6 +183,23 @@ void measureHeldTools(Table& table, int n) {
     }
 }
 
+/// Measures slopes of a TIN from which all sand has slid away below a tool that is held.
+void measureSlopes(Table& table, int n) {
+    using enum sand::ToolKind;
+    for (const auto& [east, place] : {std::pair{64.7, "beyond an open rim"}, {58.0, "within an open rim"}}) {
+        for (const sand::ToolKind kind : support::everyTool()) {
+            const std::string at = fmt::format("slope below a tool, {}, TIN, {}", place, base::nameOf(kind));
+            if (table.wants(at)) {
+                const double lifted = borders::slideFromTool(n, kind, east, false).missing;
+                const borders::OpenTable held = borders::slideFromTool(n, kind, east, true);
+                table.row(fmt::format("{}: sand that is missing; without the tool {:.2f}", at, lifted), held.missing,
+                          lifted + 0.2, "cell3");
+                table.row("the same, not at rest after 1000 steps", held.atRest ? 0 : 1, 0, "");
+            }
+        }
+    }
+}
+
 bool measure(int n, const std::string& only, bool lists) {
     Table table(only, lists);
     if (!lists) {
@@ -192,6 +209,7 @@ bool measure(int n, const std::string& only, bool lists) {
     measureTools(table, n);
     measurePlanes(table, n);
     measureHeldTools(table, n);
+    measureSlopes(table, n);
     return table.good();
 }
 

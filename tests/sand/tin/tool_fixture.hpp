@@ -40,17 +40,9 @@ inline base::Bytes bytesOf(const VertexSand& layer) {
 /// Returns the height of the linear surface [unit]. The search begins at triangle `near`, and sets `near` to the
 /// triangle that it finds.
 inline double heightAt(const VertexSand& layer, const LatticePoint& place, std::int32_t& near) {
-    const auto& mesh = layer.triangles();
-    const auto found = sand::tin::locate(mesh, place, near);
+    const auto found = sand::tin::locate(layer.triangles(), place, near);
     near = found.triangle;
-    const auto& corner = mesh.triangles[static_cast<std::size_t>(found.triangle)].corner;
-    double sum = 0, weights = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const auto weight = static_cast<double>(found.weights[k]);
-        sum += weight * layer.heights()[static_cast<std::size_t>(corner[k])];
-        weights += weight;
-    }
-    return sum / weights;
+    return layer.heightAt(found);
 }
 inline double heightAt(const VertexSand& layer, const LatticePoint& place) {
     std::int32_t near = sand::tin::kNoNumber;
