@@ -17,7 +17,7 @@
 #include "host/print_line.hpp"
 #include "master/failure_report.hpp"
 #include "master/frame_cost.hpp"
-#include "master/wall_pictures.hpp"
+#include "master/pictures/wall_pictures.hpp"
 
 namespace master {
 namespace {

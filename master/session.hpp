@@ -9,11 +9,11 @@
 
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
-#include "master/film.hpp"
 #include "master/frame_clock.hpp"
 #include "master/master_sand.hpp"
 #include "master/measurements.hpp"
 #include "master/operator_desk.hpp"
+#include "master/pictures/film.hpp"
 #include "master/rank_labels.hpp"
 #include "master/sand_check.hpp"
 #include "master/session_options.hpp"
