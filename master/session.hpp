@@ -82,6 +82,7 @@ private:
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
     void printProgress(bool last);
+    [[nodiscard]] int writeResults(bool agreed);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
     void fillHand(Summary& summary) const;
