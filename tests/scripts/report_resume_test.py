@@ -15,6 +15,7 @@ import unittest
 from report_fixture import NAMES
 from report_run import LONGEST, Report
 
+
 def without_times(text):
     """Returns a page without times, loads and the commit."""
     text = re.sub(r"\d+\.\d+ before and \d+\.\d+ after|\| \d+\.\d+ s \||at most \d+\.\d+ \(\w+\)|takes? about \d+ \w+", "TIME", text)
