@@ -124,7 +124,7 @@ walls::Wall loadWall(const ProgramOptions& options) {
                : walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
 }
 
-/// Throws base::InputError if the ranks of the job cannot draw this wall where the launcher wants it.
+/// Throws base::InputError if the wall needs other ranks than the job has, or ranks on other machines.
 void requireRanks(const lockstep::Cluster& cluster, const walls::Wall& wall, const ProgramOptions& options) {
     if (wall.ranks() != cluster.renderRanks()) {
         throw base::InputError(

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-/// What the fields of a file of points mean: its numbers, and the names of its columns.
+/// The meaning of the fields of a file of points: of numbers, and of the names of columns.
 namespace scene {
 
 /// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers

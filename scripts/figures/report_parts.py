@@ -95,8 +95,9 @@ def release(root=ROOT):
 
 
 def fingerprint(source, root=ROOT):
-    """Returns a hash of the code that measures: the file, the files of bench/ and tests/support/ that it includes, and the scripts
-    beside it that it imports.
+    """Returns a hash of the code that measures.
+
+    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts beside it that it imports.
 
     Comments and spaces do not count. The lists of curves and the writer of tables do not count either.
     """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What sandwall-replay refuses.
+// Options, files and steps that sandwall-replay refuses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

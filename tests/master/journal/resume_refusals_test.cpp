@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Journals and scenes with which no session continues.
+// Journals and scenes that no session continues with.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
