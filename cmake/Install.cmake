@@ -36,7 +36,7 @@ install(PROGRAMS scripts/launcher/sandwall DESTINATION ${private}/python)
 install(FILES
     scripts/launcher/checked_json.py scripts/launcher/command_line.py scripts/launcher/completion.py
     scripts/launcher/console.py scripts/launcher/desk.py scripts/launcher/doctor.py
-    scripts/launcher/environment.py scripts/launcher/events.py
+    scripts/launcher/environment.py scripts/launcher/events.py scripts/launcher/examined_host.py
     scripts/launcher/failed_processes.py scripts/launcher/film.py scripts/launcher/first_frame.py
     scripts/launcher/job_log.py scripts/launcher/job_stream.py scripts/launcher/json_schema.py
     scripts/launcher/layout.py scripts/launcher/mpirun_end.py scripts/launcher/open_mpi.py scripts/launcher/pointer.py

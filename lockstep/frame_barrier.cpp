@@ -24,9 +24,6 @@ struct Ending {
     std::int64_t quiet = 0;  // [ns], shortest time until the next frame begins
 };
 
-enum PassTag : int { kLengthTag = 20, kPieceTag };
-constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
-
 }  // namespace
 
 FrameBarrier::FrameBarrier(const Cluster& cluster, std::vector<std::string> names, double limitSeconds,
@@ -262,59 +259,6 @@ Verdict FrameBarrier::meet(const Arrival& mine, std::int64_t nextFrame) {
     }
     watchdog_->startUpIsOver();
     return ending.verdict;
-}
-
-base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base::Bytes& bytes) {
-    const Watched watched(*watchdog_);
-    base::Bytes got;
-    const bool sends = cluster_.rank() == from;
-    if (!sends && std::find(to.begin(), to.end(), cluster_.rank()) == to.end()) {
-        return got;
-    }
-    const std::vector<int> peers = sends ? to : std::vector<int>{from};
-    std::vector<MPI_Request> requests(peers.size(), MPI_REQUEST_NULL);
-    const auto move = [&](std::uint8_t* data, std::uint64_t count, int tag) {
-        for (std::size_t i = 0; i < peers.size(); ++i) {
-            const auto length = static_cast<int>(count);
-            if (sends) {
-                MPI_Isend(data, length, MPI_BYTE, peers[i], tag, cluster_.frames(), &requests[i]);
-            } else {
-                MPI_Irecv(data, length, MPI_BYTE, peers[i], tag, cluster_.frames(), &requests[i]);
-            }
-        }
-        if (sends) {
-            ring(peers);
-        }
-        await(requests, peers, sends ? Backoff() : backoffFor(peers));
-    };
-    std::uint64_t length = bytes.size();
-    move(reinterpret_cast<std::uint8_t*>(&length), sizeof length, kLengthTag);
-    if (!sends) {
-        got.resize(length);
-    }
-    // One pointer serves both directions; a rank that sends only reads from it.
-    std::uint8_t* const data = sends ? const_cast<std::uint8_t*>(bytes.data()) : got.data();
-    for (std::uint64_t done = 0; done < length; done += kPiece) {
-        move(data + done, std::min(kPiece, length - done), kPieceTag);
-    }
-    return got;
-}
-
-std::vector<base::Bytes> FrameBarrier::collect(const base::Bytes& mine) {
-    if (!cluster_.isMaster()) {
-        (void)pass(cluster_.rank(), {kMaster}, mine);
-        return {};
-    }
-    std::vector<base::Bytes> all{mine};
-    for (const int rank : ranks_) {
-        all.push_back(pass(rank, {kMaster}, {}));
-    }
-    return all;
-}
-
-base::Bytes FrameBarrier::broadcast(const base::Bytes& fromMaster) {
-    base::Bytes got = pass(kMaster, cluster_.isMaster() ? ranks_ : std::vector<int>{cluster_.rank()}, fromMaster);
-    return cluster_.isMaster() ? fromMaster : got;
 }
 
 }  // namespace lockstep

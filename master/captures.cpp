@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/input_error.hpp"
-#include "master/wall_pictures.hpp"
+#include "master/pictures/wall_pictures.hpp"
 
 namespace master {
 namespace {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/session.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -10,14 +8,11 @@
 #include <thread>
 #include <utility>
 
-#include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
-#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "master/failure_report.hpp"
 #include "master/frame_cost.hpp"
-#include "master/wall_pictures.hpp"
 
 namespace master {
 namespace {
@@ -228,51 +223,6 @@ bool Session::agree(const lockstep::FrameMessage& frame) {
     return check_.agree(frame, mine, sand_, *steps_, clock_.next(held()));
 }
 
-Incidents Session::incidents() const {
-    Incidents all = counted_;
-    all.firstDifference = check_.firstDifference();
-    all.stops += record_.stops();
-    all.stepsUnplaced += sand_.stepsUnplaced();
-    const haptic_bridge::LinkCounters link = steps_->counters();
-    all.links += link.links;
-    all.reconnects += link.reconnects;
-    for (std::size_t i = 0; i < all.refused.size(); ++i) {
-        all.refusedHere[i] += link.refusedHere[i];
-        all.refused[i] += link.refused[i];
-    }
-    return all;
-}
-
-nlohmann::json Session::status() const {
-    const sand::Replica& sand = sand_.replica();
-    nlohmann::json status{{"frame", frame_},
-                          {"step", sand.stepNumber()},
-                          {"ranks", wall_.ranks()},
-                          {"linked", steps_->linked()},
-                          {"streaming", steps_->streaming()},
-                          {"tool_radius", sand.toolRadius()},
-                          {"tool_shape", std::string(base::nameOf(sand.tool().kind))},
-                          {"tool_heading", sand::degreesOf(sand.heading())},
-                          {"state_hash", fmt::format("{:016x}", sand_.hash())},
-                          {"checking_journal", check_.pending()},
-                          {"edits", sand_.edits()},
-                          {"can_undo", sand.canUndo()},
-                          {"sweeps_owed", sweepsOwed()},
-                          {"settling", sand.settling()}};
-    const Incidents all = incidents();
-    host::JsonWriter writer(status);
-    Incidents::counters(all, writer);
-    measure_.describe(status, labels_.names);
-    record_.describe(status);
-    return status;
-}
-
-void Session::printProgress(bool last) {
-    const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
-    measure_.printProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, monotonicNs(),
-                           options_.pointer ? Measurements::Reader::digs : Measurements::Reader::operates);
-}
-
 int Session::run() {
     bool agreed = true;
     for (bool more = true; agreed && more;) {
@@ -284,34 +234,7 @@ int Session::run() {
             film_->take(barrier_);
         }
     }
-    {
-        const lockstep::Busy busy(barrier_, "the files that it writes");
-        desk_.close();
-    }
-    const Summary result = finish(agreed);
-    int status = agreed && !steps_->strayed() ? 0 : 1;
-    if (const std::string doubt = agreed ? doubtAbout(result) : std::string(); !doubt.empty()) {
-        host::printLine("{}", doubt);
-        (void)writeFailure({"sand", -1, "", "", doubt}, options_.out);
-        status = 1;
-    }
-    try {
-        writeSummary(result, options_.out / "summary.json");
-    } catch (const base::InputError& error) {  // the ranks still have pictures to send
-        host::printLine("{}", error.what());
-        (void)writeFailure({"summary", -1, "", "", error.what()}, options_.out);
-        status = 1;
-    }
-    if (agreed && film_) {
-        film_->take(barrier_);
-    } else if (agreed && options_.pictures) {
-        writeWallPictures(barrier_, desk_.shownWall(), options_.out);
-    }
-    if (options_.report) {
-        fmt::print("{}", describe(result));
-    }
-    barrier_.watchdog().arm();  // until the destructor of the barrier, because the members after it wait for the disk
-    return status;
+    return writeResults(agreed);
 }
 
 }  // namespace master

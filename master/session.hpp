@@ -9,11 +9,11 @@
 
 #include "lockstep/frame_barrier.hpp"
 #include "lockstep/frame_message.hpp"
-#include "master/film.hpp"
 #include "master/frame_clock.hpp"
 #include "master/master_sand.hpp"
 #include "master/measurements.hpp"
 #include "master/operator_desk.hpp"
+#include "master/pictures/film.hpp"
 #include "master/rank_labels.hpp"
 #include "master/sand_check.hpp"
 #include "master/session_options.hpp"
@@ -82,6 +82,7 @@ private:
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
     void printProgress(bool last);
+    [[nodiscard]] int writeResults(bool agreed);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
     void fillHand(Summary& summary) const;

@@ -4,13 +4,49 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
+#include "base/input_error.hpp"
 #include "host/print_line.hpp"
 #include "lockstep/session_message.hpp"
+#include "master/failure_report.hpp"
+#include "master/pictures/wall_pictures.hpp"
 #include "master/recovery.hpp"
 #include "master/session.hpp"
 
 namespace master {
+
+/// Ends the session, writes its results, and returns its exit status. `agreed`: the ranks agreed to the end.
+int Session::writeResults(bool agreed) {
+    {
+        const lockstep::Busy busy(barrier_, "the files that it writes");
+        desk_.close();
+    }
+    const Summary result = finish(agreed);
+    int status = agreed && !steps_->strayed() ? 0 : 1;
+    if (const std::string doubt = agreed ? doubtAbout(result) : std::string(); !doubt.empty()) {
+        host::printLine("{}", doubt);
+        (void)writeFailure({"sand", -1, "", "", doubt}, options_.out);
+        status = 1;
+    }
+    try {
+        writeSummary(result, options_.out / "summary.json");
+    } catch (const base::InputError& error) {  // the ranks still have pictures to send
+        host::printLine("{}", error.what());
+        (void)writeFailure({"summary", -1, "", "", error.what()}, options_.out);
+        status = 1;
+    }
+    if (agreed && film_) {
+        film_->take(barrier_);
+    } else if (agreed && options_.pictures) {
+        writeWallPictures(barrier_, desk_.shownWall(), options_.out);
+    }
+    if (options_.report) {
+        fmt::print("{}", describe(result));
+    }
+    barrier_.watchdog().arm();  // until the destructor of the barrier, because the members after it wait for the disk
+    return status;
+}
 
 /// Ends the link and the journal, and returns the results. `agreed`: the ranks agreed to the end.
 Summary Session::finish(bool agreed) {

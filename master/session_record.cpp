@@ -9,7 +9,7 @@
 #include "host/build_id.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
-#include "master/film.hpp"
+#include "master/pictures/film.hpp"
 
 namespace master {
 namespace {

@@ -4,13 +4,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>
-#include <vector>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/loop/tick_replay.hpp"
@@ -23,6 +19,7 @@
 #include "replay/checks.hpp"
 #include "replay/export.hpp"
 #include "replay/recover.hpp"
+#include "replay/replay_options.hpp"
 #include "replay/verify.hpp"
 #include "sand/replica.hpp"
 #include "scene/export/raster.hpp"
@@ -32,34 +29,11 @@
 
 namespace {
 
-struct Options {
-    std::string file;
-    bool hash = false;
-    bool verify = false;
-    bool volumes = false;
-    std::string heights, difference, mesh, forces, steps, recovered;
-    std::optional<std::uint64_t> until;
-
-    /// Returns whether no option asks for results of the replayed sand or of the hand.
-    [[nodiscard]] bool plain() const {
-        return !hash && !volumes && heights.empty() && difference.empty() && mesh.empty() && forces.empty();
-    }
-    /// Returns all files that are to be written, each with the option that names it.
-    [[nodiscard]] std::vector<std::pair<std::string, std::string>> outputs() const {
-        std::vector<std::pair<std::string, std::string>> all{{"--export", steps},
-                                                             {"--heights", heights},
-                                                             {"--difference", difference},
-                                                             {"--mesh", mesh},
-                                                             {"--forces", forces}};
-        std::erase_if(all, [](const auto& output) { return output.second.empty(); });
-        return all;
-    }
-};
-
 /// Recomputes the rows of sandwall-haptic-server --record while the steps are replayed.
 class Forces {
 public:
-    Forces(const journal::Journal& journal, const Options& options) : options_(options), replay_(journal.scene, {}) {
+    Forces(const journal::Journal& journal, const replay::ReplayOptions& options)
+        : options_(options), replay_(journal.scene, {}) {
         if (options.forces.empty()) {
             return;
         }
@@ -96,7 +70,7 @@ public:
     }
 
 private:
-    const Options& options_;
+    const replay::ReplayOptions& options_;
     haptic_bridge::TickReplay replay_;
     std::optional<host::WholeFile> file_;
     std::string rows_;
@@ -124,40 +98,7 @@ int replaySteps(const journal::Journal& journal, std::uint64_t until, sand::Repl
     return differing;
 }
 
-/// Throws base::InputError if one file would be written over another, or over the journal.
-void requireDifferentFiles(const Options& options) {
-    std::map<std::filesystem::path, std::string> writers;
-    std::error_code none;
-    writers.emplace(std::filesystem::weakly_canonical(options.file, none), "FILE");
-    for (const auto& [option, file] : options.outputs()) {
-        const bool plain = !std::filesystem::exists(file, none) || std::filesystem::is_regular_file(file, none);
-        const auto [other, isNew] = writers.emplace(std::filesystem::weakly_canonical(file, none), option);
-        if (plain && !isNew) {
-            throw base::InputError(fmt::format("{} and {}: both name {}; choose another file for one of them",
-                                               other->second, option, file));
-        }
-    }
-}
-
-/// Checks all outputs before the replay, which may take hours.
-void checkOutputs(const Options& options) {
-    requireDifferentFiles(options);
-    if (!options.mesh.empty()) {
-        scene::checkMeshName(options.mesh);
-    }
-    for (const std::string& file : {options.heights, options.difference}) {
-        if (!file.empty()) {
-            scene::checkRasterName(file);
-        }
-    }
-    for (const std::string& file : {options.steps, options.heights, options.difference, options.mesh}) {
-        if (!file.empty()) {
-            host::requireWritable(file);
-        }
-    }
-}
-
-void writeRasters(const sand::HeightField& field, const scene::Scene& scene, const Options& options) {
+void writeRasters(const sand::HeightField& field, const scene::Scene& scene, const replay::ReplayOptions& options) {
     if (!options.heights.empty()) {
         scene::writeRaster(scene::heightsOf(field, scene), options.heights);
     }
@@ -177,7 +118,7 @@ void writeRasters(const sand::HeightField& field, const scene::Scene& scene, con
     }
 }
 
-void writeOutputs(const sand::Replica& replica, const scene::Scene& scene, const Options& options) {
+void writeOutputs(const sand::Replica& replica, const scene::Scene& scene, const replay::ReplayOptions& options) {
     if (!options.mesh.empty()) {
         scene::writeMesh(scene::meshOf(replica, scene), options.mesh);
     }
@@ -188,7 +129,7 @@ void writeOutputs(const sand::Replica& replica, const scene::Scene& scene, const
     }
 }
 
-int run(const Options& options) {
+int run(const replay::ReplayOptions& options) {
     const std::int64_t free = host::freeMemoryOfProcess();
     if (!options.recovered.empty()) {
         replay::requireMemory(options.file, replay::DecodedFor::scene, free);
@@ -199,7 +140,7 @@ int run(const Options& options) {
         replay::requireMemory(options.file, replay::DecodedFor::replica, free);
         return replay::verifyJournal(options.file);
     }
-    checkOutputs(options);
+    options.checkOutputs();
     const bool onlyExports = !options.steps.empty() && options.plain();
     replay::requireMemory(options.file, onlyExports ? replay::DecodedFor::scene : replay::DecodedFor::replica, free);
     if (!options.steps.empty()) {
@@ -242,48 +183,6 @@ void requirePrinted() {
     }
 }
 
-/// Returns an error text for a negative number, which would otherwise be read as a huge one.
-std::string notNegative(const std::string& text) {
-    return text.starts_with('-') ? "a step's number is 0 or more, got " + text : "";
-}
-
-/// Returns an error text for an empty name, which would otherwise mean that no file is wanted.
-std::string notEmpty(const std::string& text) { return text.empty() ? "name a file" : ""; }
-
-/// Describes the options. All options that read the replayed sand can be combined, also with --export. --verify and
-/// --recover read every record themselves, so they exclude all other options.
-void describe(host::CommandLine& line, Options& options) {
-    line.option("FILE", options.file, "session.journal of a session, or the session's folder").required();
-    const std::vector<host::Option> combined{
-        line.flag("--hash", options.hash, "print the state hash after the last step"),
-        line.option(
-                "--heights", options.heights,
-                "write the heights after the last step, in the terrain's coordinates: a .tif, or an ESRI ASCII grid")
-            .check(notEmpty),
-        line.option("--difference", options.difference,
-                    "write how much higher the sand is than at the start, in the same formats")
-            .check(notEmpty),
-        line.option("--mesh", options.mesh, "write the surface as triangles: a .ply or .obj").check(notEmpty),
-        line.flag("--volumes", options.volumes, "print what was cut and filled since the start, as one line of JSON"),
-        line.option("--forces", options.forces,
-                    "recompute what a hand felt at every tick, from a session recorded with --record, into this CSV "
-                    "file")
-            .check(notEmpty),
-        line.option("--until", options.until, "stop after this step").check(notNegative),
-        line.option("--export", options.steps, "write every step as a row of this CSV file").check(notEmpty)};
-    const host::Option verify = line.flag("--verify", options.verify,
-                                          "check records, parts, hashes and checkpoints; excludes all other options");
-    const host::Option recover =
-        line.option("--recover", options.recovered,
-                    "write the intact part of a damaged journal as a new journal; excludes all other options")
-            .check(notEmpty);
-    verify.excludes(recover);
-    for (const host::Option& other : combined) {
-        verify.excludes(other);
-        recover.excludes(other);
-    }
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -297,8 +196,8 @@ int main(int argc, char** argv) {
         "Replays the journal of a session, bit for bit, and checks it against the session's own hashes.\n"
         "Exit status: 0 equal, 1 different, 2 unusable.",
         "sandwall-replay");
-    Options options;
-    describe(line, options);
+    replay::ReplayOptions options;
+    options.addTo(line);
     return host::runMain(
         line, argc, argv,
         [&] {

@@ -22,10 +22,6 @@ libraries=(
     libssl-dev                                              # secrets and TLS on the haptic link
     libgtest-dev libbenchmark-dev libcgal-dev               # tests and benchmarks
 )
-# The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
-# events of sessions against the schemas, make and check a Debian package, and move pointer and windows with xdotool and
-# openbox. The report draws its curves with matplotlib. Of packages with a bar between them, one is enough: the first that
-# this Debian has.
 cross=''
 refuse() { echo "install_dependencies.sh: $*" >&2; exit 2; }
 
@@ -47,6 +43,10 @@ add_node() {
     fi
 }
 
+# The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
+# events of sessions against the schemas. They make and check a Debian package, and move pointer and windows with xdotool and
+# openbox. The report draws its curves with matplotlib. A bar separates packages that replace each other: the script installs
+# the first that this Debian has.
 for option in "$@"; do
     case "$option" in
         --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool) ;;

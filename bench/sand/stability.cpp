@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
-#include "base/input_error.hpp"
+#include "bench/report/chosen_rows.hpp"
 #include "bench/report/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "scene/model/scene.hpp"
@@ -82,24 +83,14 @@ struct SweptArm {
 /// name.
 std::vector<SweptArm> swept(const Settings& settings, const std::vector<double>& dampings) {
     std::vector<SweptArm> arms;
-    std::string names;
     for (const std::string_view arm : haptic_bridge::kArmPresets) {
         for (const int delay : {0, 1}) {
             for (const double damping : dampings) {
                 arms.push_back({fmt::format("{}/{}/{:g}", arm, delay, damping), arm, delay, damping});
-                names += (names.empty() ? "" : ", ") + arms.back().name;
             }
         }
     }
-    for (const std::string& wanted : settings.rows) {
-        if (std::ranges::find(arms, wanted, &SweptArm::name) == arms.end()) {
-            throw base::InputError(fmt::format("--rows: there is no \"{}\"; choose from {}", wanted, names));
-        }
-    }
-    std::erase_if(arms, [&](const SweptArm& arm) {
-        return !settings.rows.empty() && std::ranges::find(settings.rows, arm.name) == settings.rows.end();
-    });
-    return arms;
+    return chosenRows(std::move(arms), settings.rows);
 }
 
 }  // namespace

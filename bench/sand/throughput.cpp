@@ -5,8 +5,9 @@
 #include <functional>
 #include <random>
 #include <thread>
+#include <utility>
 
-#include "base/input_error.hpp"
+#include "bench/report/chosen_rows.hpp"
 #include "bench/report/curves.hpp"
 #include "bench/report/timing.hpp"
 #include "bench/sand/baseline_schemes.hpp"
@@ -204,19 +205,7 @@ std::vector<Row> rowsFor(const Settings& settings, const sand::HeightField& roug
         rows.push_back(
             {name, 1, [&rough, kind = scheme](int, int runs) { return measureBaseline(kind, rough, runs); }});
     }
-    std::string names;
-    for (const Row& row : rows) {
-        names += (names.empty() ? "" : ", ") + row.name;
-    }
-    for (const std::string& wanted : settings.rows) {
-        if (std::ranges::find(rows, wanted, &Row::name) == rows.end()) {
-            throw base::InputError(fmt::format("--rows: there is no \"{}\"; choose from {}", wanted, names));
-        }
-    }
-    std::erase_if(rows, [&](const Row& row) {
-        return !settings.rows.empty() && std::ranges::find(settings.rows, row.name) == settings.rows.end();
-    });
-    return rows;
+    return chosenRows(std::move(rows), settings.rows);
 }
 
 }  // namespace

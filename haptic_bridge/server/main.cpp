@@ -18,6 +18,7 @@
 #include "haptic_bridge/server/listen_at.hpp"
 #include "haptic_bridge/server/listener.hpp"
 #include "haptic_bridge/server/parent_watch.hpp"
+#include "haptic_bridge/server/server_options.hpp"
 #include "haptic_bridge/server/timings.hpp"
 #include "host/clock.hpp"
 #include "host/command_line.hpp"
@@ -32,20 +33,6 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using namespace haptic_bridge;
-
-struct Options {
-    std::string scene, device, listen = "127.0.0.1:7750", portFile, timings;
-    std::vector<std::string> map;
-    Pace pace = Pace::realtime;
-    Guards::Mode guards = Guards::Mode::on;
-    int sandThreads = 1;
-    TimingTests tests;
-    bool endWithParent = false;
-    std::string record;
-    bool force = true;
-    double forceScale = 1;
-    LinkOptions link;
-};
 
 void print(const std::string& line) {
     std::fprintf(stderr, "sandwall-haptic-server: %s\n", line.c_str());
@@ -128,7 +115,7 @@ scene::Scene openScene(const std::string& file) {
     return scene;
 }
 
-std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTick& hand, FirstFailure& failure) {
+std::unique_ptr<TickRecorder> recorderOf(const ServerOptions& options, const HapticTick& hand, FirstFailure& failure) {
     if (options.record.empty()) {
         return nullptr;
     }
@@ -136,7 +123,7 @@ std::unique_ptr<TickRecorder> recorderOf(const Options& options, const HapticTic
                                           hand, failure);
 }
 
-Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_context& io, HapticTick& hand) {
+Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio::io_context& io, HapticTick& hand) {
     Service service{.io = io};
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
@@ -148,7 +135,7 @@ Service serviceOf(const Options& options, const scene::Scene& scene, asio::io_co
     return service;
 }
 
-void announce(const Options& options, const HapticTick& hand, const asio::ip::tcp::endpoint& endpoint) {
+void announce(const ServerOptions& options, const HapticTick& hand, const asio::ip::tcp::endpoint& endpoint) {
     writePortFile(options.portFile, endpoint.port());
     for (const std::string& line : hand.limitsInWords()) {
         print(line);
@@ -171,7 +158,7 @@ void runLinks(asio::io_context& io) {
     }
 }
 
-void printEnd(const Options& options, const HapticTick& hand, const ForceLoop* loop) {
+void printEnd(const ServerOptions& options, const HapticTick& hand, const ForceLoop* loop) {
     if (loop != nullptr) {
         print(loop->summary());
     }
@@ -181,22 +168,8 @@ void printEnd(const Options& options, const HapticTick& hand, const ForceLoop* l
     }
 }
 
-/// Refuses what a real device cannot do or may not get. Call it before the device is opened.
-void checkRealDevice(const Options& options) {
-    if (isRealDevice(options.device) && options.pace == Pace::fast) {
-        throw base::InputError(
-            "--pace fast: drives a virtual clock, which a real device cannot follow; use it with script:, trace: or "
-            "sim:, or give --pace realtime");
-    }
-    if (isRealDevice(options.device) && options.guards == Guards::Mode::literal) {
-        throw base::InputError(
-            "--guards literal: sends the law without limits, which only a simulated arm may get; use it with sim:, or "
-            "give --guards on");
-    }
-}
-
-void serve(const Options& options) {
-    checkRealDevice(options);
+void serve(const ServerOptions& options) {
+    options.checkRealDevice();
     const LinkSecurity security = options.link.forServer();
     const scene::Scene scene = openScene(options.scene);
     const HandSettings settings = HandSettings::parse(options.map);
@@ -251,52 +224,6 @@ void serve(const Options& options) {
     printEnd(options, hand, loop.get());
 }
 
-void describe(host::CommandLine& line, Options& options) {
-    line.option("--scene", options.scene, "scene file, the same as the wall's").required();
-    line.option("--device", options.device,
-                "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET or spacenav")
-        .beginnings({"script:", "trace:", "driver:", "sim:", "spacenav"})
-        .required();
-    line.option("--map", options.map, "mapping from the device to the scene; docs/devices.md")
-        .metavar("KEY=VALUE")
-        .oneValueEach()
-        .offeredBy({"run"});
-    line.choice("--pace", options.pace,
-                "fast: a virtual clock that runs as fast as the wall; not for driver: and spacenav")
-        .offeredBy({"run"});
-    line.option("--record", options.record, "file to write with every tick of the device and its force; docs/forces.md")
-        .metavar("FILE.csv")
-        .offeredBy({"run"});
-    line.choice<bool>("--force", options.force, {{"on", true}, {"off", false}},
-                      "whether an arm feels a force, until `ctl force` sets a share; with --resume it replaces the "
-                      "share that `ctl` had set")
-        .offeredBy({"run"});
-    line.option("--force-scale", options.forceScale,
-                "0 to 1: the share of the force that an arm feels, in the same way as --force")
-        .metavar("SHARE")
-        .range(0.0, 1.0)
-        .offeredBy({"run"});
-    line.choice<Guards::Mode>(
-            "--guards", options.guards, {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
-            "literal: the law as its paper prints it, without force limits, for simulated arms only; not for driver: "
-            "and spacenav; docs/forces.md")
-        .offeredBy({"run"});
-    line.option("--listen", options.listen, "ADDRESS:PORT; port 0 takes any free one");
-    line.option("--port-file", options.portFile, "file that gets the port's number when the server listens");
-    line.option("--timings", options.timings,
-                "CSV file for histograms at the end: period of the force loop and time for each force");
-    line.option("--timing-tests", options.tests.perSecond,
-                "timing tests a second, at random times (default: 4; docs/latency.md)")
-        .range(0.1, 100.0);
-    line.option("--timing-after", options.tests.after,
-                "[s] from the start of a link to its first timing test (default: 0)")
-        .range(0.0, 3600.0);
-    line.option("--timing-seed", options.tests.seed, "seed of the random times (default: 7)");
-    options.link.addTo(line, true);
-    host::addSandThreads(line, options.sandThreads).offeredBy({"run"});
-    line.flag("--die-with-parent", options.endWithParent, "end in order when the program that started this one ends");
-}
-
 }  // namespace
 
 int main(int count, char** words) {
@@ -309,8 +236,8 @@ int main(int count, char** words) {
     }
     host::CommandLine line("Feels the sand at 1 kHz, and streams the steps of the hand to the master of a wall.",
                            "sandwall-haptic-server");
-    Options options;
-    describe(line, options);
+    ServerOptions options;
+    options.addTo(line);
     if (const std::optional<int> status = line.parse(count, words)) {
         return *status;
     }

@@ -170,6 +170,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform5(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform6(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

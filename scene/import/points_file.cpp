@@ -18,101 +18,13 @@
 #include "base/text.hpp"
 #include "base/text_reader.hpp"
 #include "scene/import/metric_system.hpp"
+#include "scene/import/point_fields.hpp"
 
 namespace scene {
 namespace {
 
 constexpr std::string_view kTransform = "gdaltransform -s_srs EPSG:4326 -t_srs EPSG:";
 constexpr double kFlat = 1e-9;  // width / length below which a cloud counts as a line; doubles resolve little more
-
-/// Returns the values of a line. Commas separate them, unless a semicolon does, or unless blanks do between numbers
-/// with decimal commas.
-std::vector<std::string_view> fieldsOf(std::string_view text) {
-    if (text.find(';') != std::string_view::npos) {
-        return base::split(text, ';');
-    }
-    std::vector<std::string_view> words = base::words(text);
-    if (text.find(',') == std::string_view::npos) {
-        return words;
-    }
-    const bool decimal = words.size() > 1 && std::all_of(words.begin(), words.end(), [](std::string_view word) {
-                             return base::numberOf(word) || base::commaNumberOf(word);
-                         });
-    return decimal ? words : base::split(text, ',');
-}
-
-bool isDigit(char c) { return c >= '0' && c <= '9'; }
-/// Bytes of other letters in UTF-8 count as letters: "L\u00e4nge" is one word.
-bool isLetter(char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (static_cast<unsigned char>(c) & 0x80U) != 0;
-}
-
-/// Returns the words of a field: "WGS84_Lat [deg]" holds wgs, lat and deg.
-std::vector<std::string> wordsOf(std::string_view field) {
-    std::vector<std::string> words;
-    for (auto at = field.begin(); (at = std::find_if(at, field.end(), isLetter)) != field.end();) {
-        const auto end = std::find_if_not(at, field.end(), isLetter);
-        words.push_back(base::lowerCase({at, end}));
-        at = end;
-    }
-    return words;
-}
-
-bool holds(const std::vector<std::string>& words, std::initializer_list<std::string_view> any) {
-    return std::any_of(words.begin(), words.end(),
-                       [&](const std::string& word) { return std::find(any.begin(), any.end(), word) != any.end(); });
-}
-
-/// Returns whether a field means a number, even if it is mistyped, in quotes, or not finite. A measured value must not
-/// pass for a name.
-bool meansNumber(std::string_view field) {
-    const auto first = std::find_if(field.begin(), field.end(), [](char c) { return isDigit(c) || isLetter(c); });
-    if (first == field.end() || isDigit(*first)) {
-        return first != field.end();
-    }
-    return holds({wordsOf(field).front()}, {"nan", "inf", "infinity"});
-}
-
-bool isLatitude(std::string_view name) {
-    return holds(wordsOf(name), {"lat", "latitude", "latitud", "latitudine", "breite", "breitengrad"});
-}
-bool isDegrees(std::string_view name) {
-    return isLatitude(name) ||
-           holds(wordsOf(name), {"lon", "long", "lng", "longitude", "longitud", "longitudine", "laenge", "l\u00e4nge",
-                                 "l\u00c4nge", "laengengrad", "l\u00e4ngengrad", "deg", "degree", "degrees", "grad"});
-}
-
-/// Returns the axes that a column's name can mean: 0 for east, 1 for north, 2 for up. x and y are east and north as in
-/// mathematics and maps, and not as in the grids of some surveyors.
-std::vector<std::size_t> axesOf(std::string_view name) {
-    const std::vector<std::string> words = wordsOf(name);
-    std::vector<std::size_t> axes;
-    if (holds(words, {"x", "e", "east", "easting", "eastings", "rechtswert", "rechts", "ost", "ostwert", "est", "este",
-                      "xcoord", "coordx"})) {
-        axes.push_back(0);
-    }
-    if (holds(words, {"y", "n", "north", "northing", "northings", "hochwert", "hoch", "nord", "nordwert", "norte",
-                      "ycoord", "coordy"})) {
-        axes.push_back(1);
-    }
-    if (holds(words, {"z", "h", "height", "elev", "elevation", "alt", "altitude", "hoehe", "h\u00f6he", "cota",
-                      "zcoord", "coordz"})) {
-        axes.push_back(2);
-    }
-    return axes;
-}
-
-/// Returns whether a name has one of the letters x, y and z as a word: "x", "POINT_X", "y [m]".
-bool isLettered(std::string_view name) { return holds(wordsOf(name), {"x", "y", "z"}); }
-
-/// Returns whether a value is an angle as people write it: "47.1°", "47°06'30\"", "10.2E".
-bool isAngle(std::string_view field) {
-    if (field.find('\xB0') != std::string_view::npos || field.find("\xC2\xBA") != std::string_view::npos) {
-        return true;  // a degree sign in UTF-8 or Latin-1, or the ordinal sign that is often typed for it
-    }
-    const bool facing = !field.empty() && std::string_view("NSEW").find(field.back()) != std::string_view::npos;
-    return facing && base::numberOf(base::trimmed(field.substr(0, field.size() - 1)));
-}
 
 /// Points with the lines that contain them.
 class Cloud {
@@ -129,7 +41,7 @@ public:
         for (std::string_view text; lines.nextLine(text);) {
             const std::string_view content = base::trimmed(text.substr(0, text.find('#')));
             if (!content.empty()) {
-                add(fieldsOf(content), lines.line(), std::exchange(first, false));
+                add(pointFieldsOf(content), lines.line(), std::exchange(first, false));
             }
         }
         if (stream.bad()) {

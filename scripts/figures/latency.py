@@ -6,38 +6,25 @@ Runs whole sessions for that paper's three walls, directly and over a link that 
 in Markdown. `sandwall-bench latency` runs this script; docs/latency.md explains the table.
 """
 
-import ctypes
 import json
-import math
 import os
 import pathlib
-import re
-import signal
 import subprocess
 import sys
 import tempfile
-import time
 from dataclasses import dataclass
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import command_line
-import events
-import layout
+from measured_session import (BIN, REFRESH, SCENE, START_SECONDS, Failed, Helper, Load, Parser, circles, processor, session,
+                              smaller, stop_on_signals, write_csv)
 import open_mpi
 import rank_hosts
-import session_results
 from command_line import within
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BIN = layout.bin_folder()
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
             "sandwall-latency-floor")
-SCENE = ROOT / "scenes" / "sandbox.toml"
 FLOOR_SECONDS = 3  # longest measurement of a floor
-START_SECONDS = 120  # longest start of a session, on a busy machine
 TESTS_PER_SECOND = 20
-REFRESH = 60  # Hz, on every wall
 # Replaces a wireless network: a piece takes 3 to 9 ms, and one in fifty is lost and sent again.
 WIRELESS = {"delay": 3, "jitter": 6, "loss": 0.02, "stall": 40}
 
@@ -50,53 +37,11 @@ class Wall:
     paper: dict  # by link: mean and standard deviation [ms]
 
 
-@dataclass
-class Load:
-    name: str
-    divisor: int  # divides width and height in pixels of the wall file's tiles
-    stereo: bool
-    digs: bool
-
-
 WALLS = [Wall("portable", "portable.toml", 1, {"wired": (16.2, 9.8), "wireless": (24.9, 14.8)}),
          Wall("FLEX", "flex_cave.toml", 4, {"wired": (9.7, 5.6), "wireless": (16.0, 12.3)}),
          Wall("tiled wall", "tiled_3x4.toml", 13, {"wired": (13.6, 9.8), "wireless": (16.2, 14.0)})]
 LOADS = [Load("digging", 2, True, True), Load("still", 16, False, False)]
 LINKS = {"direct": "wired", "impaired": "wireless"}  # link here: link of the paper that it replaces
-
-
-class Failed(Exception):
-    """The reason, in one line, why a measurement failed."""
-
-
-class Helper:
-    """A program that runs beside the sessions and emits the event `listening`. It is ended by its process id."""
-
-    def __init__(self, *command):
-        self.log = tempfile.NamedTemporaryFile(prefix="sandwall-latency-")
-        self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                        stderr=self.log, env=dict(os.environ, **{events.VARIABLE: "1"}), start_new_session=True)
-        listening = events.wait_for(self.log.name, "listening", START_SECONDS, lambda: self.process.poll() is None)
-        if listening is None:
-            said = pathlib.Path(self.log.name).read_text(errors="replace").strip()[-300:]
-            self.stop()
-            raise Failed(f"{command[0]}: did not start: {said}")
-        self.address = listening["address"]
-
-    def stop(self):
-        self.process.terminate()
-        try:
-            self.process.wait(timeout=5)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
-        self.log.close()
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.stop()
 
 
 def impaired(address, seed):
@@ -118,69 +63,6 @@ class Through:
     def __exit__(self, *_):
         if self.helper:
             self.helper.stop()
-
-
-def circles(seconds):
-    """Returns a stroke list that lasts at least `seconds`: rings of all sizes, at 2 cells per step on 512² cells."""
-    lines, lasts, ring = ["speed 0.5", "depth 0.5", "stroke", "point 0.6 0"], 0.0, 0
-    while lasts < seconds:
-        radius = 0.6 - 0.04 * (ring % 13)
-        lines.append(f"arc 0 0 {radius:.2f} {radius:.2f} 0 360")
-        lasts += 2 * math.pi * radius / 0.5
-        ring += 1
-    return "\n".join(lines) + "\n"
-
-
-def smaller(folder, wall, load):
-    """Writes the wall file with fewer pixels. Returns the file and (width, height) of its largest tile [pixel]."""
-    text = (ROOT / "walls" / "configs" / wall.file).read_text()
-    sizes = []
-
-    def divide(match):
-        sizes.append((int(match[2]) // load.divisor, int(match[3]) // load.divisor))
-        return f"{match[1]}pixels = [{sizes[-1][0]}, {sizes[-1][1]}]"
-
-    file = folder / f"{load.divisor}_{wall.file}"
-    file.write_text(re.sub(r"^((?:tile_)?)pixels = \[(\d+), (\d+)\]", divide, text, flags=re.MULTILINE))
-    return file, max(sizes)
-
-
-def die_with_parent():
-    """Runs in the launcher before it begins: it ends its ranks in order if this script ends for any reason."""
-    PR_SET_PDEATHSIG = 1
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
-
-
-def session(folder, wall_file, load, haptic, args, scene=SCENE):
-    """Runs a wall for `args.warm_up` + `args.seconds` seconds and returns its summary."""
-    log, out = folder / "log.txt", folder / "out"
-    command = [ROOT / "scripts" / "sandwall", "run", "--here", "--wall", wall_file, "--scene", scene, "--haptic", haptic, "--out", out,
-               "--no-pictures", "--gl", layout.in_memory(), "--refresh", REFRESH, "--frame-timeout", START_SECONDS]
-    command += [] if load.stereo else ["--mono"]
-    with log.open("w") as said:
-        run = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=said, stderr=subprocess.STDOUT, text=True,
-                               env=dict(os.environ, SANDWALL_BIN=str(BIN), **{events.VARIABLE: "1"}), start_new_session=True, preexec_fn=die_with_parent)
-    try:
-        if events.wait_for(log, "link", START_SECONDS, lambda: run.poll() is None, state="linked") is None:
-            raise Failed(f"no hand was linked: {log.read_text(errors='replace').strip()[-300:]}")
-        time.sleep(args.warm_up + args.seconds)
-        try:
-            run.stdin.write("stop\n")
-            run.stdin.flush()
-        except BrokenPipeError:
-            pass  # the session has ended, and its status says why
-        if run.wait(timeout=START_SECONDS) != 0:
-            raise Failed(f"the session failed: {log.read_text(errors='replace').strip()[-300:]}")
-    except subprocess.TimeoutExpired:
-        raise Failed("the session did not end") from None
-    finally:
-        if run.poll() is None:
-            run.terminate()  # the launcher ends its ranks in order
-            try:
-                run.wait(timeout=START_SECONDS)
-            except subprocess.TimeoutExpired:
-                run.kill()
-    return session_results.read_summary(out)
 
 
 def floor(*words):
@@ -261,13 +143,6 @@ def cells(row):
             str(row["wall_count"])]
 
 
-def processor():
-    for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines():
-        if line.startswith("model name"):
-            return line.split(":")[1].strip()
-    return "unknown processor"
-
-
 def notes(args, before):
     cores = len(os.sched_getaffinity(0))
     return [f"machine: {processor()}, {cores} cores that the haptic server, the master and all render ranks share; OSMesa draws on the "
@@ -277,31 +152,6 @@ def notes(args, before):
             "Impaired link: every piece takes {delay} to {late} ms. {loss:.0%} of the pieces take {stall} ms more, and all pieces behind them wait. ".format(
                 late=WIRELESS["delay"] + WIRELESS["jitter"], **WIRELESS) + f"The seed is {args.seed}. This link replaces a wireless network, and is not one.",
             "Digging: that paper's tool on 512² cells, both eyes. Still: settled sand, one eye, so that hardly anything is drawn. Pixels are those of one eye."]
-
-
-def write_csv(file, rows, said, program):
-    """Writes rows to a file, or to standard output if `file` is None, as a table whose head has the lines `said` and the command
-    of `program`. Returns the exit status."""
-    lines = [f"# {line}" for line in [*said, f"command: {program} {' '.join(sys.argv[1:])}", time.strftime("date: %Y-%m-%dT%H:%M:%SZ", time.gmtime())]]
-    lines.append(",".join(rows[0]))
-    for row in rows:
-        lines.append(",".join(f"{value:.6g}" if isinstance(value, float) else str(value) for value in row.values()))
-    text = "\n".join(lines) + "\n"
-    try:
-        file.write_text(text) if file else sys.stdout.write(text)
-    except OSError as error:
-        print(f"{program}: {file}: cannot be written ({error.strerror})", file=sys.stderr)
-        return 1
-    return 0
-
-
-class Parser(command_line.Parser):
-    def chosen(self, option, text, known):
-        names = text.split(",")
-        for name in names:
-            if name not in known:
-                self.error(f"{option}: '{name}' is unknown; choose from {', '.join(known)}")
-        return [value for name, value in known.items() if name in names]
 
 
 def parse():
@@ -323,12 +173,6 @@ def parse():
         if not (BIN / program).is_file():
             parser.error(f"{BIN / program}: not built yet; run cmake --build build/release")
     return args
-
-
-def stop_on_signals():
-    def end(*_):
-        raise KeyboardInterrupt
-    signal.signal(signal.SIGTERM, end)
 
 
 def main():

@@ -16,8 +16,9 @@ import tempfile
 
 sys.dont_write_bytecode = True  # writes no files into the project's folder
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import latency
+import measured_session
 from command_line import Parser, above
+from latency import WALLS
 
 # Edges of the histogram of periods between two ticks [us]; the target is 1000.
 PERIODS = [0, 500, 900, 990, 1010, 1100, 1500, 2000, 5000, 20000]
@@ -61,36 +62,36 @@ def missed(buckets):
 
 
 def run(args):
-    wall, load = latency.WALLS[0], latency.Load("digging", 16, False, True)
+    wall, load = WALLS[0], measured_session.Load("digging", 16, False, True)
     with tempfile.TemporaryDirectory(prefix="sandwall-loop-") as name:
         folder = pathlib.Path(name)
         strokes, timings = folder / "hand.strokes", folder / "timings.csv"
-        strokes.write_text(latency.circles(args.seconds + latency.START_SECONDS))
-        wall_file, _ = latency.smaller(folder, wall, load)
-        with latency.Helper(latency.BIN / "sandwall-haptic-server", "--scene", args.scene, "--device", f"script:{strokes}",
+        strokes.write_text(measured_session.circles(args.seconds + measured_session.START_SECONDS))
+        wall_file, _ = measured_session.smaller(folder, wall, load)
+        with measured_session.Helper(measured_session.BIN / "sandwall-haptic-server", "--scene", args.scene, "--device", f"script:{strokes}",
                             "--listen", "127.0.0.1:0", "--timings", timings, "--die-with-parent") as server:
-            summary = latency.session(folder, wall_file, load, server.address, args, args.scene)
+            summary = measured_session.session(folder, wall_file, load, server.address, args, args.scene)
         return summary, read(timings)
 
 
 def main():
     parser = Parser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=above(float, 0), default=60, help="seconds of digging (default: 60)")
-    parser.add_argument("--scene", type=pathlib.Path, default=latency.SCENE, help="scene file (default: scenes/sandbox.toml)")
+    parser.add_argument("--scene", type=pathlib.Path, default=measured_session.SCENE, help="scene file (default: scenes/sandbox.toml)")
     args = parser.parse_args()
     args.warm_up = 0
     before = os.getloadavg()[0]
-    latency.stop_on_signals()
+    measured_session.stop_on_signals()
     try:
         summary, found = run(args)
-    except latency.Failed as complaint:
+    except measured_session.Failed as complaint:
         print(f"loop_timings.py: {complaint}", file=sys.stderr)
         return 1
     print(table("period of the force loop", found["period"], PERIODS))
     print("\n" + table("one force evaluation, by the clock", found["force"], FORCES))
     ticks = sum(count for _, count in found["period"])
     print(f"\n- {missed(found['period']):.2f} per mille of {ticks} deadlines missed: the deadline passed before the tick before it had come")
-    print(f"- {latency.processor()}, {len(os.sched_getaffinity(0))} cores shared by the haptic server (force loop, sand), the master and a render rank; "
+    print(f"- {measured_session.processor()}, {len(os.sched_getaffinity(0))} cores shared by the haptic server (force loop, sand), the master and a render rank; "
           f"load average {before:.1f} before and {os.getloadavg()[0]:.1f} after; {summary['steps']} steps of sand dug by the tool of Dorjgotov et al. 2007")
     return 0
 

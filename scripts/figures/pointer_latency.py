@@ -20,7 +20,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher")
 import events
 import session_results
 from command_line import above, at_least
-from latency import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, pm, processor
+from latency import pm
+from measured_session import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
 from x_server import XServer
 
 SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml

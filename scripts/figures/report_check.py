@@ -9,7 +9,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from latency import die_with_parent
+from measured_session import die_with_parent
 from report_data import Table, TableFault
 from report_measure import state_of
 

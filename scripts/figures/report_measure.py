@@ -9,7 +9,7 @@ import subprocess
 import tempfile
 import time
 
-from latency import die_with_parent
+from measured_session import die_with_parent
 from report_data import Table, TableFault
 from report_parts import ROOT, algorithm_version, fingerprint, release, why_old
 

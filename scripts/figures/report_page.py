@@ -175,14 +175,17 @@ def page(out, draw, sections, parts, why=None, now=None):
 
 
 def draw_figure(name, table, file):
-    """Draws the figure `name` of report_figures into a file."""
-    import report_figures  # needs matplotlib, which the text does not
-    figure = getattr(report_figures, name)(table)
+    """Draws the figure `name` of report_pile_figures or report_step_figures into a file."""
+    import report_pile_figures  # these need matplotlib, which the text does not
+    import report_step_figures
+    from report_plot import plt
+    functions = {**vars(report_pile_figures), **vars(report_step_figures)}
+    figure = functions[name](table)
     try:
         # Stronger compression, without loss.
         figure.savefig(file, format="png", bbox_inches="tight", pil_kwargs={"optimize": True})
     finally:
-        report_figures.plt.close(figure)
+        plt.close(figure)
 
 
 def write_page(out, sections, parts, why, now, draw=draw_figure):

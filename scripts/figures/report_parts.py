@@ -95,7 +95,9 @@ def release(root=ROOT):
 
 
 def fingerprint(source, root=ROOT):
-    """Returns a hash of the code that measures: the file, and the files of bench/ and tests/support/ that it includes.
+    """Returns a hash of the code that measures.
+
+    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts beside it that it imports.
 
     Comments and spaces do not count. The lists of curves and the writer of tables do not count either.
     """
@@ -109,6 +111,8 @@ def fingerprint(source, root=ROOT):
         seen[name] = re.sub(r"//[^\n]*|\s+" if name.endswith("pp") else r"^\s*#[^\n]*", "", text, flags=re.MULTILINE)
         for included in re.findall(r'#include "((?:bench|tests/support)/[^"]+)"', text):
             waiting += [included, re.sub(r"\.hpp$", ".cpp", included)]
+        if name.endswith(".py"):
+            waiting += [str(pathlib.PurePath(name).with_name(f"{module}.py")) for module in re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE)]
     return hashlib.blake2b("\n".join(f"{name}\n{seen[name]}" for name in sorted(seen)).encode(), digest_size=8).hexdigest()
 
 

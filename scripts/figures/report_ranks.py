@@ -16,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher")
 import layout
 import session_results
 from command_line import Parser
-from latency import processor, write_csv
+from measured_session import processor, write_csv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 

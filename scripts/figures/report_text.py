@@ -15,7 +15,7 @@ from report_tin import tin_piles, tin_simplify, tin_tool
 @dataclass
 class Section:
     title: str
-    figure: Optional[str]  # name of the function in report_figures and of the picture; None: no figure
+    figure: Optional[str]  # name of the function in report_pile_figures or report_step_figures, and of the picture; None: no figure
     needs: list  # names of the tables; the figure is drawn from the first
     reading: Callable  # takes all tables by name, and returns the text
 

@@ -4,7 +4,7 @@
 import os
 import subprocess
 
-from latency import die_with_parent
+from measured_session import die_with_parent
 
 END_SECONDS = 30
 

@@ -6,6 +6,7 @@ import os
 import subprocess
 
 import doctor
+import examined_host
 import first_frame
 import layout
 import screens
@@ -87,7 +88,7 @@ def check_gl(host, node, chosen):
 
 def examine(node, master, out, backend, as_json):
     """Checks this machine for sessions that draw with `backend` ("auto": any). Returns the exit status: 0 if a session can run here, else 1."""
-    host = doctor.Host(HERE)
+    host = examined_host.Host(HERE)
     host.slots = 1
     build = layout.build_of(node)
     doctor.check_master(host, master, build)
@@ -102,4 +103,4 @@ def examine(node, master, out, backend, as_json):
         check_memory(host, answers)
         check_display(host)
         check_gl(host, node, backend)
-    return doctor.show([host], as_json)
+    return examined_host.show([host], as_json)

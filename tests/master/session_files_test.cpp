@@ -7,7 +7,7 @@
 
 #include "base/input_error.hpp"
 #include "master/disagreement.hpp"
-#include "master/drills.hpp"
+#include "master/drills/drills.hpp"
 #include "master/failure_report.hpp"
 #include "master/incidents.hpp"
 #include "master/recovery.hpp"

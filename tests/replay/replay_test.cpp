@@ -7,59 +7,19 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <random>
-#include <utility>
 
-#include "host/version.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
 #include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/replay/replay_fixture.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/sand_samples.hpp"
 
 namespace {
 
-class Replay : public test::FolderTest {
-protected:
-    /// Records 40 steps, two per frame. `hashError` changes the hash of frame 10.
-    sand::Replica record(std::uint64_t hashError = 0) { return record(samples::flatScene(40, 30), hashError); }
-    sand::Replica record(const scene::Scene& scene, std::uint64_t hashError) {
-        sand::Replica replica(scene);
-        std::mt19937 random(53);
-        master::JournalWriter writer(journal(), scene, "test");
-        for (std::uint64_t frame = 1; frame <= 20; ++frame) {
-            journal::JournalFrame written{frame, replica.stateHash() ^ (frame == 10 ? hashError : 0), {}};
-            for (int i = 0; i < 2; ++i) {
-                written.steps.push_back(samples::randomStep(replica.stepNumber() + 1, scene.rules, random));
-                replica.apply(written.steps.back());
-            }
-            writer.append(written);
-        }
-        writer.finish(replica.stepNumber(), replica.stateHash());
-        return replica;
-    }
-    [[nodiscard]] std::string journal() const { return path("s.journal"); }
-    [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-    [[nodiscard]] std::string read(const std::string& name) const {
-        std::ifstream stream(folder_ / name, std::ios::binary);
-        return {std::istreambuf_iterator<char>(stream), {}};
-    }
-    [[nodiscard]] support::Ran replay(const std::string& options) const {
-        return support::runProgram("sandwall-replay", journal() + " " + options);
-    }
-    /// Expects exit status 2, one line that contains `words`, and only the journal in the folder.
-    void expectRefused(const std::string& options, const std::string& words) const {
-        const support::Ran ran = replay(options);
-        EXPECT_EQ(ran.status, 2) << options << ": " << ran.output;
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << options << ": " << ran.output;
-        EXPECT_NE(ran.output.find(words), std::string::npos) << options << ": " << ran.output;
-        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1) << options;
-    }
-};
+using test::Replay;
 
 TEST_F(Replay, EndsInTheSessionsHash) {
     sand::Replica replica = record();
@@ -261,20 +221,6 @@ TEST_F(Replay, SaysThatNothingCanBeRecoveredOfAHeaderThatIsCut) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "new.journal"));
 }
 
-TEST_F(Replay, RefusesARasterOfAnUnknownEnding) {
-    record();
-    for (const char* option : {" --heights ", " --difference "}) {
-        const support::Ran ran =
-            support::runProgram("sandwall-replay", journal() + option + (folder_ / "x.foo").string());
-        EXPECT_EQ(ran.status, 2);
-        EXPECT_NE(ran.output.find("x.foo: no known ending; name it .tif for a GeoTIFF, .asc for an ESRI ASCII grid"),
-                  std::string::npos)
-            << ran.output;
-        EXPECT_FALSE(std::filesystem::exists(folder_ / "x.foo"));
-        EXPECT_EQ(support::runProgram("sandwall-replay", journal() + option + "/dev/null").status, 0);
-    }
-}
-
 TEST_F(Replay, DoesAllThatIsAskedOfOneJournal) {
     record();
     const support::Ran ran = replay("--until 10 --hash --mesh " + path("a.ply") + " --heights " + path("a.asc") +
@@ -304,85 +250,10 @@ TEST_F(Replay, ExportsTheStepsUpToTheOneThatIsNamed) {
     EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
 }
 
-TEST_F(Replay, RefusesWhatItWouldNotDoBesideAnother) {
-    record();
-    const std::string recover = "--recover " + path("new.journal");
-    for (const std::string& alone : {std::string("--verify"), recover}) {
-        for (const std::string& other :
-             {std::string("--hash"), std::string("--volumes"), std::string("--until 10"), "--mesh " + path("z.ply"),
-              "--heights " + path("z.asc"), "--difference " + path("z.asc"), "--forces " + path("z.csv"),
-              "--export " + path("z.csv"), alone == recover ? std::string("--verify") : recover}) {
-            expectRefused(fmt::format("{} {}", alone, other), "excludes");
-        }
-    }
-    for (const char* option : {"--mesh", "--heights", "--difference", "--forces", "--export", "--recover"}) {
-        expectRefused(std::string(option) + " ''", "name a file");
-    }
-}
-
-TEST_F(Replay, RefusesToWriteOneFileOverAnother) {
-    record();
-    expectRefused("--heights " + path("a.asc") + " --difference " + path("./a.asc"),
-                  "--heights and --difference: both name " + path("./a.asc"));
-    const std::string before = read("s.journal");
-    expectRefused("--export " + journal(), "FILE and --export: both name ");
-    EXPECT_EQ(read("s.journal"), before);
-    EXPECT_EQ(replay("--heights /dev/null --difference /dev/null").status, 0);
-}
-
 // The scene in this journal ends after its rules, so that decoding its heights would fail in another way. A replica of
 // 16384 x 16384 cells takes 4 GiB, and its heights alone take 1 GiB. Both are more than the limit of 1 GB.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // sanitizers reserve terabytes of addresses
-TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
-    sand::Rules rules;
-    rules.columns = rules.rows = 16384;
-    rules.stepsPerSecond = 60;
-    rules.tuning.sweepsPerStep = 8;
-    base::ByteWriter scene;
-    scene.putText("huge");
-    base::putMember(scene, rules);
-    journal::JournalHeader header;
-    header.session = 1;
-    header.scene = scene.take();
-    header.material = scene::Material();
-    std::uint64_t chain = 0;
-    const base::Bytes bytes = journal::encodeHeader(header, host::release(), chain);
-    std::ofstream(journal(), std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    for (const auto& [question, gibibytes] :
-         {std::pair("", "4.0"), std::pair("--hash", "4.0"), std::pair("--verify", "4.0"),
-          std::pair("--export new", "1.0"), std::pair("--recover new", "1.0"),
-          std::pair("--export new --hash", "4.0")}) {
-        const support::Ran ran =
-            support::runCommand(fmt::format("ulimit -v 1000000; bin=$PWD; cd {} && \"$bin/{}/sandwall-replay\" {} {}",
-                                            folder_.string(), SANDWALL_BIN_DIR, journal(), question));
-        EXPECT_EQ(ran.status, 2) << question << ": " << ran.output;
-        EXPECT_EQ(std::count(ran.output.begin(), ran.output.end(), '\n'), 1) << ran.output;
-        EXPECT_NE(ran.output.find(fmt::format(" need at least {} GiB, and ", gibibytes)), std::string::npos)
-            << question << ": " << ran.output;
-        EXPECT_FALSE(std::filesystem::exists(path("new"))) << question;
-    }
-}
+
 #endif
-
-TEST_F(Replay, RefusesStepsBelowZero) {
-    record();
-    for (const char* number : {"-1", "-99999"}) {
-        const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --hash --until " + number);
-        EXPECT_EQ(ran.status, 2);
-        EXPECT_NE(ran.output.find(std::string("--until: a step's number is 0 or more, got ") + number),
-                  std::string::npos)
-            << ran.output;
-    }
-    const std::string start = fmt::format("{:016x}\n", sand::Replica(samples::flatScene(40, 30)).stateHash());
-    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --hash --until 0").output, start);
-}
-
-TEST_F(Replay, RefusesAStepThatIsNotThere) {
-    record();
-    const support::Ran ran = support::runProgram("sandwall-replay", journal() + " --until 41");
-    EXPECT_EQ(ran.status, 2);
-    EXPECT_NE(ran.output.find("ends at step 40, before --until 41"), std::string::npos) << ran.output;
-}
 
 }  // namespace

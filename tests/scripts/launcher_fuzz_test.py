@@ -30,6 +30,7 @@ sys.dont_write_bytecode = True
 import console  # noqa: E402
 import doctor  # noqa: E402
 import events  # noqa: E402
+import examined_host  # noqa: E402
 import job_log  # noqa: E402
 import open_mpi  # noqa: E402
 import process_failure  # noqa: E402
@@ -180,15 +181,15 @@ def answer_of_master(folder, text):
 
 def answers_to_doctor(_, text):
     said = text.decode(errors="replace")
-    host = doctor.Host("node01")
+    host = examined_host.Host("node01")
     host.probes = [1]
     host.ask = mock.Mock(run=lambda *_: (0, said, ""))
     one = doctor.Doctor("node", "0123456789abcdef", "", "auto")
     one.check_programs(host, {"build": said, "mpi": said, "memory": said})
     one.check_memory(host, {"memory": said})
     one.check_gl(host)
-    doctor.report([host], False)
-    doctor.report_json([host])
+    examined_host.report([host], False)
+    examined_host.report_json([host])
     for _, _, words, _ in host.findings:
         require_line(words)
 

@@ -8,7 +8,7 @@
 namespace haptic_bridge {
 namespace {
 
-constexpr double kExact = 0.02;  // a hundredth of a step, from above
+constexpr double kExact = 0.005;  // a hundredth of a step, which is 0.5, as seen from above
 
 SandBody level(double height) {
     return {100, 60, height, height, 0.5, [height](double, double) { return height; }};

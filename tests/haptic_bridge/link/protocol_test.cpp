@@ -7,63 +7,16 @@
 #include <cstring>
 #include <limits>
 #include <numeric>
-#include <random>
 
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/message_reader.hpp"
+#include "tests/haptic_bridge/link/sample_messages.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
 
 using namespace haptic_bridge;
-
-sand::Step someStep() { return {3, 77, true, {{100, -200, 300}, {101, -200, 299}, {110, 5, 299}}}; }
-
-/// One message of each kind, with values that differ from all defaults.
-std::vector<Message> oneOfEach() {
-    const Identity identity{kProtocolVersion, sand::kAlgorithmVersion, 0x0123456789abcdefULL, "dunes"};
-    Report report;
-    report.hapticPeriodUsP50 = 1000.5;
-    report.forceUsP99 = 2.25;
-    report.toWall = {13.6, 9.8, 12, 40, 70};
-    report.toMaster = {0.2, 0.1, 0.15, 1, 71};
-    report.stepBytesMean = 84;
-    report.steps = 9;
-    report.stepsWithheld = {4, 3, 2, 1};
-    report.samplesDropped = 1;
-    report.ticksMissed = 3;
-    report.guards.back() = 7;
-    report.refused.back() = 6;
-    report.handTicks = 5;
-    report.feltTicks = 4;
-    report.faultedTicks = 2;
-    report.literal = true;
-    report.audited = Audited::differed;
-    return {Hello{identity, Role::watch, true, true, {1, 2}},
-            Welcome{identity, 60, Role::watch, {3, 4}},
-            Refusal{RefusalCode::busy, "busy"},
-            Start{2, 40, 99, {0.5, true}},
-            Ready{},
-            NeedState{8, 9},
-            State{{1, 2, 3}},
-            StepMessage{-5, 17, someStep()},
-            TimingTest{7, 50},
-            Shown{41, 16'666'667, Held::pause},
-            TimingEcho{7, Leg::shown},
-            Ping{123},
-            Pong{123, -9},
-            report,
-            Bye{"good night"},
-            EditRequest{samples::withNumber(300, sand::Edit::undo)},
-            ForceShare{0.25, true},
-            TickPiece{{4, 5}},
-            PositionGreeting{kProtocolVersion, "glove", {5}},
-            Position{-7, 0.5, -0.25, 1.5, true},
-            Challenge{identity, {6}},
-            Proof{{7}},
-            CatchUp{true, {someStep(), someStep()}}};
-}
 
 std::span<const std::uint8_t> withoutLength(const base::Bytes& framed) {
     return std::span(framed).subspan(sizeof(std::uint32_t));
@@ -212,121 +165,6 @@ TEST(Protocol, AnEditTakesItsDetailsAlong) {
             EXPECT_THROW((void)decode(withoutLength(framed).first(length)), base::FormatError) << length;
         }
     }
-}
-
-// A peer that is not linked, or was not asked for sand, cannot make this side hold more than an ordinary message.
-TEST(Protocol, SandToBeLoadedPassesWhereItIsExpectedAndNothingElseAsLong) {
-    sand::Step step = someStep();
-    step.edit = samples::withNumber(3, sand::Edit::loaded(base::Bytes(100'000, 7)));
-    const Message load = EditRequest{step.edit};
-    MessageReader expecting;
-    expecting.expectLoads(true);
-    expecting.feed(encode(load));
-    EXPECT_EQ(expecting.next(), load);
-    for (const bool state : {false, true}) {
-        MessageReader other;
-        other.expectState(state);
-        other.feed(encode(load));
-        EXPECT_THROW((void)other.next(), base::FormatError);
-    }
-    for (const Message& other : {Message(Bye{std::string(100'000, 'x')}), Message(StepMessage{-5, 17, step})}) {
-        MessageReader reader;
-        reader.expectLoads(true);
-        reader.feed(encode(other));
-        EXPECT_THROW((void)reader.next(), base::FormatError);
-    }
-}
-
-// A load has up to 192 MiB, and its step may wait for seconds.
-TEST(Protocol, ALongMessageIsNotKeptAfterItWasRead) {
-    const base::Bytes load = encode(EditRequest{samples::withNumber(3, sand::Edit::loaded(base::Bytes(8 << 20, 7)))});
-    const base::Bytes next = encode(Ping{5});
-    for (const std::size_t behind : {std::size_t{0}, std::size_t{3}, next.size()}) {
-        MessageReader reader;
-        reader.expectLoads(true);
-        reader.feed(load);
-        reader.feed(std::span(next).first(behind));
-        ASSERT_TRUE(reader.next());
-        EXPECT_LE(reader.bytes(), std::size_t{1} << 20) << behind << " bytes of the next message";
-        reader.feed(std::span(next).subspan(behind));
-        EXPECT_EQ(reader.next(), Message(Ping{5}));
-    }
-}
-
-TEST(Protocol, SurvivesRandomMutations) {
-    const unsigned seed = test::randomSeed();
-    SCOPED_TRACE(test::again(seed));
-    std::mt19937 random(seed);
-    const auto messages = oneOfEach();
-    int refused = 0;
-    for (int round = 0; round < 20'000; ++round) {
-        base::Bytes framed = encode(messages[random() % messages.size()]);
-        for (unsigned flips = 1 + random() % 4; flips > 0; --flips) {
-            framed[random() % framed.size()] = static_cast<std::uint8_t>(random());
-        }
-        MessageReader reader;
-        reader.expectState(random() % 2 == 0);
-        reader.feed(framed);
-        try {
-            // Every accepted message must encode again.
-            if (const auto message = reader.next()) {
-                (void)encode(*message);
-            }
-        } catch (const base::FormatError&) {
-            ++refused;
-        }
-    }
-    EXPECT_GT(refused, 1000);
-}
-
-TEST(Protocol, ReadsAStreamCutAnywhere) {
-    base::Bytes stream;
-    for (const Message& message : oneOfEach()) {
-        const base::Bytes framed = encode(message);
-        stream.insert(stream.end(), framed.begin(), framed.end());
-    }
-    for (const std::size_t piece : {1UL, 2UL, 3UL, 7UL, 64UL, stream.size()}) {
-        MessageReader reader;
-        reader.expectState(true);
-        std::vector<Message> read;
-        for (std::size_t begin = 0; begin < stream.size(); begin += piece) {
-            reader.feed(std::span(stream).subspan(begin, std::min(piece, stream.size() - begin)));
-            while (auto message = reader.next()) {
-                read.push_back(std::move(*message));
-            }
-        }
-        EXPECT_EQ(read, oneOfEach()) << "pieces of " << piece;
-        EXPECT_FALSE(reader.midMessage());
-    }
-}
-
-TEST(Protocol, BoundsTheLengthBeforeTheBytesCome) {
-    const auto lengthOnly = [](std::uint32_t length, std::uint8_t type, bool stateExpected) {
-        base::ByteWriter writer;
-        writer.put(length);
-        writer.put(type);
-        MessageReader reader;
-        reader.expectState(stateExpected);
-        reader.feed(writer.bytes());
-        return reader.next();
-    };
-    constexpr std::uint8_t kStateType = 7, kByeType = 15;
-    EXPECT_THROW((void)lengthOnly(0, kByeType, false), base::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kStateType, false), base::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxMessage + 1, kByeType, true), base::FormatError);
-    EXPECT_THROW((void)lengthOnly(kMaxState + 1, kStateType, true), base::FormatError);
-    EXPECT_FALSE(lengthOnly(kMaxState, kStateType, true));
-    EXPECT_FALSE(lengthOnly(kMaxMessage, kByeType, false));
-}
-
-TEST(Protocol, TakesAStateOnceAndOnlyWhenExpected) {
-    MessageReader reader;
-    const base::Bytes large = encode(State{base::Bytes(3 * kMaxMessage, 9)});
-    reader.expectState(true);
-    reader.feed(large);
-    EXPECT_TRUE(reader.next());
-    reader.feed(encode(State{{1}}));
-    EXPECT_THROW((void)reader.next(), base::FormatError);
 }
 
 TEST(Protocol, ReadsOnlyTheVersionOfAnotherProtocol) {

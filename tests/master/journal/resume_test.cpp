@@ -3,82 +3,18 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <filesystem>
-#include <fstream>
-#include <random>
 
 #include "base/input_error.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/master/journal/resume_fixture.hpp"
 
 namespace {
 
-/// Records a session of 40 steps, two per frame, with a checkpoint after every tenth step.
-class Resume : public test::FolderTest {
-protected:
-    void SetUp() override {
-        scene_.material.humidity = 0.25;
-        master::JournalWriter writer(journal(), scene_, "test");
-        record(writer, 20);
-        hashes_.push_back(replica_.stateHash());
-    }
-
-    void record(master::JournalWriter& writer, int frames, std::uint32_t epoch = 1) {
-        for (int i = 0; i < frames; ++i) {
-            journal::JournalFrame written{++frame_, replica_.stateHash(), {}};
-            for (int k = 0; k < 2; ++k) {
-                hashes_.push_back(replica_.stateHash());
-                written.steps.push_back(samples::wildStep(replica_.stepNumber() + 1, scene_.rules, random_));
-                written.steps.back().epoch = epoch;
-                replica_.apply(written.steps.back());
-            }
-            writer.append(written);
-            if (replica_.stepNumber() % 10 == 0) {
-                keepCheckpoint(writer.session());
-            }
-        }
-    }
-    void keepCheckpoint(std::uint64_t session) {
-        const master::Checkpoint checkpoint{session, "test", scene_.rules.digest(), replica_.stepNumber(),
-                                            frame_,  1,      replica_.stateHash(),  replica_.encodeState()};
-        master::writeCheckpoint(journal(), checkpoint, 3);
-    }
-    [[nodiscard]] std::filesystem::path journal() const { return folder_ / "session.journal"; }
-    /// Expects the same sand as after an undisturbed replay of all steps.
-    void expectSand(std::uint64_t step, std::uint64_t checkpoint) const {
-        master::RestoredSand restored = master::restoreSand(journal(), step);
-        EXPECT_EQ(restored.replica.stepNumber(), step);
-        EXPECT_EQ(restored.replica.stateHash(), hashes_[step]) << step;
-        EXPECT_EQ(restored.checkpointStep, checkpoint) << step;
-        EXPECT_EQ(restored.replayedSteps, step - checkpoint) << step;
-    }
-    void spoil(const std::filesystem::path& file, std::streamoff at) const {
-        std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
-        stream.seekg(at);
-        const int before = stream.get();
-        stream.seekp(at);
-        stream.put(static_cast<char>(before ^ 4));
-    }
-    static std::string refusal(const std::filesystem::path& journal, const std::string& scene = "") {
-        try {
-            (void)master::readSession(journal, scene);
-        } catch (const base::InputError& error) {
-            return error.what();
-        }
-        return "not refused";
-    }
-
-    scene::Scene scene_ = samples::flatScene(40, 30);
-    sand::Replica replica_{scene_};
-    std::mt19937 random_{59};
-    std::uint64_t frame_ = 0;
-    std::vector<std::uint64_t> hashes_;  // state hashes after every step, from 0
-};
+using test::Resume;
 
 TEST_F(Resume, FindsTheSandAfterAnyStepFromTheNewestCheckpointBefore) {
     EXPECT_EQ(master::checkpointsOf(journal()), (std::vector<std::uint64_t>{40, 30, 20}));  // older: removed
@@ -230,98 +166,6 @@ TEST_F(Resume, ChecksTheHashesOnTheWay) {
                                                   hashes_[40] ^ 1, hashes_[40])),
               std::string::npos)
         << refusal(journal());
-}
-
-TEST_F(Resume, RefusesAJournalWithAHoleInItsSteps) {
-    {
-        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
-        writer.append({21, hashes_[40], {samples::randomStep(42, scene_.rules, random_)}});
-    }
-    EXPECT_NE(refusal(journal()).find("step 42 follows step 40"), std::string::npos) << refusal(journal());
-}
-
-TEST_F(Resume, RefusesADamagedJournalAndSaysWhatCanBeKept) {
-    spoil(journal(), static_cast<std::streamoff>(std::filesystem::file_size(journal()) / 2));
-    const std::string why = refusal(journal());
-    EXPECT_NE(why.find("damaged at byte"), std::string::npos) << why;
-    EXPECT_NE(why.find("everything before is intact; sandwall-replay"), std::string::npos) << why;
-}
-
-TEST_F(Resume, RefusesAnotherSceneThanTheSessions) {
-    const std::filesystem::path file = folder_ / "scene.toml";
-    std::ofstream(file) << "name = \"other\"\n[field]\ncolumns = 40\nrows = 30\n[terrain]\nheight = 0.2\n[material]\n"
-                           "[tool]\nradius = 0.04\n";
-    EXPECT_NE(refusal(journal(), file.string()).find("is not the scene of the session in"), std::string::npos)
-        << refusal(journal(), file.string());
-    const std::filesystem::path other = folder_ / "other" / "session.journal";
-    std::filesystem::create_directories(other.parent_path());
-    { master::JournalWriter writer(other, scene::loadScene(file), "test"); }
-    EXPECT_EQ(refusal(other, file.string()), "not refused");
-}
-
-// A user may give the scene by another path than at the start, and an earlier build has written no statements.
-TEST_F(Resume, TheFilesOfATerrainHaveTheirUnitsAgain) {
-    std::ofstream(folder_ / "t.asc") << "ncols 3\nnrows 2\ncellsize 1\n1 2 3\n4 5 6\n";
-    const std::filesystem::path file = folder_ / "scene.toml";
-    std::ofstream(file) << "[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\n[material]\n[tool]\nradius = 1\n";
-    scene::Scene scene = scene::loadScene(file);
-    ASSERT_EQ(scene.statements.value().size(), 1U);
-    const std::filesystem::path ours = folder_ / "ours" / "session.journal", old = folder_ / "old" / "session.journal";
-    std::filesystem::create_directories(ours.parent_path());
-    std::filesystem::create_directories(old.parent_path());
-    { master::JournalWriter writer(ours, scene, "test"); }
-    EXPECT_EQ(master::readSession(ours, "")->scene.statements, scene.statements);
-    EXPECT_EQ(master::readJournal(ours).scene.statements, scene.statements);
-    EXPECT_EQ(refusal(ours, (folder_ / "." / "scene.toml").string()), "not refused");
-    scene.statements.reset();
-    { master::JournalWriter writer(old, scene, "test"); }
-    EXPECT_EQ(master::readSession(old, "")->scene.statements, std::nullopt);
-    EXPECT_EQ(refusal(old, file.string()), "not refused");
-}
-
-// The heights of this scene would take 1 GiB.
-TEST_F(Resume, RefusesASceneOfAnotherSizeBeforeItsHeightsAreMade) {
-    const std::filesystem::path file = folder_ / "scene.toml";
-    std::ofstream(file) << "[field]\ncolumns = 16384\nrows = 16384\n[terrain]\n[material]\n";
-    const auto residentKilobytes = [] {
-        rusage usage{};
-        getrusage(RUSAGE_SELF, &usage);
-        return usage.ru_maxrss;
-    };
-    const long before = residentKilobytes();
-    EXPECT_NE(refusal(journal(), file.string()).find("is not the scene of the session in"), std::string::npos);
-    EXPECT_LT(residentKilobytes() - before, 100'000);
-}
-
-// Two sessions that write one journal would each destroy the steps of the other.
-TEST_F(Resume, RefusesASessionThatStillRuns) {
-    const auto session = master::readSession(journal(), "");
-    const master::JournalWriter running(session->place, "test");
-    const auto size = std::filesystem::file_size(journal());
-    try {
-        const master::JournalWriter second(session->place, "test");
-        ADD_FAILURE() << "not refused";
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("another session writes it"), std::string::npos) << error.what();
-    }
-    EXPECT_EQ(std::filesystem::file_size(journal()), size);
-}
-
-// A session that ends while the next one starts may have written more steps than the next one has read.
-TEST_F(Resume, CutsNothingThatWasWrittenSinceItWasRead) {
-    const auto session = master::readSession(journal(), "");
-    {
-        master::JournalWriter running(session->place, "test");
-        running.finish(session->step, session->hash);
-    }
-    const auto size = std::filesystem::file_size(journal());
-    try {
-        const master::JournalWriter second(session->place, "test");
-        ADD_FAILURE() << "not refused";
-    } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("written since it was read"), std::string::npos) << error.what();
-    }
-    EXPECT_EQ(std::filesystem::file_size(journal()), size);
 }
 
 // The first new edit gets a higher number than all edits that are in a step. The torn step was never shown.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/injection.hpp"
+#include "master/drills/injection.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/film.hpp"
+#include "master/pictures/film.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "host/regular_file.hpp"
-#include "master/wall_pictures.hpp"
+#include "master/pictures/wall_pictures.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
 #include "walls/canvas.hpp"

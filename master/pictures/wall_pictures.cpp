@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/wall_pictures.hpp"
+#include "master/pictures/wall_pictures.hpp"
 
 #include <fmt/format.h>
 

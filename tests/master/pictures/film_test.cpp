@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/film.hpp"
+#include "master/pictures/film.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/drills.hpp"
+#include "master/drills/drills.hpp"
 
 #include <fmt/format.h>
 

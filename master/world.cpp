@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/world.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/input_error.hpp"
+#include "host/event.hpp"
+#include "host/print_line.hpp"
+#include "host/regular_file.hpp"
+#include "lockstep/overlays.hpp"
+#include "lockstep/watchdog.hpp"
+#include "master/drills/injection.hpp"
+#include "master/journal/journal.hpp"
+#include "master/start_up.hpp"
+#include "scene/load/scene_file.hpp"
+#include "walls/desk_windows.hpp"
+
+namespace master {
+namespace {
+
+/// Finds the place where the session in --out stopped, if there is one.
+void resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
+    const std::filesystem::path journal = std::filesystem::path(options.out) / "session.journal";
+    if (options.session.record.journal.policy == JournalPolicy::off) {
+        throw base::InputError("--resume needs the journal of the session; leave out --journal off");
+    }
+    if (std::error_code none; std::filesystem::exists(journal, none)) {
+        requireMemoryOfJournal(cluster.hosts(), journal);
+    }
+    std::optional<ResumedSession> resumed = readSession(journal, options.scene);
+    if (!resumed) {
+        host::printLine("{}: nothing to resume; the session begins", journal.string());
+        return;
+    }
+    if (resumed->cutBytes > 0) {
+        host::printLine("{}: the last {} bytes are an incomplete write and are cut off", journal.string(),
+                        resumed->cutBytes);
+    }
+    host::emitEvent("resumed", {{"step", resumed->step},
+                                {"frame", resumed->frame},
+                                {"checkpoint_step", resumed->checkpointStep},
+                                {"replayed_steps", resumed->replayedSteps},
+                                {"cut_bytes", resumed->cutBytes}});
+    host::printLine("{}: continues after step {}, frame {}, from {} and {} later steps", journal.string(),
+                    resumed->step, resumed->frame,
+                    resumed->checkpointStep == 0 ? std::string("the scene")
+                                                 : fmt::format("the checkpoint of step {}", resumed->checkpointStep),
+                    resumed->replayedSteps);
+    options.session.record.resumed = std::make_shared<const ResumedSession>(std::move(*resumed));
+}
+
+/// Returns the scene of the file `file`.
+scene::Scene readScene(const lockstep::Cluster& cluster, const std::string& file) {
+    const std::vector<lockstep::RankHost>& hosts = cluster.hosts();
+    scene::Scene scene = scene::loadScene(
+        file, {.raster = [&](int columns, int rows) { requireMemoryOfRaster(hosts, columns, rows, file); },
+               .field = [&](const sand::FieldSize& size) { requireMemory(hosts, size, file); }});
+    for (const scene::RasterStatement& statement : *scene.statements) {
+        host::printLine("{}: {}", statement.file, statement.text());
+    }
+    for (const std::string& warning : scene.warnings) {
+        host::printLine("{}: warning: {}", file, warning);
+    }
+    return scene;
+}
+
+/// Opens the journal of --replay, and returns its scene.
+scene::Scene openRecording(const lockstep::Cluster& cluster, ProgramOptions& options) {
+    options.replay = journalAt(options.replay).string();
+    if (std::filesystem::exists(std::filesystem::path(options.out) / "session.journal")) {
+        throw base::InputError(
+            fmt::format("{}: holds a session, whose results would be lost; choose another --out", options.out));
+    }
+    requireMemoryOfJournal(cluster.hosts(), options.replay);
+    SessionOptions& session = options.session;
+    session.recording = std::make_shared<const journal::Recording>(readJournal(options.replay), options.replay,
+                                                                   options.framesPerSecond);
+    if (!session.recording->shortcoming().empty()) {
+        host::printLine("{}", session.recording->shortcoming());
+    }
+    session.refreshHz = options.framesPerSecond;
+    return session.recording->scene();
+}
+
+/// Returns the scene of --scene, of the journal that is replayed, or of the session that is resumed.
+scene::Scene loadScene(const lockstep::Cluster& cluster, ProgramOptions& options) {
+    options.session.record.journal.partBytes = options.partMegabytes << 20;
+    if (options.resume) {
+        resume(cluster, options);
+        if (options.session.record.resumed) {
+            options.scene = options.scene.empty() ? options.out : options.scene;  // for error messages
+            return options.session.record.resumed->scene;
+        }
+    }
+    if (!options.replay.empty()) {
+        return openRecording(cluster, options);
+    }
+    if (options.scene.empty()) {
+        throw base::InputError("name a --scene, or a journal to --replay");
+    }
+    return readScene(cluster, options.scene);
+}
+
+/// Returns the name of the scene for the titles of windows: that of its file, or of the folder of its journal.
+std::string sceneName(const ProgramOptions& options) {
+    const std::filesystem::path scene(options.scene);
+    return !scene.empty() ? scene.stem().string()
+                          : std::filesystem::path(options.replay).parent_path().filename().string();
+}
+
+walls::Wall loadWall(const ProgramOptions& options) {
+    walls::Wall wall = walls::loadWallAs(options.wall, options.stereo);
+    return options.desk.empty()
+               ? wall
+               : walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
+}
+
+/// Throws base::InputError if the wall needs other ranks than the job has, or ranks on other machines.
+void requireRanks(const lockstep::Cluster& cluster, const walls::Wall& wall, const ProgramOptions& options) {
+    if (wall.ranks() != cluster.renderRanks()) {
+        throw base::InputError(
+            fmt::format("{}: {} tiles need {} render ranks, but the job has {}: mpirun -n 1 "
+                        "sandwall-master ... : -n {} sandwall-render-node",
+                        options.wall, wall.ranks(), wall.ranks(), cluster.renderRanks(), wall.ranks()));
+    }
+    std::vector<RankMachine> places;
+    std::transform(options.places.begin(), options.places.end(), std::back_inserter(places), RankMachine::parse);
+    requirePlaces(cluster.hosts(), wall, places);
+}
+
+void makeOut(const std::string& out) {
+    try {
+        host::makeFolders(out);
+    } catch (const std::filesystem::filesystem_error& error) {
+        throw base::InputError(
+            fmt::format("{}: cannot be made ({}); choose another --out", out, error.code().message()));
+    }
+}
+
+void chooseFilm(ProgramOptions& options, const walls::Wall& wall) {
+    if (options.session.film) {
+        options.session.pace = haptic_bridge::Pace::fast;
+        (void)Film(wall, options.session.filmEye, options.out);  // throws before anything is drawn
+    }
+}
+
+void chooseHand(ProgramOptions& options) {
+    if (options.haptic == "none") {
+        return;
+    }
+    if (options.session.pointer) {
+        throw base::InputError("--pointer: with --haptic there are two hands; leave one of them out");
+    }
+    options.session.server = haptic_bridge::Address::parse(options.haptic, "--haptic");
+    options.session.security = options.link.forClient(haptic_bridge::Role::move);
+    haptic_bridge::requireSecret(*options.session.server, options.session.security, "--haptic");
+}
+
+void chooseView(ProgramOptions& options, const World& world) {
+    DeskOptions& desk = options.session.desk;
+    desk.pointer = options.session.pointer;
+    desk.film = options.session.film;
+    desk.pattern = lockstep::parsePattern(options.pattern);
+    desk.layers.set(lockstep::Overlay::hillShade, world.scene.look.hillShade);
+    for (const std::string& layer : options.layers) {
+        desk.layers.set(lockstep::parseOverlay(layer), true);
+    }
+    if (!options.track.empty()) {
+        desk.tracker = tracking::Source::parse(options.track, "--track");
+    } else if (!world.wall.tracking.empty()) {
+        desk.tracker = tracking::Source::parse(world.wall.tracking, options.wall + ": source",
+                                               std::filesystem::path(options.wall).parent_path());
+    }
+}
+
+/// Returns the drills of --inject that are still to happen.
+std::vector<Drill> drillsOf(const ProgramOptions& options, const World& world) {
+    const FaultTargets targets{world.wall.ranks(), world.scene.rules.columns, world.scene.rules.rows,
+                               options.session.server.has_value()};
+    std::vector<Drill> drills;
+    for (const std::string& text : options.injections) {
+        drills.push_back({text, parseFault(text, targets)});
+    }
+    return withoutDone(std::move(drills), options.out, options.session.record.resumed != nullptr);
+}
+
+}  // namespace
+
+World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
+    lockstep::requireStartUpLimit();
+    cluster.mayTakeLong(true);  // until broadcastSession()
+    requireFolder(options.out);
+    World world{loadScene(cluster, options), loadWall(options), {}};
+    requireMemory(cluster.hosts(), world.scene, options.scene + options.replay);
+    requireRanks(cluster, world.wall, options);
+    makeOut(options.out);
+    SessionOptions& session = options.session;
+    session.pictures = !options.noPictures;
+    session.report = !options.noReport;
+    session.out = options.out;
+    chooseFilm(options, world.wall);
+    chooseHand(options);
+    chooseView(options, world);
+    session.drills = drillsOf(options, world);
+    world.message = {world.scene.encode(),
+                     world.wall.encode(),
+                     session.frameTimeout,
+                     {},
+                     session.pointer,
+                     sceneName(options),
+                     session.record.resumed ? session.record.resumed->state : base::Bytes()};
+    for (const Drill& drill : session.drills) {
+        world.message.faults.push_back(drill.fault);
+    }
+    return world;
+}
+
+}  // namespace master
