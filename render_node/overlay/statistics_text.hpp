@@ -46,7 +46,7 @@ public:
         enum class Kind : std::uint8_t { plain, good, slow, bad };
         std::string text;
         Kind kind = Kind::plain;
-        int leftOut = 0;  // where lines do not fit, 1 is left out first, 2 next; 0: only cut at the end
+        int leftOut = 0;  // if lines do not fit, 1 is left out first, 2 next; 0 is only cut at the end
     };
     /// Returns at most `count` lines from the top. If `letters` is less than kLetters, returns shorter lines and cuts
     /// them to `letters` letters.
