@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A painter draws only a part of each frame. Its pictures must equal those that are drawn whole, in every stereo mode.
+// A painter draws only a part of each frame. Its pictures must equal whole drawings, in every stereo mode.
 #include <gtest/gtest.h>
 
 #include <algorithm>
