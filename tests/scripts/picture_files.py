@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads pictures for tests: PNG files that Sandwall has written, and the screen of an X server in memory."""
+"""Pictures for tests: reads PNG files that Sandwall has written, and the screen of an X server in memory."""
 
 import dataclasses
 import itertools
 import pathlib
 import struct
 import zlib
+
+END = b"IEND\xaeB`\x82"  # of a PNG file that is complete
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,6 +85,16 @@ def read_png(file):
         above = unfiltered(raw[begin], row, above)
         rows.append(above)
     return Picture(*size, tuple(rows))
+
+
+def write_png(picture, file):
+    """Writes a PNG file of 8-bit RGB without filters."""
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    head = struct.pack(">IIBBBBB", picture.width, picture.height, 8, 2, 0, 0, 0)
+    rows = zlib.compress(b"".join(b"\0" + row for row in picture.rows))
+    pathlib.Path(file).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
 
 
 def read_screen(file):
