@@ -15,7 +15,7 @@ from window_fixture import CELLS, WIDTH
 
 
 class Answers(window_fixture.WindowOfTry):
-    """The sand is at the end as it was at the beginning, and so are the tool and the view."""
+    """These tests leave the sand, the tool and the view as they were at the beginning."""
 
     def setUp(self):
         # The place is in the middle of the level sand, above the help.

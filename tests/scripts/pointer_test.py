@@ -164,7 +164,7 @@ class WallOnADesktop(pointer_fixture.WindowTest):
 
 
 class WindowsOfAWall(unittest.TestCase):
-    """Which windows a wall gets."""
+    """A wall gets the windows for which sandwall-check has places."""
 
     def words(self, answers):
         with unittest.mock.patch.object(desk, "work_area", return_value="800x600+0+0"):
