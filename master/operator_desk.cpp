@@ -49,7 +49,8 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       lastEdit_(options.lastEdit),
       film_(options.film),
       windows_(scene, out_, options.pointer,
-               {views_, material_, paused_, [this] { return session_.sand.replica().surface().heights(); },
+               {views_, material_, paused_, walls::followsWindow(wall),
+                [this] { return session_.sand.replica().surface().heights(); },
                 [this](const Command& command, int rank) { (void)carryOut(command, Asker::at(rank)); }}) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);

@@ -41,6 +41,7 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
     : look_(scene.look),
       sun_(glm::normalize(toVector(scene.look.sunDirection))),
       cellSize_(scene.terrain.cellSize()),
+      usualScale_(glm::length(glm::dvec3(sceneToRoom[0]))),
       tool_(scene.rules.tuning.tool),
       shown_{.sceneToRoom = sceneToRoom,
              .toolRadius = toolRadius(),
@@ -110,9 +111,18 @@ void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
     program.set("uWet", static_cast<float>(shown_.humidity));
     prepareTool(program);
     program.set("uGrain", 0);
-    const double metresPerUnit = glm::length(glm::dvec3(sceneToRoom[0]));
-    program.set("uGrainScale", static_cast<float>(metresPerUnit / (kGrainSide * kGrainTexel)));
+    program.set("uGrainScale", grainScale());
     program.set("uModel", glm::vec4(0, 0, 0, 1));
+}
+
+float ScenePainter::grainScale() const {
+    // If the grain kept its size in the room, it would slide over the sand while the view is zoomed. So it grows with
+    // the sand. Each time that the sand has doubled, the grain is halved. The wheel zooms by quarters of an octave. So
+    // the border lies between two quarters, where rounding cannot decide.
+    constexpr double kBetweenNotches = 0.625;
+    const double octaves = std::log2(glm::length(glm::dvec3(shown_.sceneToRoom[0])) / usualScale_);
+    return static_cast<float>(usualScale_ / (kGrainSide * kGrainTexel) *
+                              std::exp2(std::floor(octaves + kBetweenNotches)));
 }
 
 void ScenePainter::prepareTool(const GlProgram& program) const {

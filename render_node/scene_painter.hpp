@@ -39,8 +39,9 @@ struct DrawCounts {
 /// a camera sees are built, sent to GL and drawn. The GL context must be current. Used by one thread.
 class ScenePainter {
 public:
-    /// Takes the tool and the look from `scene`. `start` is the sand of a replica before its first step.
-    /// Throws std::runtime_error if a shader does not compile.
+    /// Takes the tool and the look from `scene`. `start` is the sand of a replica before its first step. `sceneToRoom`
+    /// is the usual view, in which the grain has its size (kGrainTexel). Throws std::runtime_error if a shader does not
+    /// compile.
     ScenePainter(const scene::Scene& scene, const sand::SurfaceData& start, const glm::dmat4& sceneToRoom);
     /// Takes the sand from `scene`, which must have a height field.
     ScenePainter(const scene::Scene& scene, const glm::dmat4& sceneToRoom);
@@ -107,6 +108,8 @@ private:
     void drawSand(const Pass& pass);
     void drawWires(const Pass& pass);
     void startCounting();
+    /// Returns the periods of the grain per scene unit in the current view.
+    [[nodiscard]] float grainScale() const;
     /// Returns whether no tool takes light away, or one with the shape of a ball.
     [[nodiscard]] bool hasBall() const { return !shown_.tool || shown_.tool->isBall(); }
     /// Returns whether the tool is drawn.
@@ -117,8 +120,9 @@ private:
     [[nodiscard]] float toolRadius() const;  // [scene unit], of the current tool
 
     scene::Look look_;
-    glm::vec3 sun_;    // towards the sun, of length 1
-    double cellSize_;  // [scene unit]; places are computed from its float, as in the shaders
+    glm::vec3 sun_;      // towards the sun, of length 1
+    double cellSize_;    // [scene unit]; places are computed from its float, as in the shaders
+    double usualScale_;  // [m per scene unit], of the usual view
     sand::Tool tool_;
     ShownScene shown_;
     bool culling_ = true;

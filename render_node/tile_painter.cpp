@@ -16,6 +16,13 @@ walls::Viewer viewerOf(const lockstep::ViewState& view) {
         {view.head[0], view.head[1], view.head[2]}, view.eyeSeparation, {view.right[0], view.right[1], view.right[2]}};
 }
 
+/// Returns where the wall file has the sand, before anybody moves the view.
+glm::dmat4 stagedAt(const walls::Wall& wall, const scene::Scene& scene) {
+    const double cell = scene.terrain.cellSize();
+    return walls::stageToRoom(wall.stage, scene.rules.columns * cell, scene.rules.rows * cell,
+                              scene.referenceHeight() * scene.terrain.unit());
+}
+
 }  // namespace
 
 std::string answerFor(const walls::Wall& wall, const walls::Tile& tile, std::span<const lockstep::Answer> answers) {
@@ -43,7 +50,7 @@ TilePainter::TilePainter(const walls::Wall& wall, const walls::Tile& tile, const
       tile_(&tile),
       host_(std::move(host)),
       forceConstants_(scene.force),
-      scenePainter_(scene, start, glm::dmat4(1)),
+      scenePainter_(scene, start, stagedAt(wall, scene)),
       composer_(wall.stereo, tile) {
     makeTargets();
 }

@@ -12,7 +12,8 @@
 
 namespace master {
 
-inline constexpr const char* kFixedView = "this wall's view is fixed";  // answer to an attempt to move it
+inline constexpr const char* kFixedView = "this wall's view is fixed";            // answer to an attempt to move it
+inline constexpr const char* kFixedSize = "this wall's windows keep their size";  // answer to F11 in one of them
 
 /// State of a session from which keys start.
 struct KeyState {

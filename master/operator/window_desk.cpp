@@ -38,6 +38,9 @@ void WindowDesk::obey(base::Keystroke key, int rank) {
             return;
         }
         frameView();
+    } else if (action == KeyAction::fullScreen && !desk_.followsWindow) {
+        answer(rank, kFixedSize);
+        return;
     } else if (action == KeyAction::sceneTool) {
         depth_ = kUsualDepth;
     }

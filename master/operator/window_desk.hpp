@@ -25,6 +25,7 @@ public:
         ViewSource& views;
         const scene::Material& material;  // with all changes that operators have asked for
         const bool& paused;
+        bool followsWindow;                         // walls::followsWindow()
         std::function<sand::HeightSpan()> heights;  // of the sand
         /// Carries out a command for a rank's window. Throws base::InputError if the command is refused.
         std::function<void(const Command&, int rank)> carryOut;

@@ -13,7 +13,7 @@ namespace render_node {
 namespace {
 
 // Sizes of a panel with graphs [dot].
-constexpr int kPadding = 5, kLinePitch = 10, kLines = 5;
+constexpr int kPadding = 5, kLinePitch = 10, kLines = static_cast<int>(TileStatistics::kLongLines);
 constexpr int kGraphLeft = kPadding + 7 * kGlyphPitch + 3;  // right of a value such as "31.2 MS"
 constexpr int kGraphWidth = static_cast<int>(History::kLength), kGraphHeight = 24, kGraphPitch = 31;
 constexpr int kGraphs = 4;
@@ -120,11 +120,11 @@ void StatisticsOverlay::addPanel() {
     painter_.addBox(layout_.at, layout_.size, kBack);
     const int padding = layout_.graphs ? kPadding : 2;
     const int pitch = layout_.graphs ? kLinePitch : kGlyphHeight + 2;
-    const auto lines = statistics_.lines(static_cast<std::size_t>(layout_.letters));
-    for (int i = 0; i < std::min(layout_.lines, static_cast<int>(lines.size())); ++i) {
-        const TileStatistics::Line& line = lines[static_cast<std::size_t>(i)];
-        painter_.addText(line.text, layout_.at + glm::ivec2(padding, padding + i * pitch) * dot, dot,
-                         colourOf(line.kind));
+    glm::ivec2 lineAt = layout_.at + glm::ivec2(padding) * dot;
+    for (const auto& line :
+         statistics_.lines(static_cast<std::size_t>(layout_.letters), static_cast<std::size_t>(layout_.lines))) {
+        painter_.addText(line.text, lineAt, dot, colourOf(line.kind));
+        lineAt.y += pitch * dot;
     }
     if (layout_.graphs) {
         // Frame, draw and wait share one axis, so that their lengths can be compared.

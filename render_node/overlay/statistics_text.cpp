@@ -59,13 +59,14 @@ std::string TileStatistics::nameOf(int rank) const {
 
 std::vector<TileStatistics::Line> TileStatistics::longLines() const {
     const double mean = frameMs_.mean();
-    std::vector<Line> lines{{fmt::format("{} ON {}", nameOf(rank_), host_)},
-                            {fmt::format("{:.1f} FPS, FRAME {}", mean > 0 ? 1000 / mean : 0, frame_)}};
+    std::vector<Line> lines{
+        {fmt::format("{} ON {}", nameOf(rank_), host_)},
+        {fmt::format("{:.1f} FPS, FRAME {}", mean > 0 ? 1000 / mean : 0, frame_), Line::Kind::plain, 3}};
     if (wall_.divergences > 0) {
         lines.push_back(
             {fmt::format("DIFFERED IN {} FRAMES, HEALED {}", wall_.divergences, wall_.healed), Line::Kind::bad});
     } else {
-        lines.push_back({fmt::format("HASHES AGREED IN {} FRAMES", wall_.agreed), Line::Kind::good});
+        lines.push_back({fmt::format("HASHES AGREED IN {} FRAMES", wall_.agreed), Line::Kind::good, 2});
     }
     if (wall_.unplaced > 0) {
         lines.push_back({fmt::format("NO ROOM FOR SAND IN {} STEPS", wall_.unplaced), Line::Kind::bad});
@@ -77,7 +78,8 @@ std::vector<TileStatistics::Line> TileStatistics::longLines() const {
     if (const auto& slowest = wall_.slowest) {
         lines.push_back(
             {fmt::format("SLOWEST: {}, {:.0f} %", nameOf(slowest->rank), 100 * slowest->share), Line::Kind::slow});
-        lines.push_back({fmt::format("THE WALL WAITS {} MS FOR IT", milliseconds(slowest->keptMs)), Line::Kind::slow});
+        lines.push_back(
+            {fmt::format("THE WALL WAITS {} MS FOR IT", milliseconds(slowest->keptMs)), Line::Kind::slow, 1});
     } else {
         lines.push_back({"SLOWEST: NO RANK STANDS OUT"});
     }
@@ -105,8 +107,12 @@ std::vector<TileStatistics::Line> TileStatistics::shortLines() const {
     return lines;
 }
 
-std::vector<TileStatistics::Line> TileStatistics::lines(std::size_t letters) const {
+std::vector<TileStatistics::Line> TileStatistics::lines(std::size_t letters, std::size_t count) const {
     std::vector<Line> lines = letters < kLetters ? shortLines() : longLines();
+    for (int least = 1; lines.size() > count && least <= 3; ++least) {
+        std::erase_if(lines, [&](const Line& line) { return line.leftOut == least; });
+    }
+    lines.resize(std::min(lines.size(), count));
     for (Line& line : lines) {
         line.text.resize(std::min(line.text.size(), letters));
     }

@@ -46,11 +46,13 @@ public:
         enum class Kind : std::uint8_t { plain, good, slow, bad };
         std::string text;
         Kind kind = Kind::plain;
+        int leftOut = 0;  // if lines do not fit, 1 is left out first, 2 next; 0 is only cut at the end
     };
-    /// Returns the lines, the most important one first. If `letters` is less than kLetters, returns shorter lines and
-    /// cuts them to `letters` letters.
-    [[nodiscard]] std::vector<Line> lines(std::size_t letters) const;
+    /// Returns at most `count` lines from the top. If `letters` is less than kLetters, returns shorter lines and cuts
+    /// them to `letters` letters.
+    [[nodiscard]] std::vector<Line> lines(std::size_t letters, std::size_t count) const;
     static constexpr std::size_t kLetters = 32;
+    static constexpr std::size_t kLongLines = 5;  // with so many lines of kLetters letters, no warning is left out
 
     [[nodiscard]] const History& frameMs() const { return frameMs_; }  // time from swap to swap
     [[nodiscard]] const History& drawMs() const { return drawMs_; }

@@ -120,6 +120,16 @@ TEST_F(WindowDesk, AnswersEachKeyInTheWindowWhereItWasPressed) {
     EXPECT_EQ(answerIn(0), lockstep::hint()) << "answers of one window leave it to the others";
 }
 
+// The rank itself switches a window that the picture follows to full screen.
+TEST_F(WindowDesk, AnswersF11WhereWindowsKeepTheirSize) {
+    for (const char* name : {"desktop", "tiled_3x4"}) {
+        wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/" + std::string(name) + ".toml");
+        openForPointer();
+        press({Keystroke::kF11, 0, 0});
+        EXPECT_EQ(answerIn(1), wall_.tiles.size() == 1 ? "" : "this wall's windows keep their size");
+    }
+}
+
 TEST_F(WindowDesk, OfAnotherHandHintsAtNothing) { EXPECT_TRUE(desk_->windows().answers(host::monotonicNs()).empty()); }
 
 TEST_F(WindowDesk, PausesAndResumesBySpace) {

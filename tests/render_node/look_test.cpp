@@ -48,6 +48,15 @@ double roughness(const Pixels& pixels, int y0, int y1) {
     return std::sqrt(sum / ((kLookWidth - 1) * (y1 - y0)));
 }
 
+/// Returns the largest difference of two levels at the same place.
+int mostDifference(const Pixels& a, const Pixels& b) {
+    int most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        most = std::max(most, std::abs(int{a[i]} - int{b[i]}));
+    }
+    return most;
+}
+
 /// Returns a plane that rises to the east (slope 1 is 45 degrees), with the given seed in its rows.
 scene::Scene slopeScene(double east, double north) {
     scene::Scene scene = sample::flatScene(128, 128);
@@ -77,12 +86,34 @@ TEST_F(Look, GrainStaysOnItsSandWhenTheHeadMoves) {
         const Pixels seen = sample::draw(view, {walls::viewOf(screen, eye, 0.05, 10).viewProjection, eye}, target_);
         EXPECT_GT(roughness(seen, 0, kLookHeight), 4) << "no grains to see";
         first = first.empty() ? seen : first;
-        int most = 0;
-        for (std::size_t i = 0; i < seen.size(); ++i) {
-            most = std::max(most, std::abs(int{seen[i]} - int{first[i]}));
-        }
-        EXPECT_LE(most, 3) << "from " << eye.x << ", " << eye.y << ", " << eye.z;
+        EXPECT_LE(mostDifference(seen, first), 3) << "from " << eye.x << ", " << eye.y << ", " << eye.z;
     }
+}
+
+// The camera moves away as the sand grows, so that each place of the sand stays on its pixel. So its grains must too.
+// The grain changes between 1 and 2 notches of the wheel, and again after an octave.
+TEST_F(Look, GrainStaysOnItsSandWhileTheViewIsZoomedWithinAnOctave) {
+    ScenePainter view(sample::flatScene(128, 128), glm::dmat4(1));
+    const auto zoomed = [&](double notches) {
+        const double by = std::exp2(notches / 4);
+        view.setSceneToRoom(glm::scale(glm::dmat4(1), glm::dvec3(by)));
+        return sample::draw(view, {above_.roomToClip * glm::scale(glm::dmat4(1), glm::dvec3(1 / by)), above_.eye * by},
+                            target_);
+    };
+    Pixels before = zoomed(-2);
+    for (const double notches : {-1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
+        const Pixels now = zoomed(notches);
+        EXPECT_EQ(mostDifference(now, before) > 3, notches == 2 || notches == 6) << notches;
+        before = now;
+    }
+}
+
+// Grains of a large zoom are as large on the wall as those of the usual view.
+TEST_F(Look, GrainIsNotMagnifiedByALargeZoom) {
+    ScenePainter view(sample::flatScene(128, 128), glm::dmat4(1));
+    const double usual = roughness(sample::draw(view, above_, target_), 0, kLookHeight);
+    view.setSceneToRoom(glm::translate(glm::scale(glm::dmat4(1), glm::dvec3(8)), glm::dvec3(-0.875, -0.875, 0)));
+    EXPECT_NEAR(roughness(sample::draw(view, above_, target_), 0, kLookHeight), usual, 0.1 * usual);
 }
 
 // Far sand must look like the average of a finer picture: a single grain must not replace its neighbours.

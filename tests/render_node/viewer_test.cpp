@@ -6,68 +6,26 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "pictures/compare.hpp"
-#include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/window_context.hpp"
-#include "render_node/overlay/help.hpp"
 #include "render_node/tile_painter.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/render_node/grid_and_desk.hpp"
 #include "walls/stereo_change.hpp"
 
 namespace {
 
 using pictures::Image;
 using render_node::OutputPicture;
-using render_node::PixelRect;
 using render_node::TilePainter;
+using sample::cameraByHand;
+using sample::gridAndDesk;
+using sample::kEyePixels;
 using walls::Eye;
 using walls::Stereo;
-
-constexpr glm::ivec2 kEyePixels(160, 120);
-constexpr double kEyesApart = 0.065;                   // [m]
-const glm::dvec3 kHeadAt(0.1, 1.5, 2.5);               // [m]
-constexpr double kScreenWide = 1, kScreenHigh = 0.75;  // [m], of each screen
-constexpr double kDeskHigh = 0.38, kDeskFront = 0.8;   // [m]
-
-/// Returns a wall of two neighbouring tiles in the plane z = 0, and a desk in front of them.
-walls::Wall gridAndDesk(Stereo stereo) {
-    walls::Wall wall;
-    wall.viewer = {kHeadAt, kEyesApart, {1, 0, 0}};
-    wall.clip = {0.1, 20};
-    wall.stage = {{0, 1.1, 0}, 1.9, 40, 0};
-    wall.grid = walls::Grid{1, 2, {kScreenWide, kScreenHigh}, {0.0125, 0}, kEyePixels, {-1.00625, 0.7, 0}};
-    wall.tiles = walls::tilesOf(*wall.grid, wall.stereo);
-    walls::Tile desk;
-    desk.rank = 3;
-    desk.name = "desk";
-    desk.screen = {
-        {-0.5, kDeskHigh, kDeskFront}, {0.5, kDeskHigh, kDeskFront}, {-0.5, kDeskHigh, kDeskFront - kScreenHigh}};
-    desk.pixels = kEyePixels;
-    wall.tiles.push_back(desk);
-    return walls::shownIn(wall, stereo);
-}
-
-/// Returns the camera of an eye that looks at tile 0, tile 1 or the desk. It is computed without walls::viewOf() and
-/// walls::eyePosition().
-render_node::Camera cameraByHand(std::size_t tile, Eye eye) {
-    const double aside = eye == Eye::left ? -kEyesApart / 2 : eye == Eye::right ? kEyesApart / 2 : 0;
-    const glm::dvec3 at(kHeadAt.x + aside, kHeadAt.y, kHeadAt.z);
-    const double left = tile == 0 ? -1.00625 : tile == 1 ? 0.00625 : -0.5;
-    // A desk is seen from above, so that its top edge is the far one.
-    const double distance = tile == 2 ? at.y - kDeskHigh : at.z;
-    const double bottom = tile == 2 ? at.z - kDeskFront : 0.7 - at.y;
-    const double toNear = 0.1 / distance;
-    const glm::dmat4 projection = glm::frustum((left - at.x) * toNear, (left + kScreenWide - at.x) * toNear,
-                                               bottom * toNear, (bottom + kScreenHigh) * toNear, 0.1, 20.0);
-    const glm::dvec3 ahead = tile == 2 ? glm::dvec3(0, -1, 0) : glm::dvec3(0, 0, -1);
-    const glm::dvec3 up = tile == 2 ? glm::dvec3(0, 0, -1) : glm::dvec3(0, 1, 0);
-    return {projection * glm::lookAt(at, at + ahead, up), at};
-}
 
 /// Levels of channels, in the order of Image::rgb; -1 if an eye does not see the channel.
 using ChannelLevels = std::vector<int>;
@@ -161,38 +119,14 @@ double shareOfWrong(const ChannelLevels& seen, const ChannelLevels& expected) {
 // the levels are wrong. If the left eye sees the picture from the middle, 2.6 % are wrong.
 constexpr double kFewWrong = 0.001, kManyWrong = 0.02;
 
-class Viewer : public testing::Test {
+class Viewer : public sample::GridAndDesk {
 protected:
     Viewer() {
-        scene_.rules.tuning.tool.radius *= 2;
         for (std::size_t tile = 0; tile < 3; ++tile) {
             for (const Eye eye : {Eye::left, Eye::right, Eye::middle}) {
                 expected_.at(tile).push_back(drawn(tile, eye));
             }
         }
-    }
-    [[nodiscard]] sand::Replica dug(int steps = 4) const {
-        sand::Replica replica(scene_);
-        for (int i = 0; i < steps; ++i) {
-            dig(replica);
-        }
-        return replica;
-    }
-    void dig(sand::Replica& replica) const {
-        const double along = 0.05 * static_cast<double>(replica.stepNumber());
-        replica.apply({0, replica.stepNumber() + 1, true, {sample::probeAt(scene_, {0.8 + along, 0.9, 0.06})}});
-    }
-    [[nodiscard]] glm::dmat4 sceneToRoom() const { return sample::sceneToRoom(gridAndDesk(Stereo::mono), scene_); }
-    [[nodiscard]] lockstep::ViewState view() const {
-        lockstep::ViewState state;
-        for (std::size_t i = 0; i < 3; ++i) {
-            state.head.at(i) = kHeadAt[static_cast<int>(i)];
-        }
-        state.eyeSeparation = kEyesApart;
-        for (int i = 0; i < 16; ++i) {
-            state.sceneToRoom.at(static_cast<std::size_t>(i)) = sceneToRoom()[i / 4][i % 4];
-        }
-        return state;
     }
     /// Returns the sand as an eye sees it through a tile.
     [[nodiscard]] Image drawn(std::size_t tile, Eye eye) const {
@@ -231,9 +165,6 @@ protected:
         }
     }
 
-    std::unique_ptr<render_node::GlContext> context_ =
-        render_node::makeOffscreenContext(render_node::Backend::automatic);
-    scene::Scene scene_ = sample::duneScene(128);
     std::array<std::vector<Image>, 3> expected_;  // for each tile, in the order of walls::Eye
     int seen_ = 0;                                // number of outputs that each eye was compared on
 };
@@ -282,104 +213,6 @@ TEST_F(Viewer, SeesWithEachEyeItsPictureOnTwoOutputsThatChangeTheirMode) {
         }
     }
     EXPECT_EQ(seen_, 2 * 2 * 9 + 2 * (3 * 2 + 3 * 4));
-}
-
-/// Returns whether two pictures are equal outside `rect`, which counts rows from the bottom.
-bool equalOutside(const PixelRect& rect, const Image& a, const Image& b) {
-    for (int y = 0; y < a.height; ++y) {
-        const int row = a.height - 1 - y;
-        for (int x = 0; x < a.width; ++x) {
-            const bool inside = x >= rect.x0 && x < rect.x1 && row >= rect.y0 && row < rect.y1;
-            const auto at = 3 * (static_cast<std::ptrdiff_t>(y) * a.width + x);
-            if (!inside && !std::equal(a.rgb.begin() + at, a.rgb.begin() + at + 3, b.rgb.begin() + at)) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
-// A window of a software renderer shows only these pixels of a frame.
-TEST_F(Viewer, SeesNoChangeOutsideThePixelsThatAPainterNames) {
-    for (const std::string& name : walls::stereoNames()) {
-        const Stereo stereo = walls::stereoNamed(name);
-        walls::Wall wall = gridAndDesk(stereo);
-        wall.tiles[0].pixels = {640, 480};
-        ASSERT_GT(render_node::helpSheet({0, 1, wall.tiles[0].pixels}, wall.tiles[0].pixels).size().y, 0);
-        TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
-        sand::Replica replica = dug(0);
-        std::vector<Image> before;
-        int inPart = 0, still = 0;
-        for (std::uint64_t frame = 1; frame <= 24; ++frame) {
-            lockstep::ViewState state = view();
-            state.layers.set(lockstep::Overlay::help, frame >= 6 && frame < 14);
-            state.layers.set(lockstep::Overlay::statistics, frame >= 9 && frame < 12);
-            state.pattern = static_cast<std::uint8_t>(frame == 16 ? lockstep::Pattern::grid : lockstep::Pattern::none);
-            if (frame % 4 != 0) {
-                dig(replica);
-            }
-            std::vector<lockstep::Answer> answers;
-            if (frame >= 4 && frame < 20) {
-                answers.push_back({1, frame < 8 ? "tool: sphere" : "humidity 30 %"});
-            }
-            painter.paint(replica, state, frame, false, {}, answers);
-            std::vector<Image> now;
-            for (const OutputPicture& output : painter.outputs()) {
-                now.push_back(sample::pictureOf(*output.picture));
-            }
-            const std::int64_t all = std::int64_t{now[0].width} * now[0].height;
-            for (std::size_t i = 0; i < before.size(); ++i) {
-                EXPECT_TRUE(equalOutside(painter.changed(), before[i], now[i])) << name << ", frame " << frame;
-            }
-            inPart += painter.changed().area() > 0 && painter.changed().area() < all ? 1 : 0;
-            still += painter.changed().empty() ? 1 : 0;
-            before = std::move(now);
-        }
-        EXPECT_GT(inPart, 6) << name;
-        EXPECT_GT(still, 1) << name;
-    }
-}
-
-/// Returns the eyes' pictures of a new painter, which draws all of them whole.
-std::vector<Image> drawnAfresh(const walls::Wall& wall, const scene::Scene& scene, sand::Replica& replica,
-                               const lockstep::ViewState& view) {
-    TilePainter fresh(wall, wall.tiles[0], scene, "host", sand::GridData{scene.terrain});
-    fresh.paint(replica, view, 1);
-    std::vector<Image> pictures;
-    for (const OutputPicture& output : fresh.outputs()) {
-        pictures.push_back(sample::pictureOf(*output.picture));
-    }
-    return pictures;
-}
-
-// An answer comes and goes while sand moves below it, with and without help and wireframe.
-TEST_F(Viewer, SeesNothingOfAnAnswerThatHasGone) {
-    for (const Stereo stereo : {Stereo::mono, Stereo::anaglyphDubois, Stereo::passive}) {
-        walls::Wall wall = gridAndDesk(stereo);
-        wall.tiles[0].pixels = {640, 480};
-        TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
-        sand::Replica replica = dug(0);
-        std::vector<Image> hidden, answered;
-        for (std::uint64_t frame = 1; frame <= 12; ++frame) {
-            lockstep::ViewState state = view();
-            state.layers.set(lockstep::Overlay::help, frame >= 7);
-            state.layers.set(lockstep::Overlay::wireframe, frame == 5);
-            const bool answers = frame % 3 == 0;
-            const std::vector<lockstep::Answer> all{{1, frame == 3 ? "undone" : "saved as saves/save_001.sand"}};
-            if (frame % 2 == 0) {
-                dig(replica);
-            }
-            painter.paint(replica, state, frame, false, {}, answers ? std::span(all) : std::span(all).first(0));
-            std::vector<Image> now;
-            for (const OutputPicture& output : painter.outputs()) {
-                now.push_back(sample::pictureOf(*output.picture));
-            }
-            sand::Replica copy(scene_);
-            copy.decodeState(replica.encodeState());
-            EXPECT_EQ(now == drawnAfresh(wall, scene_, copy, state), !answers)
-                << walls::stereoName(stereo) << ", frame " << frame;
-        }
-    }
 }
 
 // Without quad buffers a rank draws one eye per frame, and a window shows one eye of it. Both must choose the same eye.

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads pictures for tests: PNG files that Sandwall has written, and the screen of an X server in memory."""
+"""Pictures for tests: reads PNG files that Sandwall has written, and the screen of an X server in memory."""
 
 import dataclasses
+import itertools
 import pathlib
 import struct
 import zlib
+
+END = b"IEND\xaeB`\x82"  # of a PNG file that is complete
 
 
 @dataclasses.dataclass(frozen=True)
@@ -20,18 +23,45 @@ class Picture:
         return tuple(self.rows[y][3 * x:3 * x + 3])
 
 
-def paeth(left, above, corner):
-    """Returns the predictor of PNG's filter 4."""
-    guess = left + above - corner
-    return min((left, above, corner), key=lambda value: abs(guess - value))
+def added(row, above):
+    """Returns the sums of the bytes of two rows, modulo 256."""
+    low = int.from_bytes(b"\x7f" * len(row), "little")
+    a, b = int.from_bytes(row, "little"), int.from_bytes(above, "little")
+    return (((a & low) + (b & low)) ^ ((a ^ b) & ~low)).to_bytes(len(row), "little")
+
+
+def averaged(row, above):
+    """Returns one channel of a row without PNG's filter 3."""
+    left, done = 0, bytearray()
+    for value, up in zip(row, above):
+        left = (value + (left + up) // 2) & 255
+        done.append(left)
+    return done
+
+
+def paeth(row, above):
+    """Returns one channel of a row without PNG's filter 4: each byte is added to the nearest to left + above - corner."""
+    left, corner, done = 0, 0, bytearray()
+    for value, up in zip(row, above):
+        from_left, from_up = abs(up - corner), abs(left - corner)
+        from_corner = abs(left + up - 2 * corner)
+        left = (value + (left if from_left <= from_up and from_left <= from_corner else up if from_up <= from_corner else corner)) & 255
+        corner = up
+        done.append(left)
+    return done
 
 
 def unfiltered(kind, row, above):
     """Returns a row of a PNG file without its filter."""
-    done = bytearray(row)
-    for i, value in enumerate(row):
-        left, up, corner = (done[i - 3], above[i], above[i - 3]) if i >= 3 else (0, above[i], 0)
-        done[i] = (value + (0, left, up, (left + up) // 2, paeth(left, up, corner))[kind]) & 255
+    if kind == 0:
+        return row
+    if kind == 2:
+        return added(row, above)
+    done = bytearray(len(row))
+    for channel in range(3):
+        own = row[channel::3]
+        done[channel::3] = (bytes(value & 255 for value in itertools.accumulate(own)) if kind == 1
+                            else averaged(own, above[channel::3]) if kind == 3 else paeth(own, above[channel::3]))
     return bytes(done)
 
 
@@ -52,9 +82,19 @@ def read_png(file):
     for y in range(size[1]):
         begin = y * (3 * size[0] + 1)
         row = raw[begin + 1:begin + 1 + 3 * size[0]]
-        above = row if raw[begin] == 0 else unfiltered(raw[begin], row, above)
+        above = unfiltered(raw[begin], row, above)
         rows.append(above)
     return Picture(*size, tuple(rows))
+
+
+def write_png(picture, file):
+    """Writes a PNG file of 8-bit RGB without filters."""
+    def chunk(kind, body):
+        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
+
+    head = struct.pack(">IIBBBBB", picture.width, picture.height, 8, 2, 0, 0, 0)
+    rows = zlib.compress(b"".join(b"\0" + row for row in picture.rows))
+    pathlib.Path(file).write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", rows) + chunk(b"IEND", b""))
 
 
 def read_screen(file):

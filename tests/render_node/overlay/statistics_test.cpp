@@ -229,13 +229,14 @@ TEST(OverlayLayout, GraphsEndAtRoundNumbers) {
 }
 
 /// Returns the texts on one tile of the tiled wall, after some frames.
-std::vector<TileStatistics::Line> wordsOf(int rank, std::size_t letters, const lockstep::WallFigures& wall) {
+std::vector<TileStatistics::Line> wordsOf(int rank, std::size_t letters, const lockstep::WallFigures& wall,
+                                          std::size_t count = 10) {
     const walls::Wall tiled = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");
     TileStatistics statistics(tiled, tiled.tiles.at(static_cast<std::size_t>(rank - 1)), "a-host-with-a-long-name");
     for (std::uint64_t frame = 1; frame <= 200; ++frame) {
         statistics.add({31.25, 1.2, wall}, frame);
     }
-    return statistics.lines(letters);
+    return statistics.lines(letters, count);
 }
 
 std::string joined(const std::vector<TileStatistics::Line>& lines) {
@@ -291,6 +292,29 @@ TEST(OverlayText, ShowsSlowMotionWhileTheToolIsSlowerThanTheHand) {
     figures.sweepsOwed = 3840;
     EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("SLOW MOTION 1.0, 3840 OWED\n"),
               std::string::npos);
+}
+
+// A panel with graphs has five lines. Seven are wanted if the tool is slow, found no room, and a rank is slow.
+TEST(OverlayText, LeavesOutNoWarningWhereNotAllLinesFit) {
+    lockstep::WallFigures figures = figuresOf(200).wall;
+    figures.unplaced = 12;
+    figures.slowMotion = 6.34;
+    constexpr std::size_t kFive = TileStatistics::kLongLines;
+    ASSERT_EQ(overlayLayout({1024, 768}).lines, static_cast<int>(kFive));
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures, kFive)),
+              "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nNO ROOM FOR SAND IN 12 STEPS\n"
+              "SLOW MOTION 6.3, 0 OWED\nSLOWEST: RANK 5 r2c1, 97 %\n");
+    figures.divergences = 2;
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures, kFive)),
+              "RANK 5 r2c1 ON a-host-with-a-lon\nDIFFERED IN 2 FRAMES, HEALED 0\nNO ROOM FOR SAND IN 12 STEPS\n"
+              "SLOW MOTION 6.3, 0 OWED\nSLOWEST: RANK 5 r2c1, 97 %\n");
+    figures.slowMotion.reset();
+    figures.slowest.reset();
+    figures.divergences = 0;
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures, kFive)),
+              "RANK 5 r2c1 ON a-host-with-a-lon\n30.0 FPS, FRAME 200\nHASHES AGREED IN 199 FRAMES\n"
+              "NO ROOM FOR SAND IN 12 STEPS\nSLOWEST: NO RANK STANDS OUT\n");
+    EXPECT_EQ(joined(wordsOf(5, 15, figures, 2)), "R5 30.0 FPS\nSLOWEST -\n");
 }
 
 TEST(OverlayText, KeepsTheLast120Frames) {
