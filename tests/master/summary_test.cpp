@@ -47,12 +47,12 @@ nlohmann::json written(const master::Summary& summary) {
 
 TEST(Summary, HasTheFirstRefusedPressInUnitsOfTheScene) {
     constexpr double kCell = 0.25;  // [scene unit]
-    sand::Replica replica(samples::highScene(10, sand::ToolKind::ellipsoid, kCell));
+    sand::Replica replica(samples::highScene(24, sand::ToolKind::ellipsoid, kCell));
     replica.apply({.number = 1, .engaged = true, .path = {samples::aboveHighSand(2)}});
     const std::int32_t largest = replica.firstRefusedPress().value().largest.value();
     const master::RefusedPressPart part = master::refusedPressOf(replica);
     EXPECT_EQ(part.shape, "ellipsoid");
-    EXPECT_EQ(part.radius, 10 * kCell);
+    EXPECT_EQ(part.radius, 24 * kCell);
     ASSERT_GT(largest, 0);
     EXPECT_EQ(part.largest, kCell * largest / sand::kProbePerCell);
 }
