@@ -43,8 +43,8 @@ public:
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
     /// Returns how many sub-steps of the tool a step may have, at least 1; PathBuilder::kNoLimit under the fast pace.
     [[nodiscard]] std::int64_t mostSubsteps() const;
-    /// Returns whether a frame whose steps ask for `taken` may take a further step that asks for `further`.
-    [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further) const;
+    /// Returns whether a frame whose steps ask for `taken` may take a further step of `tool` that asks for `further`.
+    [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const;
 
     [[nodiscard]] std::int64_t budgetNs() const;  // [ns], for sand in a frame
 
@@ -52,7 +52,6 @@ private:
     void begin(std::int64_t part, std::uint64_t step);
     /// Returns the sweeps that fit if all sand moves.
     [[nodiscard]] std::int64_t whenAllMoves(const sand::Replica& replica) const;
-    [[nodiscard]] double expectedNs(const sand::StepWork& work) const;
     /// Returns the sweeps that take `ns` after a drag of `substeps`.
     [[nodiscard]] double sweepsIn(double ns, std::int64_t substeps, const sand::Tool& tool) const;
 

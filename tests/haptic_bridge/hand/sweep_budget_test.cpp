@@ -178,10 +178,24 @@ TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
 }
 
 TEST_F(Budget, AFrameTakesTheStepsThatFit) {
+    const sand::Tool tool = scene_.rules.tuning.tool;  // 8 cells across
     budget_.shown({.sweeps = 10, .substeps = 2, .sweepNs = 10 * kMillisecond, .dragNs = 2 * kMillisecond}, 1);
-    EXPECT_TRUE(budget_.fits({3, 1}, {3, 1})) << "8 ms";
-    EXPECT_FALSE(budget_.fits({3, 1}, {4, 1}));
-    EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}));
+    EXPECT_TRUE(budget_.fits({4, 0}, {4, 0}, tool)) << "8 ms";
+    EXPECT_FALSE(budget_.fits({4, 0}, {5, 0}, tool));
+    EXPECT_TRUE(budget_.fits({2, 2}, {2, 0}, tool)) << "2 ms of drag, and 4 sweeps that count as 1.25 ms each";
+    EXPECT_FALSE(budget_.fits({3, 2}, {2, 0}, tool));
+    EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}, tool));
+}
+
+TEST_F(Budget, AFrameTakesFewerStepsWhileSweepsTakeLongerAndLonger) {
+    const sand::Tool tool = scene_.rules.tuning.tool;
+    for (const std::int64_t sweepNs : {20'000, 40'000}) {
+        show(100, sweepNs);
+    }
+    EXPECT_TRUE(budget_.fits({50, 0}, {50, 0}, tool)) << "100 sweeps of 0.04 ms each may take 8 ms";
+    EXPECT_FALSE(budget_.fits({51, 0}, {50, 0}, tool));
+    show(100, 40'000);
+    EXPECT_TRUE(budget_.fits({100, 0}, {100, 0}, tool));
 }
 
 TEST_F(Budget, TheFastPaceDependsOnNoTime) {
