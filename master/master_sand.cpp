@@ -21,6 +21,9 @@ MasterSand::MasterSand(const sand::Start& start, const base::Executor* executor,
     if (!state.empty()) {
         replica_.decodeState(state);
     }
+    if (replica_.settling()) {
+        settlingSince_ = 0;
+    }
     rehash();
 }
 
@@ -30,27 +33,47 @@ void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::Tim
     source.reached(replica_);
     work_ = {};
     time_ = {};
-    settleEnd_.reset();
+    endedSettles_.clear();
     for (const haptic_bridge::TimedStep& timed : steps) {
-        const bool settling = replica_.settling();
+        const bool begins = replica_.settlesBySweeps(timed.step);
         time_ += lockstep::applyTimed(replica_, timed.step);
-        if (settling && !replica_.settling()) {
-            settleEnd_ = timed.step.edit.any()          ? SettleEnd::edit
-                         : replica_.surface().settled() ? SettleEnd::rest
-                                                        : SettleEnd::hand;
-        }
+        noteSettle(timed.step, begins);
         work_ += replica_.lastWork();
         if (!replica_.leftOut().empty()) {
             leftOut_.push_back({timed.step.number, replica_.leftOut(), replica_.refusedStep()});
         }
         edits_ += timed.step.edit.any() ? 1 : 0;
-        stepsUnplaced_ += replica_.refusedPress() ? 1 : 0;
+        if (replica_.refusedPress() && stepsUnplaced_++ == 0) {
+            firstStepUnplaced_ = timed.step.number;
+        }
         source.reached(replica_);
     }
     const std::int64_t applied = host::monotonicNs();
     replica_.audit(static_cast<int>(auditTiles));
     rehash();
     time_.hashNs = host::monotonicNs() - applied;
+}
+
+void MasterSand::noteSettle(const sand::Step& step, bool begins) {
+    if (replica_.refusedStep()) {
+        return;
+    }
+    if (begins) {
+        if (settlingSince_) {
+            endedSettles_.push_back({*settlingSince_, SettleEnd::edit});
+        }
+        settlingSince_ = step.number;
+    }
+    if (settlingSince_ && !replica_.settling()) {
+        const SettleEnd otherwise = step.edit.any() ? SettleEnd::edit : SettleEnd::hand;
+        endedSettles_.push_back({*settlingSince_, replica_.settleCameToRest() ? SettleEnd::rest : otherwise});
+        settlingSince_.reset();
+    }
+}
+
+std::optional<SettleEnd> MasterSand::endOfSettle(std::uint64_t begun) const {
+    const auto ended = std::ranges::find(endedSettles_, begun, &EndedSettle::begun);
+    return ended == endedSettles_.end() ? std::nullopt : std::optional(ended->by);
 }
 
 std::uint32_t MasterSand::auditTiles(double sinceSwap) const {

@@ -24,16 +24,23 @@ struct LeftOut {
     bool refused = false;  // sand::Replica::refusedStep()
 };
 
-/// How a settle that continued from step to step has ended.
+/// How a settle by sweeps has ended.
 enum class SettleEnd : std::uint8_t {
     rest,  // all sand came to rest
     hand,  // an engaged tool moved
-    edit   // another edit took its place
+    edit   // another edit took its place, or its step was skipped
 };
 constexpr auto valuesOf(SettleEnd) {
     using enum SettleEnd;
     return std::array{base::Named{rest, "rest"}, base::Named{hand, "hand"}, base::Named{edit, "edit"}};
 }
+
+/// A settle by sweeps that has ended.
+struct EndedSettle {
+    std::uint64_t begun = 0;  // step that began it; 0: a settle of the session that was resumed
+    SettleEnd by = SettleEnd::rest;
+    friend bool operator==(const EndedSettle&, const EndedSettle&) = default;
+};
 
 /// The master's own replica of the sand, its state hash, and the faults that drills inject into it. Used by one thread.
 class MasterSand {
@@ -69,20 +76,31 @@ public:
 
     /// Returns what the steps since the last call have left out.
     [[nodiscard]] std::vector<LeftOut> takeLeftOut() { return std::exchange(leftOut_, {}); }
-    /// Returns how a settle has ended in the last apply(); nullopt if none has.
-    [[nodiscard]] std::optional<SettleEnd> settleEnd() const { return settleEnd_; }
+    /// Returns the settles by sweeps that have ended in the last apply(), also those that ended in their own step.
+    [[nodiscard]] const std::vector<EndedSettle>& endedSettles() const { return endedSettles_; }
+    /// Returns how the settle of step `begun` has ended in the last apply(); nullopt if it has not.
+    [[nodiscard]] std::optional<SettleEnd> endOfSettle(std::uint64_t begun) const;
+    /// Returns the step whose settle continues in the next step, with the 0 of EndedSettle; nullopt if none does.
+    [[nodiscard]] std::optional<std::uint64_t> settlingSince() const { return settlingSince_; }
     /// Returns the number of steps with a press that was refused (sand::Replica::refusedPress()), since the last start.
     [[nodiscard]] std::uint64_t stepsUnplaced() const { return stepsUnplaced_; }
+    /// Returns the first of these steps; 0 if there is none.
+    [[nodiscard]] std::uint64_t firstStepUnplaced() const { return firstStepUnplaced_; }
     /// Returns the number of steps with an edit since the session began.
     [[nodiscard]] std::uint64_t edits() const { return edits_; }
 
 private:
+    /// Notes what `step`, which was applied last, has done to settles. `begins` is sand::Replica::settlesBySweeps()
+    /// from before the step.
+    void noteSettle(const sand::Step& step, bool begins);
+
     sand::Replica replica_;
     const lockstep::FaultsOfRank faults_;
     std::uint64_t hash_ = 0;
-    std::uint64_t edits_ = 0, stepsUnplaced_ = 0;
+    std::uint64_t edits_ = 0, stepsUnplaced_ = 0, firstStepUnplaced_ = 0;
     std::vector<LeftOut> leftOut_;
-    std::optional<SettleEnd> settleEnd_;
+    std::optional<std::uint64_t> settlingSince_;
+    std::vector<EndedSettle> endedSettles_;
     sand::StepWork work_;
     lockstep::SandTime time_;
 };

@@ -273,23 +273,28 @@ void OperatorDesk::answerEditsThatWaitForRoom() {
 }
 
 void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
-    const std::optional<SettleEnd> end = session_.sand.settleEnd();
-    for (const haptic_bridge::TimedStep& timed : steps) {
-        if (timed.step.edit.kind == sand::Edit::settle) {  // it takes the place of the one before
-            answerSettle(SettleEnd::edit);
+    const MasterSand& sand = session_.sand;
+    const auto answerIfEnded = [this, &sand] {
+        if (const std::optional<SettleEnd> end = settling_ ? sand.endOfSettle(settling_->step) : std::nullopt) {
+            answerSettle(end);
         }
+    };
+    answerIfEnded();  // one of an earlier frame
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        const std::uint64_t step = timed.step.number;
         const auto client = edits_.shown(timed.step.edit.number);
         if (!client) {
             continue;
         }
-        if (timed.step.edit.kind == sand::Edit::settle && (session_.sand.replica().settling() || end)) {
-            settling_ = {*client, timed.step.number, host::monotonicNs()};
+        if (sand.settlingSince() == step || sand.endOfSettle(step)) {
+            settling_ = {*client, step, host::monotonicNs()};
+            answerIfEnded();
         } else {
-            control_->answer(*client, line({{"ok", true}, {"step", timed.step.number}}));
+            control_->answer(*client, line({{"ok", true}, {"step", step}}));
         }
     }
-    if (settling_ && (end || host::monotonicNs() - settling_->sinceNs > kSettleNs)) {
-        answerSettle(end);
+    if (settling_ && host::monotonicNs() - settling_->sinceNs > kSettleNs) {
+        answerSettle({});
     }
 }
 

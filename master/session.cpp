@@ -157,7 +157,7 @@ void Session::reportLeftOut(const Steps& steps) {
 
 void Session::reportRefusedPress(std::uint64_t before) {
     if (before == 0 && sand_.stepsUnplaced() > 0) {  // the summary has the others
-        host::printLine("step {}: {}", sand_.replica().stepNumber(), describe(refusedPressOf(sand_.replica())));
+        host::printLine("step {}: {}", sand_.firstStepUnplaced(), describe(refusedPressOf(sand_.replica())));
     }
 }
 

@@ -82,6 +82,7 @@ Replica::Replica(const Replica& other)
       leftOut_(other.leftOut_),
       refusedStep_(other.refusedStep_),
       refusedPress_(other.refusedPress_),
+      settleCameToRest_(other.settleCameToRest_),
       lastWork_(other.lastWork_) {}
 
 Replica& Replica::operator=(const Replica& other) { return *this = Replica(other); }
@@ -94,7 +95,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     }
     leftOut_ = whyRefused(step);
     refusedStep_ = !leftOut_.empty();
-    refusedPress_ = false;
+    refusedPress_ = settleCameToRest_ = false;
     lastWork_ = {};
     if (refusedStep_) {
         stepNumber_ = step.number;
@@ -137,7 +138,7 @@ Owed Replica::owedBy(const Step& step) const {
     if (step.edit.kind == Edit::tune) {
         return {step.edit.tuning.sweepsPerStep, 0};
     }
-    if (step.edit.kind == Edit::settle && (step.engaged || surface_->settlesBySweeps())) {
+    if (settlesBySweeps(step)) {
         return {Owed::kUntilRest, 0};
     }
     const bool endsSettle = step.edit.kind == Edit::settle || (owed_.untilRest() && movesTool(step));
@@ -236,6 +237,7 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
     moved();
     const Swept swept = surface_->sweep({sweeps, owed_.done, owed_.whole}, engaged_ ? &here : nullptr, probe_);
     lastWork_.sweeps = swept.sweeps;
+    settleCameToRest_ = swept.still && settling();
     owed_ = swept.still ? Owed{} : owed_.after(sweeps);
 }
 
@@ -331,7 +333,7 @@ void Replica::decodeState(std::span<const std::uint8_t> bytes) {
     probe_ = head.probe;
     heading_ = head.heading;
     leftOut_.clear();
-    refusedStep_ = refusedPress_ = false;
+    refusedStep_ = refusedPress_ = settleCameToRest_ = false;
     lastWork_ = {};
 }
 

@@ -164,6 +164,12 @@ public:
     [[nodiscard]] bool settled() const { return surface_->settled(); }
     /// Returns whether a settle continues in the next step.
     [[nodiscard]] bool settling() const { return owed_.untilRest(); }
+    /// Returns whether `step` has a settle that lets the sand settle by sweeps.
+    [[nodiscard]] bool settlesBySweeps(const Step& step) const {
+        return step.edit.kind == Edit::settle && (step.engaged || surface_->settlesBySweeps());
+    }
+    /// Returns whether a settle by sweeps has come to rest in the last apply().
+    [[nodiscard]] bool settleCameToRest() const { return settleCameToRest_; }
     /// Returns the number of sweeps of a settle in a step without Step::sweeps, unless the rules ask for more.
     [[nodiscard]] int settlingSweeps() const;
 
@@ -235,8 +241,8 @@ private:
     Heading heading_;
     bool engaged_ = false;
     Owed owed_;
-    std::string leftOut_;  // by the last apply()
-    bool refusedStep_ = false, refusedPress_ = false;
+    std::string leftOut_;
+    bool refusedStep_ = false, refusedPress_ = false, settleCameToRest_ = false;  // by the last apply()
     StepWork lastWork_;
 };
 

@@ -6,6 +6,18 @@
 #include "haptic_bridge/hand/path_builder.hpp"
 
 namespace haptic_bridge {
+namespace {
+
+constexpr double kMostGrowth = 2;
+
+/// Returns how many times as long a sweep may take after a drag. The sweeps before it may have been of sand at the tool
+/// alone. A sub-step brings the tool a cell farther.
+double widened(std::int64_t substeps, const sand::Tool& tool) {
+    const double across = std::max(2.0 * tool.radius / sand::kProbePerCell, 1.0);  // [cell]
+    return 1 + static_cast<double>(substeps) / across;
+}
+
+}  // namespace
 
 void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
     drawNs_ = cost.drawNs;
@@ -13,7 +25,9 @@ void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
         hashNs_ = cost.hashNs;
     }
     if (cost.sweeps > 0) {
-        sweepNs_ = static_cast<double>(cost.sweepNs) / static_cast<double>(cost.sweeps);
+        const double now = static_cast<double>(cost.sweepNs) / static_cast<double>(cost.sweeps);
+        growth_ = sweepNs_ > 0 ? std::clamp(now / sweepNs_, 1.0, kMostGrowth) : 1;
+        sweepNs_ = now;
     }
     if (cost.substeps > 0) {
         substepNs_ = static_cast<double>(cost.dragNs) / static_cast<double>(cost.substeps);
@@ -23,10 +37,9 @@ void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
     }
 }
 
-std::int64_t SweepBudget::budgetNs() const { return std::min(std::max(periodNs_, drawNs_) / 2, kMostNs); }
-
-double SweepBudget::expectedNs(const sand::StepWork& work) const {
-    return sweepNs_ * static_cast<double>(work.sweeps) + substepNs_ * static_cast<double>(work.substeps);
+std::int64_t SweepBudget::budgetNs() const {
+    const std::int64_t rest = std::max(kFrameNs - drawNs_, kLeastNs);
+    return std::min({std::max(periodNs_, drawNs_) / 2, kMostNs, rest});
 }
 
 void SweepBudget::begin(std::int64_t part, std::uint64_t step) {
@@ -53,12 +66,17 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
     double sweeps = static_cast<double>(std::min<std::int64_t>(part_, most));
     if (sweepNs_ > 0) {
         const double budget = static_cast<double>(budgetNs());
-        const double others =
-            static_cast<double>(hashNs_) + expectedNs({0, sand::substepsOf(step, replica.probe(), replica.engaged())});
+        const std::int64_t substeps = sand::substepsOf(step, replica.probe(), replica.engaged());
+        const double others = static_cast<double>(hashNs_) + substepNs_ * static_cast<double>(substeps);
         // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, so that they go on.
-        sweeps = std::min(sweeps, std::max(budget - others, budget / 4) / sweepNs_);
+        sweeps = std::min(sweeps, sweepsIn(std::max(budget - others, budget / 4), substeps, replica.tool()));
     }
     return std::max(static_cast<std::int32_t>(sweeps), 1);
+}
+
+double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool& tool) const {
+    const double fit = ns / (sweepNs_ * widened(substeps, tool));
+    return std::min(fit, std::max(fit / growth_, double{kFastPart}));
 }
 
 std::int64_t SweepBudget::mostSubsteps() const {
@@ -70,9 +88,13 @@ std::int64_t SweepBudget::mostSubsteps() const {
     return static_cast<std::int64_t>(std::clamp(most, 1.0, kUnlimited));
 }
 
-bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& further) const {
-    const double all = expectedNs(taken) + expectedNs(further) + static_cast<double>(hashNs_);
-    return pace_ == Pace::fast || all <= static_cast<double>(budgetNs());
+bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const {
+    sand::StepWork all = taken;
+    all += further;
+    const double growth = all.sweeps > kFastPart ? growth_ : 1;
+    const double sweepsNs = sweepNs_ * static_cast<double>(all.sweeps) * widened(all.substeps, tool) * growth;
+    const double othersNs = substepNs_ * static_cast<double>(all.substeps) + static_cast<double>(hashNs_);
+    return pace_ == Pace::fast || sweepsNs + othersNs <= static_cast<double>(budgetNs());
 }
 
 }  // namespace haptic_bridge

@@ -13,17 +13,25 @@ namespace haptic_bridge {
 /// many of the steps that are due a frame takes, at least one.
 ///
 /// The time for sand in a frame is half of the longer of a step's period and the frame's drawing, and at most kMostNs.
-/// The sweeps of a step fit into it by the last wall time of a sweep. They are also at most twice as many as a frame
-/// has shown since a change. A stroke begins with at most kFastPart sweeps. After an edit all sand may move, as at the
-/// start of a session. So the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
+/// If the drawing is long, it is the rest of kFrameNs, but at least kLeastNs.
+///
+/// The sweeps of a step fit into this time by the last wall time of a sweep. They are also at most twice as many as a
+/// frame has shown since a change. A stroke begins with at most kFastPart sweeps. After an edit all sand may move, as
+/// at the start of a session. So the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
+///
+/// More sand moves after a drag, and for a while from sweep to sweep. So a sweep of a step that drags counts as longer
+/// by the area of the path. If a sweep was longer than the one before, a part of more than kFastPart sweeps is shorter
+/// by the same factor.
 ///
 /// The sand after all sweeps of a step does not depend on these numbers. In real time the path of the hand does.
 /// Reads no clock. Used by one thread.
 class SweepBudget {
 public:
-    static constexpr std::int32_t kFastPart = 64;        // [sweep], in every step under the fast pace
-    static constexpr std::int64_t kMostNs = 80'000'000;  // [ns], of sand in a frame
-    static constexpr std::int64_t kCellNs = 2;           // [ns], of a cell that moves, in a sweep of a large field
+    static constexpr std::int32_t kFastPart = 64;          // [sweep], in every step under the fast pace
+    static constexpr std::int64_t kMostNs = 80'000'000;    // [ns], of sand in a frame
+    static constexpr std::int64_t kFrameNs = 200'000'000;  // [ns], of sand and drawing, if the sand has kLeastNs
+    static constexpr std::int64_t kLeastNs = 20'000'000;   // [ns], of sand in a frame whose drawing is long
+    static constexpr std::int64_t kCellNs = 2;             // [ns], of a cell that moves, in a sweep of a large field
 
     /// `periodNs` is that of the steps [ns].
     SweepBudget(Pace pace, std::int64_t periodNs) : pace_(pace), periodNs_(periodNs) {}
@@ -35,8 +43,8 @@ public:
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
     /// Returns how many sub-steps of the tool a step may have, at least 1; PathBuilder::kNoLimit under the fast pace.
     [[nodiscard]] std::int64_t mostSubsteps() const;
-    /// Returns whether a frame whose steps ask for `taken` may take a further step that asks for `further`.
-    [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further) const;
+    /// Returns whether a frame whose steps ask for `taken` may take a further step of `tool` that asks for `further`.
+    [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const;
 
     [[nodiscard]] std::int64_t budgetNs() const;  // [ns], for sand in a frame
 
@@ -44,12 +52,14 @@ private:
     void begin(std::int64_t part, std::uint64_t step);
     /// Returns the sweeps that fit if all sand moves.
     [[nodiscard]] std::int64_t whenAllMoves(const sand::Replica& replica) const;
-    [[nodiscard]] double expectedNs(const sand::StepWork& work) const;
+    /// Returns the sweeps that take `ns` after a drag of `substeps`.
+    [[nodiscard]] double sweepsIn(double ns, std::int64_t substeps, const sand::Tool& tool) const;
 
     Pace pace_;
     std::int64_t periodNs_;
     std::int64_t drawNs_ = 0, hashNs_ = 0;  // of the last frame
     double sweepNs_ = 0, substepNs_ = 0;    // [ns], of one of them; 0: not known
+    double growth_ = 1;                     // of sweepNs_ since the frame before, from 1 to kMostGrowth
     std::int64_t part_ = 0;                 // [sweep], at most in a step; 0 before the first step
     std::uint64_t since_ = 0;               // frames before this step do not let parts grow
 };

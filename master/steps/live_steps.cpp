@@ -189,7 +189,7 @@ std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_
         taken.add(next.front().step);
         steps.push_back(std::move(next.front()));
         // One more with as many sweeps must fit, because a step that has been taken cannot be put back.
-        if (!budget_.fits(taken.all(), {steps.back().step.sweeps, 0})) {
+        if (!budget_.fits(taken.all(), {steps.back().step.sweeps, 0}, replica.tool())) {
             break;
         }
     }
@@ -215,7 +215,7 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         next.step.sweeps = budget_.sweepsOf(next.step, replica);
         taken.add(next.step);
         more = !next.step.edit.any() && !replica.owed().any() && next.step.sweeps == replica.mostSweeps(next.step) &&
-               budget_.fits(taken.all(), {next.step.sweeps, 0});
+               budget_.fits(taken.all(), {next.step.sweeps, 0}, replica.tool());
     }
     return steps;
 }

@@ -59,6 +59,7 @@ TinSurface::TinSurface(const TinSurface& other)
       layer_(Snapshot(other.layer_, other.state_).layer()),
       startVertices_(other.startVertices_),
       state_(other.state_),
+      refused_(other.refused_),
       erosion_(layer_, threshold_, startThreshold_, rim_),
       hash_(layer_),
       beforeStroke_(layer_) {

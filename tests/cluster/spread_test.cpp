@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Processes that are killed while a step of a large tool is spread over frames.
+// Steps of a large tool that are spread over frames: processes that are killed meanwhile, and walls that are slow.
 #include <csignal>
+#include <string>
+#include <vector>
 
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
@@ -53,6 +55,19 @@ protected:
             }
         }
         return false;
+    }
+    /// Returns how many steps of the journal leave sweeps to later steps.
+    [[nodiscard]] int stepsThatOwe() const {
+        const journal::Journal whole = master::readJournal(folder_ / "out" / "session.journal");
+        sand::Replica replica(whole.scene);
+        int owe = 0;
+        for (const journal::JournalFrame& frame : whole.frames) {
+            for (const sand::Step& step : frame.steps) {
+                replica.apply(step);
+                owe += replica.owed().any() ? 1 : 0;
+            }
+        }
+        return owe;
     }
     void expectOneSand(support::ChildProcess& session) const {
         session.signal(SIGINT);
@@ -113,6 +128,29 @@ TEST_F(Spread, ARankIsHealedInAStep) {
             EXPECT_TRUE(owesAfter(frame.steps.back().number));
         }
     }
+}
+
+// A rank that is slow draws for longer, and so changes all times by which steps of a real hand are divided.
+TEST_F(Spread, WithTheFastPaceTheSandDependsOnNoLoad) {
+    constexpr int kSteps = 200;
+    const std::vector<std::string> faults{"", "slow:rank=1,ms=15", "slow:rank=2,ms=40,frame=20,frames=30"};
+    std::vector<nlohmann::json> ends;
+    for (const std::string& fault : faults) {
+        SCOPED_TRACE(fault);
+        std::vector<std::string> arguments{
+            "--wall", wall(1, 2, "mono"), "--scene", largeTool(), "--device", "script:gis",          "--out",
+            out(),    "--no-pictures",    "--pace",  "fast",      "--steps",  std::to_string(kSteps)};
+        if (!fault.empty()) {
+            arguments.insert(arguments.end(), {"--inject", fault});
+        }
+        const Ended ended = runToEnd(arguments);
+        ASSERT_EQ(ended.status, 0) << ended.output;
+        EXPECT_EQ(ended.has("drill", {}), !fault.empty());
+        ends.push_back(summary());
+        EXPECT_EQ(ends.back()["steps"], kSteps);
+        EXPECT_EQ(ends.back()["state_hash"], ends.front()["state_hash"]);
+    }
+    EXPECT_GT(stepsThatOwe(), kSteps / 2) << "few steps were spread, so that the test shows nothing";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "tests/support/high_sand.hpp"
 #include "tests/support/hostile_sand.hpp"
 #include "tests/support/memory_limit.hpp"
 #include "tests/support/no_steps.hpp"
@@ -99,6 +100,25 @@ TEST(MasterSand, GoesOnFromTheStateOfASessionThatStopped) {
     EXPECT_EQ(after.hash(), before.hash());
     EXPECT_EQ(after.replica().stepNumber(), 6U);
     EXPECT_EQ(after.edits(), 4U);
+}
+
+TEST(MasterSand, CountsTheStepsWithARefusedPressAndKnowsTheFirst) {
+    Notes notes;
+    master::MasterSand sand(samples::highScene(10), {}, {});
+    EXPECT_EQ(sand.stepsUnplaced(), 0U);
+    EXPECT_EQ(sand.firstStepUnplaced(), 0U);
+    std::vector<TimedStep> steps(3);
+    steps[0].step = {.number = 1};
+    steps[1].step = {.number = 2, .engaged = true, .path = {samples::aboveHighSand(2, 30), samples::aboveHighSand(2)}};
+    steps[2].step = {.number = 3, .engaged = true};  // the tool does not move
+    sand.apply(1, steps, 0, notes);
+    EXPECT_EQ(sand.stepsUnplaced(), 1U) << "one step with several sub-steps";
+    EXPECT_EQ(sand.firstStepUnplaced(), 2U);
+    steps.resize(1);
+    steps[0].step = {.number = 4, .engaged = true, .path = {samples::aboveHighSand(2, 28)}};
+    sand.apply(2, steps, 0, notes);
+    EXPECT_EQ(sand.stepsUnplaced(), 2U);
+    EXPECT_EQ(sand.firstStepUnplaced(), 2U) << "the first one stays the first";
 }
 
 // All tiles are hashed again in a second at any frame rate. Every frame hashes some tiles, and none hashes a tile

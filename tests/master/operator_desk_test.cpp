@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <future>
-#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "tests/master/operator_desk_fixture.hpp"
@@ -171,60 +170,6 @@ TEST_F(Desk, KnowsTheShareOfTheForceFromBeforeARestart) {
     open(&requests_, options);
     EXPECT_EQ(ask("status")["force_share"], 0);
     EXPECT_TRUE(kept_.empty()) << "the journal has it already";
-}
-
-/// A tower of sand on rock settles by sweeps, and so in several steps.
-class DeskOnRock : public test::OperatorDeskTest {
-protected:
-    DeskOnRock() : OperatorDeskTest(towerOnRock()) {}
-    static scene::Scene towerOnRock() {
-        scene::Scene scene = samples::flatScene(32, 24);
-        auto ground = std::make_shared<sand::Ground>(32, 24);
-        ground->setBedrock(0, 0, scene.terrain.height(0, 0));
-        scene.ground = ground;
-        scene.terrain.setHeight(16, 12, scene.terrain.height(16, 12) + 400 * sand::kUnitsPerCell);
-        return scene;
-    }
-    void take(sand::Step step) {
-        std::vector<TimedStep> steps(1);
-        step.number = sand_.replica().stepNumber() + 1;
-        step.engaged = step.engaged || sand_.replica().engaged();
-        steps[0].step = std::move(step);
-        sand_.apply(1, steps, 0, source_);
-        desk_->answer(steps);
-    }
-    /// Asks for a settle and shows the first step of it, which leaves sand to slide.
-    std::future<json> settle() {
-        const std::size_t asked = requests_.edits.size();
-        std::future<json> answer = send("settle");
-        obeyUntil([&] { return requests_.edits.size() > asked; });
-        take({.edit = requests_.edits.back(), .sweeps = 5});
-        EXPECT_TRUE(sand_.replica().settling());
-        EXPECT_EQ(answer.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "it continues";
-        return answer;
-    }
-};
-
-TEST_F(DeskOnRock, SaysWhatHasEndedASettleOfSeveralSteps) {
-    std::future<json> byHand = settle();
-    take({.engaged = true, .path = {{2048, 2048, 0}}, .sweeps = 1});
-    EXPECT_EQ(await(byHand), (json{{"ok", true}, {"step", 1}, {"settle_ended_by", "hand"}}));
-
-    std::future<json> byReset = settle();
-    take({.engaged = true, .edit = sand::Edit::reset, .sweeps = 1});
-    EXPECT_EQ(await(byReset), (json{{"ok", true}, {"step", 3}, {"settle_ended_by", "edit"}}));
-
-    std::future<json> replaced = settle(), paused = settle();
-    EXPECT_EQ(await(replaced), (json{{"ok", true}, {"step", 5}, {"settle_ended_by", "edit"}}));
-    EXPECT_EQ(ask("pause"), json({{"ok", true}}));
-    EXPECT_EQ(await(paused), (json{{"ok", true}, {"step", 6}, {"settling", true}}));
-    ask("resume");
-
-    std::future<json> toRest = settle();
-    for (int steps = 0; steps < 100 && sand_.replica().settling(); ++steps) {
-        take({.engaged = true, .sweeps = sand::kMostSweeps});
-    }
-    EXPECT_EQ(await(toRest), (json{{"ok", true}, {"step", 7}, {"settle_ended_by", "rest"}}));
 }
 
 TEST_F(Desk, WantsACaptureOfTheNextFrame) {

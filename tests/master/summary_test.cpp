@@ -7,6 +7,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/high_sand.hpp"
+
 namespace {
 
 /// Returns the statistics of 200 frames of a still wall of three tiles. Rank 2 comes 30 ms late in 97 % of them.
@@ -41,6 +43,28 @@ nlohmann::json written(const master::Summary& summary) {
     nlohmann::json json = nlohmann::json::parse(std::ifstream(file));
     std::filesystem::remove(file);
     return json;
+}
+
+TEST(Summary, HasTheFirstRefusedPressInUnitsOfTheScene) {
+    constexpr double kCell = 0.25;  // [scene unit]
+    sand::Replica replica(samples::highScene(24, sand::ToolKind::ellipsoid, kCell));
+    replica.apply({.number = 1, .engaged = true, .path = {samples::aboveHighSand(2)}});
+    const std::int32_t largest = replica.firstRefusedPress().value().largest.value();
+    const master::RefusedPressPart part = master::refusedPressOf(replica);
+    EXPECT_EQ(part.shape, "ellipsoid");
+    EXPECT_EQ(part.radius, 24 * kCell);
+    ASSERT_GT(largest, 0);
+    EXPECT_EQ(part.largest, kCell * largest / sand::kProbePerCell);
+}
+
+TEST(Summary, SaysWhichToolWouldFitWhereAPressWasRefused) {
+    const std::string text = master::describe(master::RefusedPressPart{"sphere", 2.5, 1.25});
+    EXPECT_NE(text.find("the sphere of radius 2.5 "), std::string::npos) << text;
+    EXPECT_NE(text.find("the largest sphere that fits there has a radius of 1.25"), std::string::npos) << text;
+    const std::string none = master::describe(master::RefusedPressPart{"circle", 2.5, 0.0});
+    EXPECT_NE(none.find("no circle fits there"), std::string::npos) << none;
+    const std::string unknown = master::describe(master::RefusedPressPart{"circle", 2.5, std::nullopt});
+    EXPECT_EQ(unknown.find("fits"), std::string::npos) << "on a TIN no radius is computed: " << unknown;
 }
 
 TEST(Summary, HasTheUnitsOfEachFileOfTerrain) {

@@ -5,54 +5,33 @@
 #include <memory>
 #include <utility>
 
-#include "sand/model/units.hpp"
 #include "sand/replica.hpp"
+#include "tests/support/high_sand.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
 
 namespace {
 
+using samples::aboveHighSand;
+using samples::highScene;
+using samples::kHighSide;
 using sand::kProbePerCell;
-using sand::ProbePoint;
 using sand::Replica;
-
-constexpr int kSide = 64;
-constexpr std::int32_t kLevel = sand::kMaxHeight - 6 * sand::kUnitsPerCell;  // [unit]
-
-scene::Scene highScene(double toolCells, sand::ToolKind kind = sand::ToolKind::sphere) {
-    scene::Scene scene = samples::flatScene(kSide, kSide, toolCells);
-    scene.rules.tuning.tool.kind = kind;
-    scene.rules.tuning.tool.halfWidth = sand::isRound(kind) ? 0 : scene.rules.tuning.tool.radius / 2;
-    for (int row = 0; row < kSide; ++row) {
-        for (int column = 0; column < kSide; ++column) {
-            scene.terrain.setHeight(column, row, kLevel);
-        }
-    }
-    return scene;
-}
-
-/// Returns the middle of the field, `above` cells above the level.
-ProbePoint middle(double above, int column = kSide / 2) {
-    const double level = static_cast<double>(kLevel) / sand::kUnitsPerCell;
-    return {column * kProbePerCell, kSide / 2 * kProbePerCell,
-            static_cast<std::int32_t>((level + above) * kProbePerCell)};
-}
 
 /// Presses once, with the centre of the tool two cells above the level.
 bool isRefused(double toolCells, sand::ToolKind kind = sand::ToolKind::sphere) {
     Replica replica(highScene(toolCells, kind));
-    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     return replica.refusedPress();
 }
 
 TEST(RefusedPress, LeavesTheSandAndIsCountedOnceAStep) {
     const scene::Scene scene = highScene(10);
     Replica replica(scene);
-    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     EXPECT_TRUE(replica.refusedPress());
     EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));
-    replica.apply({.number = 2, .engaged = true, .path = {middle(2, 34), middle(2, 38)}});
+    replica.apply({.number = 2, .engaged = true, .path = {aboveHighSand(2, 34), aboveHighSand(2, 38)}});
     EXPECT_TRUE(replica.refusedPress());
     EXPECT_GT(replica.surface().refusedPresses().count, 2) << "each sub-step was refused";
     replica.apply({.number = 3, .engaged = true});  // the tool does not move
@@ -64,7 +43,7 @@ TEST(RefusedPress, TellsTheLargestRadiusOfTheShapeThatFits) {
     for (const auto& [kind, cells] : {std::pair(sphere, 10), {ellipsoid, 24}}) {
         Replica replica(highScene(cells, kind));
         EXPECT_EQ(replica.firstRefusedPress(), std::nullopt);
-        replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+        replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
         ASSERT_TRUE(replica.refusedPress());
         const sand::RefusedPress first = replica.firstRefusedPress().value();
         EXPECT_EQ(first.tool.radius, cells * kProbePerCell);
@@ -81,7 +60,7 @@ TEST(RefusedPress, TellsTheLargestRadiusOfTheShapeThatFits) {
 TEST(RefusedPress, IsNoPartOfTheState) {
     const scene::Scene scene = highScene(10);
     Replica replica(scene), other(scene);
-    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     other.decodeState(replica.encodeState());
     EXPECT_EQ(other.stateHash(), replica.stateHash());
     EXPECT_EQ(other.encodeState(), replica.encodeState());
@@ -92,13 +71,13 @@ TEST(RefusedPress, IsNoPartOfTheState) {
 /// Beside a wall the surroundings are divided, and each part takes its own sand.
 TEST(RefusedPress, IsSeenBesideAWall) {
     scene::Scene scene = highScene(10);
-    auto ground = std::make_shared<sand::Ground>(kSide, kSide);
-    for (int row = 0; row < kSide; ++row) {
-        ground->setWall(kSide / 2, row);
+    auto ground = std::make_shared<sand::Ground>(kHighSide, kHighSide);
+    for (int row = 0; row < kHighSide; ++row) {
+        ground->setWall(kHighSide / 2, row);
     }
     scene.ground = ground;
     Replica replica(scene);
-    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     EXPECT_TRUE(replica.refusedPress());
     EXPECT_LT(replica.firstRefusedPress().value().largest.value(), 10 * kProbePerCell);
     EXPECT_TRUE(sameHeights(samples::fieldOf(replica), scene.terrain));

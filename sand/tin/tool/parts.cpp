@@ -80,6 +80,7 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
     std::transform(cuts.begin(), cuts.end(), std::back_inserter(parts),
                    [&](const Cut& cut) { return partOf(cut.vertex); });
     sortOnce(parts);
+    bool refused = false;
     for (const Vertex part : parts) {
         cut_.clear();
         receivers_.clear();
@@ -106,8 +107,9 @@ void Displacement::pressInParts(VertexSand& layer, Rim rim, const Press& press, 
         if (receivers_.empty()) {  // no vertex is near enough, because the mesh is coarse
             addNeighbours(layer, press.probe, [&](Vertex vertex) { return partOf(vertex) == part; });
         }
-        done.refused += deal(layer, true, done) ? 0 : 1;
+        refused = !deal(layer, true, done) || refused;
     }
+    done.refused += refused ? 1 : 0;
     forgetParts();
 }
 

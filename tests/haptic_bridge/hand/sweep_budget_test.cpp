@@ -43,8 +43,14 @@ TEST_F(Budget, IsHalfOfPeriodOrDrawingAndAtMostEightyMilliseconds) {
     EXPECT_EQ(budget_.budgetNs(), kPeriod / 2) << "drawing is shorter than the period";
     show(1, 1, 40 * kMillisecond);
     EXPECT_EQ(budget_.budgetNs(), 20 * kMillisecond);
-    show(1, 1, 900 * kMillisecond);
-    EXPECT_EQ(budget_.budgetNs(), 80 * kMillisecond);
+    EXPECT_EQ(SweepBudget(Pace::realtime, 900 * kMillisecond).budgetNs(), 80 * kMillisecond);
+}
+
+TEST_F(Budget, LeavesAFrameOfAFifthOfASecondToDrawingThatIsLong) {
+    for (const auto& [draw, budget] : {std::pair(120, 60), {150, 50}, {175, 25}, {190, 20}, {900, 20}}) {
+        show(1, 1, draw * kMillisecond);
+        EXPECT_EQ(budget_.budgetNs(), budget * kMillisecond) << draw;
+    }
 }
 
 TEST_F(Budget, BeginsAsIfAllSandMovedAndAtMostDoublesWithEachFrameThatWasShown) {
@@ -65,11 +71,27 @@ TEST_F(Budget, FitsByTheLastTimeOfASweep) {
     show(1000, 10'000);
     EXPECT_EQ(next(), 800) << "8 ms of 0.01 ms each";
     show(800, 20'000);
+    show(200, 20'000);
     EXPECT_EQ(next(), 400);
     show(400, 400 * kMillisecond);
     EXPECT_EQ(next(), 1) << "at least one";
     show(1, 10'000);
     EXPECT_EQ(next(), 800);
+}
+
+TEST_F(Budget, ALongPartIsShorterWhileSweepsTakeLongerAndLonger) {
+    (void)next();
+    show(1000, 10'000);
+    show(800, 20'000);
+    EXPECT_EQ(next(), 200) << "400 fit, and the next sweeps may take twice as long again";
+    show(200, 30'000);
+    EXPECT_EQ(next(), 177) << "8 ms of 0.03 ms each, divided by 1.5";
+    show(177, 25'000);
+    EXPECT_EQ(next(), 320) << "they take less again";
+    show(320, 90'000);
+    EXPECT_EQ(next(), 64) << "88 fit; only parts of more than 64 sweeps are made shorter";
+    show(64, 200'000);
+    EXPECT_EQ(next(), 40);
 }
 
 TEST_F(Budget, NeverRunsMoreThanIsOwed) {
@@ -138,11 +160,13 @@ TEST_F(Budget, DragAndHashTakeTheirShareAndLeaveAQuarter) {
     sand_->apply({1, 1, true, {}});
     ASSERT_TRUE(sand_->engaged());
     step.number = 2;
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 4000) << "of 8 ms, 4 sub-steps take 4 ms";
-    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2000);
-    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 90 * kMillisecond, .hashNs = 0}, 2);
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 1000) << "a quarter";
+    // Of 8 ms, 4 sub-steps take 4 ms. A tool of 8 cells that moves by 4 cells makes sweeps 1.5 times as long.
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2666);
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 1777);
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 90 * kMillisecond, .hashNs = 0}, 2);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 888) << "a quarter";
 }
 
 TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
@@ -154,10 +178,24 @@ TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
 }
 
 TEST_F(Budget, AFrameTakesTheStepsThatFit) {
+    const sand::Tool tool = scene_.rules.tuning.tool;  // 8 cells across
     budget_.shown({.sweeps = 10, .substeps = 2, .sweepNs = 10 * kMillisecond, .dragNs = 2 * kMillisecond}, 1);
-    EXPECT_TRUE(budget_.fits({3, 1}, {3, 1})) << "8 ms";
-    EXPECT_FALSE(budget_.fits({3, 1}, {4, 1}));
-    EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}));
+    EXPECT_TRUE(budget_.fits({4, 0}, {4, 0}, tool)) << "8 ms";
+    EXPECT_FALSE(budget_.fits({4, 0}, {5, 0}, tool));
+    EXPECT_TRUE(budget_.fits({2, 2}, {2, 0}, tool)) << "2 ms of drag, and 4 sweeps that count as 1.25 ms each";
+    EXPECT_FALSE(budget_.fits({3, 2}, {2, 0}, tool));
+    EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}, tool));
+}
+
+TEST_F(Budget, AFrameTakesFewerStepsWhileSweepsTakeLongerAndLonger) {
+    const sand::Tool tool = scene_.rules.tuning.tool;
+    for (const std::int64_t sweepNs : {20'000, 40'000}) {
+        show(100, sweepNs);
+    }
+    EXPECT_TRUE(budget_.fits({50, 0}, {50, 0}, tool)) << "100 sweeps of 0.04 ms each may take 8 ms";
+    EXPECT_FALSE(budget_.fits({51, 0}, {50, 0}, tool));
+    show(100, 40'000);
+    EXPECT_TRUE(budget_.fits({100, 0}, {100, 0}, tool));
 }
 
 TEST_F(Budget, TheFastPaceDependsOnNoTime) {
