@@ -14,6 +14,7 @@ namespace {
 
 using samples::aboveHighSand;
 using samples::highScene;
+using samples::kHighLevel;
 using samples::kHighSide;
 using sand::kProbePerCell;
 using sand::Replica;
@@ -86,18 +87,18 @@ TEST(RefusedPress, IsSeenBesideAWall) {
 /// Cells that have no room for their share take none. The others take theirs.
 TEST(RefusedPress, IsNoneIfOtherCellsHaveRoom) {
     scene::Scene scene = highScene(14);
-    for (int row = 0; row < kSide / 2; ++row) {
-        for (int column = 0; column < kSide; ++column) {
-            scene.terrain.setHeight(column, row, kLevel - 100 * sand::kUnitsPerCell);
+    for (int row = 0; row < kHighSide / 2; ++row) {
+        for (int column = 0; column < kHighSide; ++column) {
+            scene.terrain.setHeight(column, row, kHighLevel - 100 * sand::kUnitsPerCell);
         }
     }
     Replica replica(scene);
-    replica.apply({.number = 1, .engaged = true, .path = {middle(2)}});
+    replica.apply({.number = 1, .engaged = true, .path = {aboveHighSand(2)}});
     EXPECT_FALSE(replica.refusedPress());
     const sand::HeightField after = samples::fieldOf(replica);
     EXPECT_EQ(replica.volume(), Replica(scene).volume());
-    EXPECT_LT(after.height(kSide / 2, kSide / 2 + 2), kLevel) << "the tool has taken sand there";
-    EXPECT_GT(after.height(kSide / 2, kSide / 2 - 16), kLevel - 100 * sand::kUnitsPerCell);
+    EXPECT_LT(after.height(kHighSide / 2, kHighSide / 2 + 2), kHighLevel) << "the tool has taken sand there";
+    EXPECT_GT(after.height(kHighSide / 2, kHighSide / 2 - 16), kHighLevel - 100 * sand::kUnitsPerCell);
 }
 
 TEST(RefusedPress, IsNoneThatFits) {
