@@ -28,6 +28,16 @@ TEST(SandRay, MeetsLevelSandWhereThePlaneIs) {
     expectMeets({{20, 30, 40}, {0, 0, -1}}, level(10), 20, 30);
 }
 
+TEST(SandRay, MeetsLevelSandOfAnyHeightExactly) {
+    // The places are not at multiples of a step, as those of the other tests are. The sand has room below, because the
+    // end of the ray in its box is rounded.
+    for (double height = 5; height < 15; height += 0.37) {
+        SandBody sand = level(height);
+        sand.lowest -= 1;
+        expectMeets({{50, -20, 40}, {0, 1, -1}}, sand, 50, 20 - height);
+    }
+}
+
 TEST(SandRay, MeetsARidgeBeforeTheSandBehindIt) {
     // A ridge 8 high at y = 30 hides level sand behind it. Its southern slope rises by 1 per unit from y = 22.
     const auto ridge = [](double, double y) { return std::max(0.0, 8 - std::abs(y - 30)); };

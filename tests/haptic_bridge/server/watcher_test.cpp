@@ -77,15 +77,23 @@ TEST_F(LinkSecurityTest, TheProgramThatWatchesPrintsWhereTheProbeIs) {
 }
 
 TEST_F(LinkSecurityTest, WhoWatchesAndDoesNotReadIsCutOff) {
-    ServerProcess server(folder_, arguments({}));
+    // A hand that crosses the air beyond the field, again and again. Its steps are long, so that fewer of them fill all
+    // buffers, and cost no work on sand.
+    std::string air = "travel 500\n";
+    for (int crossing = 0; crossing < 1000; ++crossing) {
+        air += crossing % 2 == 0 ? "stroke\npoint 90 90\n" : "stroke\npoint -90 -90\n";
+    }
+    std::vector<std::string> words = arguments({});
+    std::replace(words.begin(), words.end(), std::string("script:gis"), "script:" + folder_.write("air.strokes", air));
+    ServerProcess server(folder_, words);
     Client master(server.address(), offerOf(scene_));
     Wall wall(scene_);
     ASSERT_TRUE(wall.follow(master, 10));
     RawPeer watcher(server.port(), 4096);
     watcher.send(hello(Role::watch));
     ASSERT_TRUE(watcher.receive());
-    // The watcher's buffer is small. The kernel also fills its largest buffer for sending, usually 4 MiB. That is less
-    // than 100,000 steps.
+    // The watcher's buffer is small. The kernel also fills its largest buffer for sending, usually 4 MiB. A step takes
+    // some 200 bytes, while the hand moves.
     const auto cutOff = [&] { return server.errors().find("does not read what is sent") != std::string::npos; };
     std::int64_t pingedNs = host::monotonicNs();
     for (int round = 0; round < 2000 && !cutOff(); ++round) {
