@@ -10,9 +10,8 @@ namespace {
 
 constexpr double kMostGrowth = 2;
 
-/// Returns how many times as long a sweep may take after a drag. The sweeps before it may have been of sand at the tool
-/// alone. A sub-step brings the tool a cell farther.
-double widened(std::int64_t substeps, const sand::Tool& tool) {
+/// Returns the area of sand that moves after a drag, in areas of the tool. A sub-step brings the tool a cell farther.
+double areaOf(std::int64_t substeps, const sand::Tool& tool) {
     const double across = std::max(2.0 * tool.radius / sand::kProbePerCell, 1.0);  // [cell]
     return 1 + static_cast<double>(substeps) / across;
 }
@@ -28,6 +27,7 @@ void SweepBudget::shown(const FrameCost& cost, std::uint64_t step) {
         const double now = static_cast<double>(cost.sweepNs) / static_cast<double>(cost.sweeps);
         growth_ = sweepNs_ > 0 ? std::clamp(now / sweepNs_, 1.0, kMostGrowth) : 1;
         sweepNs_ = now;
+        substeps_ = cost.substeps;
     }
     if (cost.substeps > 0) {
         substepNs_ = static_cast<double>(cost.dragNs) / static_cast<double>(cost.substeps);
@@ -74,6 +74,10 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
     return std::max(static_cast<std::int32_t>(sweeps), 1);
 }
 
+double SweepBudget::widened(std::int64_t substeps, const sand::Tool& tool) const {
+    return std::max(areaOf(substeps, tool) / areaOf(substeps_, tool), 1.0);
+}
+
 double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool& tool) const {
     const double fit = ns / (sweepNs_ * widened(substeps, tool));
     return std::min(fit, std::max(fit / growth_, double{kFastPart}));
@@ -91,7 +95,7 @@ std::int64_t SweepBudget::mostSubsteps() const {
 bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const {
     sand::StepWork all = taken;
     all += further;
-    const double growth = all.sweeps > kFastPart ? growth_ : 1;
+    const double growth = further.sweeps >= kFastPart ? growth_ : 1;
     const double sweepsNs = sweepNs_ * static_cast<double>(all.sweeps) * widened(all.substeps, tool) * growth;
     const double othersNs = substepNs_ * static_cast<double>(all.substeps) + static_cast<double>(hashNs_);
     return pace_ == Pace::fast || sweepsNs + othersNs <= static_cast<double>(budgetNs());

@@ -19,9 +19,10 @@ namespace haptic_bridge {
 /// frame has shown since a change. A stroke begins with at most kFastPart sweeps. After an edit all sand may move, as
 /// at the start of a session. So the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
 ///
-/// More sand moves after a drag, and for a while from sweep to sweep. So a sweep of a step that drags counts as longer
-/// by the area of the path. If a sweep was longer than the one before, a part of more than kFastPart sweeps is shorter
-/// by the same factor.
+/// More sand moves after a drag, and for a while from sweep to sweep. So a sweep counts as longer if the step, or the
+/// steps of a frame, drag farther than those whose sweeps were measured. A part of more than kFastPart sweeps is
+/// shorter while each frame's sweeps take longer than those of the frame before, by the same factor. Of such parts a
+/// frame takes fewer.
 ///
 /// The sand after all sweeps of a step does not depend on these numbers. In real time the path of the hand does.
 /// Reads no clock. Used by one thread.
@@ -52,6 +53,8 @@ private:
     void begin(std::int64_t part, std::uint64_t step);
     /// Returns the sweeps that fit if all sand moves.
     [[nodiscard]] std::int64_t whenAllMoves(const sand::Replica& replica) const;
+    /// Returns how many times as long a sweep is after a drag of `substeps` as sweepNs_.
+    [[nodiscard]] double widened(std::int64_t substeps, const sand::Tool& tool) const;
     /// Returns the sweeps that take `ns` after a drag of `substeps`.
     [[nodiscard]] double sweepsIn(double ns, std::int64_t substeps, const sand::Tool& tool) const;
 
@@ -59,6 +62,7 @@ private:
     std::int64_t periodNs_;
     std::int64_t drawNs_ = 0, hashNs_ = 0;  // of the last frame
     double sweepNs_ = 0, substepNs_ = 0;    // [ns], of one of them; 0: not known
+    std::int64_t substeps_ = 0;             // of the drag after which sweepNs_ was measured
     double growth_ = 1;                     // of sweepNs_ since the frame before, from 1 to kMostGrowth
     std::int64_t part_ = 0;                 // [sweep], at most in a step; 0 before the first step
     std::uint64_t since_ = 0;               // frames before this step do not let parts grow

@@ -160,13 +160,24 @@ TEST_F(Budget, DragAndHashTakeTheirShareAndLeaveAQuarter) {
     sand_->apply({1, 1, true, {}});
     ASSERT_TRUE(sand_->engaged());
     step.number = 2;
-    // Of 8 ms, 4 sub-steps take 4 ms. A tool of 8 cells that moves by 4 cells makes sweeps 1.5 times as long.
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2666);
-    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
-    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 10 * kMillisecond, .hashNs = 0}, 2);
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 1777);
-    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 6'000'000, .dragNs = 90 * kMillisecond, .hashNs = 0}, 2);
-    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 888) << "a quarter";
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 4000) << "of 8 ms, 4 sub-steps take 4 ms";
+    for (int frame = 2; frame < 4; ++frame) {
+        budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 10 * kMillisecond}, 2);
+    }
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2000);
+    budget_.shown({.sweeps = 4000, .substeps = 10, .sweepNs = 8'000'000, .dragNs = 90 * kMillisecond}, 2);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 1000) << "a quarter";
+}
+
+TEST_F(Budget, SweepsAfterADragCountAsLongerByItsArea) {
+    (void)next();
+    sand_->apply({1, 1, true, {}});
+    const Step step{1, 2, true, {borders::probeAt(0, 0, 0), borders::probeAt(3, 0, 0)}};
+    budget_.shown({.sweeps = 4000, .substeps = 4, .sweepNs = 8'000'000, .dragNs = 4}, 1);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 3999) << "measured after a drag of the same length";
+    budget_.shown({.sweeps = 4000, .sweepNs = 8'000'000}, 1);
+    EXPECT_EQ(budget_.sweepsOf(step, *sand_), 2666)
+        << "a tool of 8 cells that moves by 4 cells moves 1.5 times the sand";
 }
 
 TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
@@ -179,23 +190,28 @@ TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
 
 TEST_F(Budget, AFrameTakesTheStepsThatFit) {
     const sand::Tool tool = scene_.rules.tuning.tool;  // 8 cells across
-    budget_.shown({.sweeps = 10, .substeps = 2, .sweepNs = 10 * kMillisecond, .dragNs = 2 * kMillisecond}, 1);
-    EXPECT_TRUE(budget_.fits({4, 0}, {4, 0}, tool)) << "8 ms";
-    EXPECT_FALSE(budget_.fits({4, 0}, {5, 0}, tool));
-    EXPECT_TRUE(budget_.fits({2, 2}, {2, 0}, tool)) << "2 ms of drag, and 4 sweeps that count as 1.25 ms each";
-    EXPECT_FALSE(budget_.fits({3, 2}, {2, 0}, tool));
+    for (const std::int64_t substeps : {2, 0}) {
+        budget_.shown(
+            {.sweeps = 10, .substeps = substeps, .sweepNs = 10 * kMillisecond, .dragNs = substeps * kMillisecond}, 1);
+        EXPECT_TRUE(budget_.fits({4, 0}, {4, 0}, tool)) << "8 ms";
+        EXPECT_FALSE(budget_.fits({4, 0}, {5, 0}, tool));
+        EXPECT_TRUE(budget_.fits({2, 2}, {2, 0}, tool)) << "2 ms of drag";
+        EXPECT_EQ(budget_.fits({4, 2}, {2, 0}, tool), substeps == 2) << "sweeps count as 1.25 ms after the first drag";
+        EXPECT_FALSE(budget_.fits({5, 2}, {2, 0}, tool));
+    }
     EXPECT_TRUE(SweepBudget(Pace::fast, kPeriod).fits({1 << 20, 0}, {1 << 20, 0}, tool));
 }
 
-TEST_F(Budget, AFrameTakesFewerStepsWhileSweepsTakeLongerAndLonger) {
+TEST_F(Budget, AFrameTakesFewerLongPartsWhileSweepsTakeLongerAndLonger) {
     const sand::Tool tool = scene_.rules.tuning.tool;
     for (const std::int64_t sweepNs : {20'000, 40'000}) {
         show(100, sweepNs);
     }
-    EXPECT_TRUE(budget_.fits({50, 0}, {50, 0}, tool)) << "100 sweeps of 0.04 ms each may take 8 ms";
-    EXPECT_FALSE(budget_.fits({51, 0}, {50, 0}, tool));
+    EXPECT_TRUE(budget_.fits({36, 0}, {64, 0}, tool)) << "100 sweeps of 0.04 ms each may take 8 ms";
+    EXPECT_FALSE(budget_.fits({37, 0}, {64, 0}, tool));
+    EXPECT_TRUE(budget_.fits({137, 0}, {63, 0}, tool)) << "a step of fewer sweeps is no long part";
     show(100, 40'000);
-    EXPECT_TRUE(budget_.fits({100, 0}, {100, 0}, tool));
+    EXPECT_TRUE(budget_.fits({136, 0}, {64, 0}, tool));
 }
 
 TEST_F(Budget, TheFastPaceDependsOnNoTime) {
