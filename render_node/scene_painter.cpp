@@ -118,8 +118,9 @@ void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
 float ScenePainter::grainScale() const {
     // If the grain kept its size in the room, it would slide over the sand while the view is zoomed. So it grows with
     // the sand. Each time that the sand has doubled, the grain is halved. The wheel zooms by quarters of an octave. So
-    // the border lies between two quarters, where rounding cannot decide.
-    constexpr double kBetweenNotches = 0.625;
+    // the border lies between two quarters, where rounding cannot decide. It is above the middle of the octave, because
+    // grains that are finer than pixels fade.
+    constexpr double kBetweenNotches = 0.375;
     const double octaves = std::log2(glm::length(glm::dvec3(shown_.sceneToRoom[0])) / usualScale_);
     return static_cast<float>(usualScale_ / (kGrainSide * kGrainTexel) *
                               std::exp2(std::floor(octaves + kBetweenNotches)));
