@@ -89,10 +89,13 @@ export class Replica {
             corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
         };
     }
-    /** Returns a byte for each cell of the sand that was drawn last, or undefined if all have ground. */
+    /** Returns a byte for each cell, which is 1 if it has no ground, or undefined if all have ground. */
     holes(columns: number, rows: number): Uint8Array | undefined {
+        if (this.require(this.wasm._sw_take_holes()) === 0) {
+            return undefined;
+        }
         const at = this.wasm._sw_holes();
-        return at === 0 ? undefined : this.wasm.HEAPU8.slice(at, at + columns * rows);
+        return this.wasm.HEAPU8.slice(at, at + columns * rows);
     }
     tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
     get humidity(): number { return this.wasm._sw_humidity(); }

@@ -81,9 +81,8 @@ const holes = {};  // cells without ground, by session
 const tools = {};
 for (const [file, count, steps, hashes, hash] of sessions) {
     replay(file, Number(count), Number(steps), Number(hashes), hash);
-    replica._sw_draw();
-    const mask = replica._sw_holes(), cells = replica._sw_columns() * replica._sw_rows();
-    holes[file] = mask === 0 ? 0 : replica.HEAPU8.slice(mask, mask + cells).reduce((sum, one) => sum + one, 0);
+    const cells = replica._sw_columns() * replica._sw_rows(), have = replica._sw_take_holes(), mask = replica._sw_holes();
+    holes[file] = have === 0 ? 0 : replica.HEAPU8.slice(mask, mask + cells).reduce((sum, one) => sum + one, 0);
     tools[file] = [...replica.HEAPF32.slice(replica._sw_tool() >> 2, (replica._sw_tool() >> 2) + 10)];
 }
 // What pages draw beside the sand: cells without ground, and the tool.
