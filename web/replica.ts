@@ -69,14 +69,16 @@ export class Replica {
     get matches(): number { return this.wasm._sw_matches(); }
     get mismatches(): number { return this.wasm._sw_mismatches(); }
 
-    state(): ArrayBuffer {
+    /** Returns the whole state in the memory of WebAssembly, where the next call may change it. */
+    state(): Uint8Array {
         const length = this.require(this.wasm._sw_state());
         const at = this.wasm._sw_state_bytes();
-        return this.wasm.HEAPU8.slice(at, at + length).buffer;
+        return this.wasm.HEAPU8.subarray(at, at + length);
     }
-    restore(state: ArrayBuffer): void {
-        const at = this.room(this.wasm._sw_room_for_state(state.byteLength));
-        this.wasm.HEAPU8.set(new Uint8Array(state), at);
+    /** Restores a state of `length` bytes, which `write` writes. */
+    restore(length: number, write: (into: Uint8Array) => void): void {
+        const at = this.room(this.wasm._sw_room_for_state(length));
+        write(this.wasm.HEAPU8.subarray(at, at + length));
         this.require(this.wasm._sw_restore());
     }
     sand(columns: number, rows: number): { heights?: Int32Array; places?: Float32Array; corners?: Uint32Array } {
