@@ -22,7 +22,7 @@ export class DigPage {
     constructor(private readonly page: Page, canvas: HTMLCanvasElement, private readonly view: View | undefined, private readonly noPicture: string) {
         this.panel = new DigPanel((message) => page.tell(message), (scene) => void this.open(scene));
         if (view) {
-            new DigPointer(canvas, view, (readings) => page.tell({ hand: readings }, [readings.buffer]), () => this.sand !== undefined);
+            new DigPointer(canvas, view, (readings) => page.tell({ hand: readings }, [readings.buffer]), () => this.sand !== undefined && view.shows(this.sand));
         }
     }
 
@@ -45,7 +45,7 @@ export class DigPage {
         }
         document.body.dataset.digging = opened.name;
         if (this.view) {
-            this.view.digging = true;
+            this.view.eye.digging = true;
         }
         say.textContent = [`${opened.name}: press the left button or a finger, and dig. The right button or two fingers turn the sand.`,
                            opened.shortcoming, this.noPicture].filter((part) => part !== "").join(" ");
@@ -56,7 +56,7 @@ export class DigPage {
         this.panel.begin(undefined);
         delete document.body.dataset.digging;
         if (this.view) {
-            this.view.digging = false;
+            this.view.eye.digging = false;
         }
     }
 

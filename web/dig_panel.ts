@@ -6,7 +6,7 @@ declare const SCENES: string[];  // names of the encoded scenes, which web/build
 
 const kWider = 1.25;         // ratio of the tool's sizes, as for a wall's keys
 const kShortest = 2, kLongest = 0.25;  // length of the tool: cells, and share of the field's shorter side
-const kRoundKinds = 2;       // sphere and circle have no heading
+const kRoundKinds = 2;       // sphere and circle have neither width nor heading
 const kFootprint = 5;
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
@@ -28,6 +28,7 @@ export class DigPanel {
             element("depth").setAttribute("aria-valuetext", `${Math.round(100 * input("depth").valueAsNumber)} % of the radius`);
             tell({ depth: input("depth").valueAsNumber });
         };
+        input("width").onchange = () => this.whenNumber("width", (width) => tell({ tool: { width } }));
         input("heading").onchange = () => this.whenNumber("heading", (heading) => tell({ tool: { heading } }));
         choice("foot").onchange = () => tell({ tool: { leftFoot: choice("foot").value === "left" } });
         for (const edit of ["undo", "settle", "reset"] as EditName[]) {
@@ -57,15 +58,17 @@ export class DigPanel {
         if (sand) {
             this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
             input("depth").value = "0.5";
+            element<HTMLButtonElement>("undo").disabled = true;
         }
     }
     showMaterial(message: MaterialMessage): void {
         this.material = message;
-        const { kind, radius, heading, leftFoot } = message.tool;
+        const { kind, radius, width, heading, leftFoot } = message.tool;
         choice("tool").selectedIndex = kind;
         element("size").textContent = `radius ${radius.toPrecision(3)}`;
         input("heading").value = String(+heading.toFixed(1));
-        input("heading").disabled = kind < kRoundKinds;
+        input("width").value = String(+width.toPrecision(3));
+        input("width").disabled = input("heading").disabled = kind < kRoundKinds;
         choice("foot").value = leftFoot ? "left" : "right";
         choice("foot").disabled = kind !== kFootprint;
         this.showNumber();

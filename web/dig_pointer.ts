@@ -8,6 +8,10 @@ const kNear = 4;            // CSS pixels
 // Between two motions of a usual mouse. A pointer that rested began to move just before its first motion was read. The
 // time at which it came to rest would put the places far apart in time, and the hand would lift the tool.
 const kMotionMs = 8;
+// The fingers of two do not touch the screen at once. So a finger digs when no second one has come in this time, or when
+// it has moved so far.
+const kSecondFingerMs = 100;
+const kFarPixels = 10;
 
 interface Reading {
     ms: number;
@@ -19,6 +23,7 @@ interface Reading {
 export class DigPointer {
     private before?: Reading;
     private pressedBy?: number;  // pointerId
+    private waiting?: { event: PointerEvent; timer: number };  // for a second finger
 
     /** `send` gets the readings of an event, in the order of time. */
     constructor(private readonly canvas: HTMLCanvasElement, private readonly view: View, private readonly send: (readings: Float64Array) => void,
@@ -35,14 +40,40 @@ export class DigPointer {
         }
         if (event.isPrimary && event.button === 0) {
             this.canvas.setPointerCapture(event.pointerId);
-            this.pressedBy = event.pointerId;
-            this.take([event], true);
-        } else if (this.pressedBy !== undefined && event.pointerType === "touch") {
-            this.pressedBy = undefined;  // two fingers move the view
-            this.take([event], false);
+            if (event.pointerType === "touch") {
+                this.waiting = { event, timer: window.setTimeout(() => this.press(performance.now()), kSecondFingerMs) };
+            } else {
+                this.pressedBy = event.pointerId;
+                this.take([event], true);
+            }
+        } else if (event.pointerType === "touch") {
+            this.cancelWaiting();  // two fingers move the view
+            if (this.pressedBy !== undefined) {
+                this.pressedBy = undefined;
+                this.take([event], false);
+            }
         }
     }
+    /** Presses the finger that waits, at the place that it touched. */
+    private press(ms: number): void {
+        const { event } = this.waiting!;
+        this.cancelWaiting();
+        this.pressedBy = event.pointerId;
+        this.takeReadings([{ ms: ms - kMotionMs, x: event.clientX, y: event.clientY, pressed: true }]);
+    }
+    private cancelWaiting(): void {
+        clearTimeout(this.waiting?.timer);
+        this.waiting = undefined;
+    }
+
     private move(event: PointerEvent): void {
+        const first = this.waiting?.event;
+        if (first && event.pointerId === first.pointerId) {
+            if (Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY) < kFarPixels) {
+                return;
+            }
+            this.press(event.timeStamp);
+        }
         if (!this.digs() || !event.isPrimary || (event.buttons !== 0 && this.pressedBy === undefined)) {
             return;  // a drag of the view
         }
@@ -50,6 +81,13 @@ export class DigPointer {
         this.take(all.length > 0 ? all : [event], this.pressedBy === event.pointerId);
     }
     private up(event: PointerEvent): void {
+        if (event.pointerId === this.waiting?.event.pointerId) {
+            if (event.type === "pointercancel") {
+                this.cancelWaiting();
+            } else {
+                this.press(event.timeStamp);  // a tap
+            }
+        }
         if (event.pointerId === this.pressedBy && (event.type === "pointercancel" || (event.buttons & 1) === 0)) {
             this.pressedBy = undefined;
             this.take([event], false);
@@ -57,9 +95,11 @@ export class DigPointer {
     }
 
     private take(events: PointerEvent[], pressed: boolean): void {
+        this.takeReadings(events.map(({ timeStamp, clientX, clientY }) => ({ ms: timeStamp, x: clientX, y: clientY, pressed })));
+    }
+    private takeReadings(readings: Reading[]): void {
         const numbers: number[] = [];
-        for (const event of events) {
-            const reading = { ms: event.timeStamp, x: event.clientX, y: event.clientY, pressed };
+        for (const reading of readings) {
             this.between(reading, numbers);
             this.add(reading, numbers);
             this.before = reading;

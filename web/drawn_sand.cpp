@@ -8,31 +8,14 @@
 #include "sand/tin/geometry/surface_view.hpp"
 
 namespace web {
-namespace {
-
-/// Returns 1 for each cell without ground. The list is empty if all cells have ground.
-std::vector<std::uint8_t> holesOf(const sand::GridData& grid) {
-    std::vector<std::uint8_t> holes;
-    for (int y = 0; y < grid.field.rows() && grid.ground != nullptr; ++y) {
-        for (int x = 0; x < grid.field.columns(); ++x) {
-            holes.push_back(grid.ground->isWall(x, y) ? 1 : 0);
-        }
-    }
-    return std::find(holes.begin(), holes.end(), 1) == holes.end() ? std::vector<std::uint8_t>() : holes;
-}
-
-}  // namespace
-
 void DrawnSand::take(const sand::Surface& surface) {
     const sand::SurfaceData data = surface.data();
-    holes.clear();
     if (const auto* const grid = std::get_if<sand::GridData>(&data)) {
         meshed = false;
         heights.clear();
         for (int y = 0; y < grid->field.rows(); ++y) {
             heights.insert(heights.end(), grid->field.row(y), grid->field.row(y) + grid->field.columns());
         }
-        holes = holesOf(*grid);
         return;
     }
     const sand::tin::SurfaceView& view = std::get<sand::TinData>(data).view;
@@ -50,6 +33,18 @@ void DrawnSand::take(const sand::Surface& surface) {
                                      static_cast<float>(place.y) / sand::kProbePerCell,
                                      static_cast<float>(view.heights[i] / sand::kUnitsPerCell)});
     }
+}
+
+bool DrawnSand::takeHoles(const sand::Surface& surface) {
+    const sand::SurfaceData data = surface.data();
+    const auto* const grid = std::get_if<sand::GridData>(&data);
+    holes.clear();
+    for (int y = 0; grid != nullptr && grid->ground != nullptr && y < grid->field.rows(); ++y) {
+        for (int x = 0; x < grid->field.columns(); ++x) {
+            holes.push_back(grid->ground->isWall(x, y) ? 1 : 0);
+        }
+    }
+    return std::find(holes.begin(), holes.end(), 1) != holes.end();
 }
 
 }  // namespace web

@@ -12,12 +12,14 @@ namespace web {
 struct DrawnSand {
     bool meshed = false;
     std::vector<std::int32_t> heights;  // of a grid, row by row from the south-west [unit]
-    std::vector<std::uint8_t> holes;    // of a grid: 1 for a cell without ground; empty if all cells have ground
+    std::vector<std::uint8_t> holes;    // of a grid with ground: 1 for a cell that has none
     std::vector<float> places;          // of a TIN's vertices: x, y, z [cell]
     std::vector<std::int32_t> corners;  // of a TIN's triangles
 
-    /// Takes all of `surface`.
+    /// Takes the heights, or the triangles.
     void take(const sand::Surface& surface);
+    /// Takes the holes, which never change in a session. Returns whether there are any.
+    bool takeHoles(const sand::Surface& surface);
 };
 
 }  // namespace web

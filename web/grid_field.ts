@@ -6,15 +6,24 @@ import { kUnitsPerCell } from "./messages";
 
 export type Point = [number, number, number];
 
+/** A place [scene unit] at which sand is cut. Its height is the mean of these cells. */
+interface CutPlace {
+    x: number;
+    y: number;
+    cells: number[];
+}
+
 /** A grid's cells and which of them have no ground. */
 export class GridField {
     readonly across: number;  // vertices
     readonly down: number;
+    private readonly cutsAtHoles: CutPlace[][];
 
     /** `holes` has one byte for each cell, or is undefined if all have ground. `cell` is in scene units. */
     constructor(private readonly columns: number, private readonly rows: number, private readonly cell: number, private readonly holes?: Uint8Array) {
         this.across = columns + 2;
         this.down = rows + 2;
+        this.cutsAtHoles = holes ? this.placesAtHoles() : [];
     }
 
     private clamped(column: number, row: number): number {
@@ -97,8 +106,12 @@ export class GridField {
 
     /** Returns the lines along which the sand is cut [scene unit]. The sand is on their left. */
     cuts(heights: Int32Array): { edge: Point[][]; holes: Point[][] } {
-        const height = (column: number, row: number) => heights[this.clamped(column, row)] * this.cell / kUnitsPerCell;
-        return { edge: this.fieldEdges(height), holes: this.holes ? this.edgesOfHoles(height) : [] };
+        const height = (cell: number) => heights[cell] * this.cell / kUnitsPerCell;
+        const mean = (cells: number[]) => cells.reduce((sum, cell) => sum + height(cell), 0) / cells.length;
+        return {
+            edge: this.fieldEdges((column, row) => height(this.clamped(column, row))),
+            holes: this.cutsAtHoles.map((line) => line.map(({ x, y, cells }): Point => [x, y, mean(cells)])),
+        };
     }
     private fieldEdges(height: (column: number, row: number) => number): Point[][] {
         const corners = [[0, 0], [this.columns + 1, 0], [this.columns + 1, this.rows + 1], [0, this.rows + 1], [0, 0]];
@@ -136,30 +149,30 @@ export class GridField {
         }
         return lines;
     }
-    private edgesOfHoles(height: (column: number, row: number) => number): Point[][] {
-        const lines: Point[][] = [];
+    /** Returns the lines along the sides of all cells that lie beside a hole. */
+    private placesAtHoles(): CutPlace[][] {
+        const lines: CutPlace[][] = [];
         // Direction to a neighbour, and the corners of the edge before it [half a cell].
         const faces = [[1, 0, 1, -1, 1, 1], [0, 1, 1, 1, -1, 1], [-1, 0, -1, 1, -1, -1], [0, -1, -1, -1, 1, -1]];
         for (let row = 0; row < this.rows; ++row) {
             for (let column = 0; column < this.columns; ++column) {
                 for (const [east, north, x0, y0, x1, y1] of this.isHole(column, row) ? [] : faces) {
                     if (this.isHole(column + east, row + north)) {
-                        const at = (x: number, y: number, z: number): Point => [(column + (1 + x) / 2) * this.cell, (row + (1 + y) / 2) * this.cell, z];
-                        const corner = (x: number, y: number) => at(x, y, this.cornerHeight(height, column, row, column + (x - 1) / 2, row + (y - 1) / 2));
-                        lines.push([corner(x0, y0), at(east, north, height(column, row)), corner(x1, y1)]);
+                        const at = (x: number, y: number, cells: number[]) => ({ x: (column + (1 + x) / 2) * this.cell, y: (row + (1 + y) / 2) * this.cell, cells });
+                        const corner = (x: number, y: number) => at(x, y, this.cellsAround(column, row, column + (x - 1) / 2, row + (y - 1) / 2));
+                        lines.push([corner(x0, y0), at(east, north, [this.clamped(column, row)]), corner(x1, y1)]);
                     }
                 }
             }
         }
         return lines;
     }
-    /** Returns the mean height of the cells with ground around a corner. Only two opposite cells do not join. */
-    private cornerHeight(height: (column: number, row: number) => number, column: number, row: number, x: number, y: number): number {
+    /** Returns the cells with ground around a corner of a cell. Two that are opposite do not join: then, only the cell. */
+    private cellsAround(column: number, row: number, x: number, y: number): number[] {
         const cells = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]], ground = cells.map(([i, j]) => !this.isHole(i, j));
         if (ground[0] === ground[2] && ground[1] === ground[3] && ground[0] !== ground[1]) {
-            return height(column, row);
+            return [this.clamped(column, row)];
         }
-        const heights = cells.filter((_, i) => ground[i]).map(([i, j]) => height(i, j));
-        return heights.reduce((sum, one) => sum + one, 0) / heights.length;
+        return cells.filter((_, i) => ground[i]).map(([i, j]) => this.clamped(i, j));
     }
 }

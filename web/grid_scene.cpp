@@ -12,6 +12,7 @@
 #include "base/text_reader.hpp"
 #include "scene/import/degrees.hpp"
 #include "scene/import/esri_grid.hpp"
+#include "scene/import/grid_terrain.hpp"
 #include "web/opening.hpp"
 
 namespace web {
@@ -46,36 +47,6 @@ double datumOf(const scene::EsriGrid& grid, double unit) {
     return unit * std::floor((lowest / 2 + highest / 2) / unit + 0.5);
 }
 
-/// Fills the heights and the ground of a scene. Walls are as high as the lowest sand.
-void fill(const scene::EsriGrid& grid, double datum, scene::Scene& scene) {
-    const double unit = scene.terrain.unit();
-    std::int32_t lowest = sand::kMaxHeight;
-    std::shared_ptr<sand::Ground> ground;
-    for (int row = 0; row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            if (!grid.isNoData(column, row)) {
-                const auto units = static_cast<std::int32_t>(std::floor((grid.at(column, row) - datum) / unit + 0.5));
-                scene.terrain.setHeight(column, row, units);
-                lowest = std::min(lowest, units);
-            } else {
-                if (ground == nullptr) {
-                    ground = std::make_shared<sand::Ground>(grid.columns, grid.rows);
-                }
-                ground->setWall(column, row);
-            }
-        }
-    }
-    for (int row = 0; ground != nullptr && row < grid.rows; ++row) {
-        for (int column = 0; column < grid.columns; ++column) {
-            if (ground->isWall(column, row)) {
-                scene.terrain.setHeight(column, row, lowest);
-            }
-        }
-    }
-    scene.ground = ground;
-    scene.rules.ground = ground == nullptr ? 0 : ground->digest();
-}
-
 std::string stemOf(const std::string& name) { return name.substr(0, name.rfind('.')); }
 
 }  // namespace
@@ -108,7 +79,13 @@ scene::Scene sceneOfGrid(std::string_view text, const std::string& name, std::in
     scene.georeference.west = grid.westEdge;
     scene.georeference.south = grid.southEdge;
     scene.georeference.datum = datum;
-    fill(grid, datum, scene);
+    const auto unitsOf = [datum, unit = scene.terrain.unit()](double height) {
+        return static_cast<std::int32_t>(std::floor((height - datum) / unit + 0.5));
+    };
+    std::shared_ptr<sand::Ground> ground;
+    scene::layTerrain(grid, unitsOf, scene.terrain, ground);
+    scene.ground = ground;
+    scene.rules.ground = ground == nullptr ? 0 : ground->digest();
     scene.material.toolRadius = kToolShare * std::min(grid.columns, grid.rows) * grid.cellSize;
     if (const auto fault = scene::faultOf(scene.material, scene.grid())) {
         throw base::InputError(fmt::format("{}: {}", name, fault->message));

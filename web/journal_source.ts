@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A journal as the source of steps. The first pass computes every step once; then any moment can be shown.
-import { Keyframes } from "./keyframes";
+import { copyState, type Keyframes } from "./keyframes";
 import type { ToWorker } from "./messages";
 import type { Replica } from "./replica";
 import { kSliceMs, type Stage, type StepSource } from "./step_source";
@@ -8,7 +8,6 @@ import { kSliceMs, type Stage, type StepSource } from "./step_source";
 const kProgressMs = 100;
 
 export class JournalSource implements StepSource {
-    private readonly keyframes = new Keyframes();
     private passed = false;           // whether the first pass has ended
     private wanted = 0;               // step to show, after the first pass
     private rate = 0;                 // steps per second
@@ -17,8 +16,10 @@ export class JournalSource implements StepSource {
     private lastProgress = -kProgressMs;
     private toldStep = -1;
 
-    constructor(private readonly replica: Replica, private readonly session: { lastStep: number }, private readonly stage: Stage) {
-        this.keyframes.passed(0, 0, () => replica.state());
+    constructor(private readonly replica: Replica, private readonly session: { lastStep: number }, private readonly keyframes: Keyframes,
+                private readonly stage: Stage) {
+        keyframes.clear();
+        keyframes.passed(0, 0, () => replica.state());
     }
 
     take(message: ToWorker): void {
@@ -85,7 +86,7 @@ export class JournalSource implements StepSource {
         const it = this.replica;
         const keyframe = this.keyframes.before(this.wanted);
         if (it.step > this.wanted || it.step < keyframe.step) {
-            it.restore(keyframe.state);
+            it.restore(keyframe.length, (into) => copyState(keyframe, into));
         }
         const began = performance.now();
         while (it.step < this.wanted && performance.now() - began < kSliceMs) {

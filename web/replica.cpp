@@ -132,8 +132,12 @@ API int sw_draw() {
     });
 }
 API const std::int32_t* sw_heights() { return drawn.heights.data(); }
-/// One byte for each cell: 1 if it has no ground. nullptr if all cells of the grid have ground.
-API const std::uint8_t* sw_holes() { return drawn.holes.empty() ? nullptr : drawn.holes.data(); }
+/// Takes the cells without ground, which never change in a session. Returns 1 if there are any.
+API int sw_take_holes() {
+    return guarded([] { return drawn.takeHoles(session->replica().surface()) ? 1 : 0; });
+}
+/// One byte for each cell: 1 if it has no ground.
+API const std::uint8_t* sw_holes() { return drawn.holes.data(); }
 API const float* sw_places() { return drawn.places.data(); }
 API int sw_vertices() { return static_cast<int>(drawn.places.size() / 3); }
 API const std::int32_t* sw_corners() { return drawn.corners.data(); }

@@ -69,14 +69,16 @@ export class Replica {
     get matches(): number { return this.wasm._sw_matches(); }
     get mismatches(): number { return this.wasm._sw_mismatches(); }
 
-    state(): ArrayBuffer {
+    /** Returns the whole state in the memory of WebAssembly, where the next call may change it. */
+    state(): Uint8Array {
         const length = this.require(this.wasm._sw_state());
         const at = this.wasm._sw_state_bytes();
-        return this.wasm.HEAPU8.slice(at, at + length).buffer;
+        return this.wasm.HEAPU8.subarray(at, at + length);
     }
-    restore(state: ArrayBuffer): void {
-        const at = this.room(this.wasm._sw_room_for_state(state.byteLength));
-        this.wasm.HEAPU8.set(new Uint8Array(state), at);
+    /** Restores a state of `length` bytes, which `write` writes. */
+    restore(length: number, write: (into: Uint8Array) => void): void {
+        const at = this.room(this.wasm._sw_room_for_state(length));
+        write(this.wasm.HEAPU8.subarray(at, at + length));
         this.require(this.wasm._sw_restore());
     }
     sand(columns: number, rows: number): { heights?: Int32Array; places?: Float32Array; corners?: Uint32Array } {
@@ -89,10 +91,13 @@ export class Replica {
             corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
         };
     }
-    /** Returns a byte for each cell of the sand that was drawn last, or undefined if all have ground. */
+    /** Returns a byte for each cell, which is 1 if it has no ground, or undefined if all have ground. */
     holes(columns: number, rows: number): Uint8Array | undefined {
+        if (this.require(this.wasm._sw_take_holes()) === 0) {
+            return undefined;
+        }
         const at = this.wasm._sw_holes();
-        return at === 0 ? undefined : this.wasm.HEAPU8.slice(at, at + columns * rows);
+        return this.wasm.HEAPU8.slice(at, at + columns * rows);
     }
     tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
     get humidity(): number { return this.wasm._sw_humidity(); }

@@ -2,6 +2,7 @@
 // Computes the sand. It works in slices, so that it answers the page between them.
 import { HandSource } from "./hand_source";
 import { JournalSource } from "./journal_source";
+import { Keyframes } from "./keyframes";
 import type { DigMessage, FromWorker, OpenMessage, ToWorker } from "./messages";
 import { Replica } from "./replica";
 import type { StepSource } from "./step_source";
@@ -11,6 +12,7 @@ const kVectors = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1,
 
 let replica: Replica | undefined;
 let source: StepSource | undefined;
+let keyframes = new Keyframes();
 let session: { columns: number; rows: number } | undefined;
 let mayShow = true, shownStep = -1;
 let working = false;
@@ -81,7 +83,7 @@ async function open({ name, address, parts }: OpenMessage): Promise<void> {
     const it = await loaded();
     it.open(name, parts);
     const opened = it.session();
-    begin(new JournalSource(it, opened, { tell, show }), opened);
+    begin(new JournalSource(it, opened, keyframes, { tell, show }), opened);
     tell({ kind: "session", address, tin: it.isTin(), holes: it.holes(opened.columns, opened.rows), ...opened });
 }
 
@@ -93,6 +95,7 @@ async function dig(message: DigMessage): Promise<void> {
         it.checkGrid(message.name, await text.slice(0, 1 << 16).arrayBuffer(), text.size);
     }
     it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
+    keyframes = new Keyframes();  // digging needs no memory for states
     const begun = it.ground();
     begin(new HandSource(it, begun.stepsPerSecond, { tell, show }), begun);
     tell({ kind: "dig", tin: it.isTin(), holes: it.holes(begun.columns, begun.rows), ...begun });

@@ -12,6 +12,7 @@
 
 #include "sand/grid/dunes.hpp"
 #include "scene/import/degrees.hpp"
+#include "scene/import/grid_terrain.hpp"
 #include "scene/import/no_data.hpp"
 #include "scene/import/raster_file.hpp"
 #include "scene/import/raster_units.hpp"
@@ -98,8 +99,8 @@ private:
     bool asked_ = false;
 };
 
-/// Returns the field of a source. Cells without data become walls. They are felt as flats at the lowest height of the
-/// terrain. Sets `survey` to the raster without heights if it is on a map.
+/// Returns the field of a source, whose cells without data become walls. Sets `survey` to the raster without heights if
+/// it is on a map.
 sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable& terrain, int kind, Scene& scene,
                              std::optional<EsriGrid>& survey, std::shared_ptr<sand::Ground>& ground,
                              const SizeChecks& checks) {
@@ -130,31 +131,14 @@ sand::HeightField fromSource(const host::TomlTable& file, const host::TomlTable&
     }
     asked.askOfField(grid.columns, grid.rows);
     sand::HeightField field(grid.columns, grid.rows, grid.cellSize);
-    std::int32_t lowest = sand::kMaxHeight;
-    const auto forEachCell = [&](auto&& visit) {
-        for (int row = 0; row < grid.rows; ++row) {
-            for (int column = 0; column < grid.columns; ++column) {
-                visit(column, row, grid.at(column, row));
-            }
-        }
-    };
     const std::string key = terrain.has("file") ? "file" : "z";
     const auto adviceFor = [&](double height) {
         return isUsualNoData(height) ? "declare it as no data, or set 'datum'" : "set 'datum'";
     };
-    forEachCell([&](int column, int row, double height) {
-        if (!std::isnan(height)) {
-            const std::int32_t units = heightUnits(terrain, key, height - datum, field.unit(), adviceFor(height));
-            field.setHeight(column, row, units);
-            lowest = std::min(lowest, units);
-        }
-    });
-    forEachCell([&](int column, int row, double height) {
-        if (std::isnan(height)) {
-            field.setHeight(column, row, lowest);
-            groundOf(ground, field).setWall(column, row);
-        }
-    });
+    const auto unitsOf = [&](double height) {
+        return heightUnits(terrain, key, height - datum, field.unit(), adviceFor(height));
+    };
+    layTerrain(grid, unitsOf, field, ground);
     return field;
 }
 

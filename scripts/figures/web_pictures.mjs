@@ -2,14 +2,14 @@
 // Compares the page's picture with the wall's, from the same eye, at the last step of sessions (docs/web.md).
 // usage: node scripts/figures/web_pictures.mjs OUT JOURNAL...
 // Leaves OUT/NAME_wall.png, NAME_page.png and NAME_difference.png, and prints a line for each session. Needs the built
-// programs, the page and Chromium. Fails if the mean difference of a session is more than 3 levels.
+// programs, the page and Chromium. Fails if the mean difference of a session is more than 1.5 levels.
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
 import path from "node:path";
 import { launch, passed, root, serve } from "../../tests/web/browser.mjs";
 
 const [out, ...journals] = process.argv.slice(2);
-const kWidth = 1280, kHeight = 720, kMost = 3;
+const kWidth = 1280, kHeight = 720, kMost = 1.5;
 fs.mkdirSync(out, { recursive: true });
 
 // The desktop's stage, before an eye in the middle of the glass whose picture has the page's angle of 35 degrees.

@@ -5,40 +5,25 @@
 //        node scripts/figures/web_times.mjs hour      an hour's session: memory during the first pass, then moments
 import { execFileSync } from "node:child_process";
 import fs from "node:fs";
-import { createRequire } from "node:module";
 import os from "node:os";
 import path from "node:path";
-import { fileURLToPath, pathToFileURL } from "node:url";
+import { fileURLToPath } from "node:url";
+import { builtModule } from "../../tests/web/built_module.mjs";
+import { loadReplica } from "../../tests/web/loaded_replica.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url)), programs = path.join(root, "build/release/bin"), built = path.join(root, "build/web/bin");
 const what = process.argv[2], kRounds = 5, kMoments = 100;
-const { buildSync } = createRequire(path.join(root, "web/package.json"))("esbuild");
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "web_times-"));
 process.on("exit", () => fs.rmSync(folder, { recursive: true }));
-buildSync({ entryPoints: [path.join(root, "web/keyframes.ts")], outfile: path.join(folder, "keyframes.mjs"), format: "esm" });
-const { Keyframes } = await import(pathToFileURL(path.join(folder, "keyframes.mjs")));
-
-const wasm = await (await import(pathToFileURL(path.join(built, "replica.mjs")))).default({ wasmBinary: fs.readFileSync(path.join(built, "replica.wasm")) });
-const textAt = (address) => wasm.UTF8ToString(address);
+const { Keyframes, copyState } = await builtModule("keyframes.ts");
+const loaded = await loadReplica(built), wasm = loaded.wasm;
+const state = () => loaded.state();
 
 function open(file) {
-    const bytes = fs.readFileSync(file), name = new TextEncoder().encode("session\0");
-    wasm._sw_begin();
-    wasm.HEAPU8.set(bytes, wasm._sw_add_part(bytes.length));
-    const at = wasm._malloc(name.length);
-    wasm.HEAPU8.set(name, at);
-    if (wasm._sw_open(at) !== 0) {
-        throw new Error(textAt(wasm._sw_problem()));
+    const refusal = loaded.open("session", [fs.readFileSync(file)]);
+    if (refusal !== "") {
+        throw new Error(refusal);
     }
-    wasm._free(at);
-}
-function state() {
-    const length = wasm._sw_state();
-    return wasm.HEAPU8.slice(wasm._sw_state_bytes(), wasm._sw_state_bytes() + length).buffer;
-}
-function restore(bytes) {
-    wasm.HEAPU8.set(new Uint8Array(bytes), wasm._sw_room_for_state(bytes.byteLength));
-    wasm._sw_restore();
 }
 function requireEqual() {
     if (wasm._sw_mismatches() !== 0) {
@@ -98,27 +83,27 @@ function moments(name, keyframes) {
     for (let i = 0; i < kMoments; ++i) {
         seed = (Math.imul(seed, 1103515245) + 12345) >>> 0;
         const step = Math.floor(seed / 2 ** 32 * last), began = performance.now();
-        restore(keyframes.before(step).state);
+        const keyframe = keyframes.before(step);
+        loaded.restore(keyframe.length, (into) => copyState(keyframe, into));
         while (wasm._sw_step() < step && wasm._sw_step_on() === 1) {}
         took.push(performance.now() - began);
     }
     requireEqual();
     const at = sorted(took);
-    console.log(`${name}: ${keyframes.kept.length} keyframes, ${(keyframes.sum / 2 ** 20).toFixed(0)} MiB, ${kMoments} moments: p50 ${at[49].toFixed(0)} ms, p99 ${at[98].toFixed(0)} ms`);
+    console.log(`${name}: ${keyframes.count} keyframes, ${(keyframes.bytes / 2 ** 20).toFixed(0)} MiB, ${kMoments} moments: p50 ${at[49].toFixed(0)} ms, p99 ${at[98].toFixed(0)} ms`);
 }
 
 function hour() {
     const [name] = write("hour"), samples = [];
     // More keyframes than in the page, so that they reach their limit early.
-    const keyframes = passWithKeyframes(path.join(folder, name), 20, (kept) => {
-        samples.push({ step: wasm._sw_step(), limited: kept.pause > 20, heap: wasm.HEAPU8.length, process: process.memoryUsage().rss });
+    const keyframes = passWithKeyframes(path.join(folder, name), 8, (kept) => {
+        samples.push({ step: wasm._sw_step(), limited: kept.thinned, heap: wasm.HEAPU8.length, process: process.memoryUsage().rss });
     });
-    // At the limit every second keyframe goes, so the process shrinks and grows. Its peaks show whether it grows for good.
-    const limit = samples.findIndex((sample) => sample.limited);
-    const peak = (some, what) => (Math.max(...some.map((sample) => sample[what])) / 2 ** 20).toFixed(0);
-    console.log(`${name}: ${wasm._sw_step()} steps, ${wasm._sw_matches()} hashes equal; the keyframes reached 256 MiB before step ${samples[limit]?.step}`);
+    const limit = samples.findIndex((sample) => sample.limited), after = samples.slice(limit);
+    console.log(`${name}: ${wasm._sw_step()} steps, ${wasm._sw_matches()} hashes equal; the keyframes reached 256 MiB before step ${after[0]?.step}`);
     for (const what of ["heap", "process"]) {
-        console.log(`largest ${what}: ${peak(samples.slice(0, limit), what)} MiB until then, ${peak(samples.slice(limit), what)} MiB afterwards`);
+        const mebibytes = after.map((sample) => sample[what] / 2 ** 20), least = Math.min(...mebibytes), most = Math.max(...mebibytes);
+        console.log(`${what}: ${least.toFixed(0)} to ${most.toFixed(0)} MiB from there, ${(100 * (most / least - 1)).toFixed(1)} % more`);
     }
     moments(name, keyframes);
 }

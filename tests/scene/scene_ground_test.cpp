@@ -35,6 +35,7 @@ TEST_F(SceneFile, CellsWithoutDataAreWallsAndEmptyEdgesAreCutOff) {
     EXPECT_TRUE(scene.ground->isWall(1, 1));
     EXPECT_FALSE(scene.ground->isWall(2, 1));
     EXPECT_EQ(scene.terrain.height(0, 0), 7 * sand::kUnitsPerCell);
+    EXPECT_EQ(scene.terrain.height(1, 1), sand::kUnitsPerCell) << "a wall is as high as the lowest sand";
 }
 
 TEST_F(SceneFile, RockComesFromASecondGrid) {

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.request
 
 from sample_scene import SCENE
 
@@ -68,6 +69,33 @@ class Package(unittest.TestCase):
             f"sandwall-{name}" for name in ("check", "compare", "gl-egl.so", "gl-glfw.so", *(["gl-osmesa.so"] if osmesa() else []), "haptic-server", "import.so",
                                             "master", "relax", "render-node", "replay", "security.so", "track", "watch"))])
         self.assertFalse([path for path in self.tree.rglob("*") if path.suffix in (".pyc", ".hpp", ".cpp")])
+
+    def test_it_has_the_page_if_it_was_built(self):
+        built, packed = ROOT / "build" / "web" / "page", self.prefix / "share" / "sandwall" / "web"
+        self.assertEqual({path.name: path.read_bytes() for path in packed.glob("*")}, {path.name: path.read_bytes() for path in built.glob("*")})
+        if not built.is_dir():
+            ended = self.sandwall("web")
+            self.assertEqual((ended.returncode, ended.stdout), (2, ""))
+            self.assertIn("the page is not there; install a package that has it", ended.stderr)
+            return
+        with subprocess.Popen([self.prefix / "bin" / "sandwall", "web"], stdout=subprocess.PIPE, text=True, env=self.environment) as server:
+            self.addCleanup(server.kill)
+            address = server.stdout.readline().strip()
+            for name in ("", "page.js", "worker.js", "replica.wasm", "licences.txt"):
+                with urllib.request.urlopen(address + name, timeout=20) as answer:
+                    self.assertEqual(answer.read(), (built / (name or "index.html")).read_bytes())
+            server.kill()
+
+    def test_the_copyright_names_the_works_of_others_in_the_page(self):
+        for page in (False, True):
+            tree = self.folder / f"tree {page}"
+            (tree / "usr" / "share" / "doc" / "sandwall").mkdir(parents=True)
+            if page:
+                (tree / "usr" / "share" / "sandwall" / "web").mkdir(parents=True)
+            ended = called("cmake", f"-DCPACK_TEMPORARY_INSTALL_DIRECTORY={tree}", "-P", ROOT / "cmake" / "finish_package.cmake")
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+            text = (tree / "usr" / "share" / "doc" / "sandwall" / "copyright").read_text()
+            self.assertEqual("Files: usr/share/sandwall/web/*" in text, page)
 
     def test_every_command_has_a_man_page(self):
         pages = self.prefix / "share" / "man" / "man1"

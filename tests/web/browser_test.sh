@@ -48,4 +48,7 @@ if [[ ${3:-} == --all ]]; then
 else
     "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list" --smoke
 fi
-[[ $browser == firefox ]] || node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
+if [[ $browser == chromium ]]; then
+    node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
+    node tests/web/touch_in_browser.mjs chromium "$folder/gis_tin.journal"
+fi

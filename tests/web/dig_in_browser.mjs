@@ -58,12 +58,18 @@ try {
     }
     await until("document.body.dataset.problem || (document.body.dataset.digging && document.body.dataset.shown)");
     assert.equal((await data()).problem, undefined);
+    assert.equal(await page.$eval("#undo", (button) => button.disabled), true, "there is no stroke yet");
     for (const [i, tool] of ["sphere", "circle", "rectangle", "ellipse", "ellipsoid", "footprint"].entries()) {
         await page.select("#tool", tool);
         await page.click("#larger");
+        await steps(1);  // the worker has answered
+        if (await page.$eval("#width", (field) => !field.disabled)) {
+            await setNumber("#width", 0.3);
+        }
         const v = 0.3 + 0.08 * i;
         await stroke([[0.3, v], [0.5, v + 0.04], [0.7, v]]);
     }
+    assert.equal(await page.$eval("#width", (field) => field.value), "0.3");
     await page.click("#undo");
     await steps(5);
     await page.select("#word", "humidity");
@@ -72,12 +78,20 @@ try {
     await stroke([[0.35, 0.25], [0.5, 0.75], [0.65, 0.25]]);
     await page.click("#settle");
     await steps(5);
-    // The right button moves the view, and digs nothing.
+    // Nothing can be undone after a reset. The right button turns the view, and digs nothing: there is no stroke to undo.
+    const canUndo = () => page.$eval("#undo", (button) => !button.disabled);
+    assert.ok(await canUndo(), "a stroke can be undone");
+    await page.click("#reset");
+    await steps(20);
+    assert.equal(await canUndo(), false, "a reset cannot be undone");
     const before = await data();
     await page.mouse.move(300, 150);
     await page.mouse.down({ button: "right" });
     await page.mouse.move(330, 160, { steps: 4 });
     await page.mouse.up({ button: "right" });
+    await steps(20);
+    assert.equal(await canUndo(), false, "the right button has dug");
+    assert.notEqual((await data()).view, before.view, "the right button has not turned the view");
     await stroke([[0.45, 0.4], [0.55, 0.6]]);
     if (picture) {
         await page.screenshot({ path: picture });

@@ -5,37 +5,20 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
+import { loadReplica } from "./loaded_replica.mjs";
 
 const [build, folder, ...scenes] = process.argv.slice(2);
-const makeReplica = (await import(pathToFileURL(path.resolve(build, "replica.mjs")))).default;
-const replica = await makeReplica({ wasmBinary: fs.readFileSync(path.join(build, "replica.wasm")) });
-const textAt = (address) => replica.UTF8ToString(address);
+const loaded = await loadReplica(build), replica = loaded.wasm;
 const kSettle = 1, kReset = 2, kUndo = 3, kTools = 6, kSame = Number.NaN;
-
-function withText(text, call) {
-    const bytes = new TextEncoder().encode(text + "\0");
-    const at = replica._malloc(bytes.length);
-    replica.HEAPU8.set(bytes, at);
-    const result = call(at);
-    replica._free(at);
-    return result;
-}
-function add(bytes) {
-    replica._sw_begin();
-    const at = replica._sw_add_part(bytes.length);
-    assert.ok(at > 0);
-    replica.HEAPU8.set(bytes, at);
-}
-const good = (result) => assert.ok(result >= 0, textAt(replica._sw_problem()));
+const good = (result) => loaded.good(result);
 /** Calls a function that must refuse, and returns its sentence. */
 function refusal(call) {
     assert.equal(call(), -1);
-    return textAt(replica._sw_problem());
+    return loaded.problem;
 }
-const beginScene = (name, bytes) => { add(bytes); return withText(name, (at) => replica._sw_dig_scene(at, 7, 9)); };
-const beginGrid = (name, text) => { add(Buffer.from(text)); return withText(name, (at) => replica._sw_dig_grid(at, 7, 9)); };
-const setMaterial = (word, value) => withText(word, (at) => replica._sw_set_material(at, value));
+const beginScene = (name, bytes) => { loaded.add([bytes]); return loaded.withText(name, (at) => replica._sw_dig_scene(at, 7, 9)); };
+const beginGrid = (name, text) => { loaded.add([Buffer.from(text)]); return loaded.withText(name, (at) => replica._sw_dig_grid(at, 7, 9)); };
+const setMaterial = (word, value) => loaded.withText(word, (at) => replica._sw_set_material(at, value));
 
 /** Looks straight down at the place (x, y), which counts in shares of the field. */
 function point(ms, x, y, pressed) {
@@ -112,7 +95,7 @@ function save(name) {
     const at = replica._sw_state_bytes();
     const file = `dug_${name}.journal`;
     fs.writeFileSync(path.join(folder, file), replica.HEAPU8.slice(at, at + length));
-    console.log(`${file} ${replica._sw_step()} ${textAt(replica._sw_hash())}`);
+    console.log(`${file} ${replica._sw_step()} ${loaded.hash}`);
 }
 
 /** Returns a grid with a hill, and with a corner without data. */
@@ -135,7 +118,7 @@ for (const scene of scenes) {
 good(beginGrid("hill.asc", hill(120, 90, headerOf(120, 90, "xllcorner 4000\nyllcorner 5000\ncellsize 2\nNODATA_value -9999"))));
 digWithAll();
 // What is refused changes nothing.
-const before = textAt(replica._sw_hash());
+const before = loaded.hash;
 assert.match(refusal(() => setMaterial("talus", 90)), /^talus must be within \[0, 90\), got 90/);
 assert.match(refusal(() => setMaterial("stone", 1)), /^a material has no 'stone'/);
 assert.match(refusal(() => replica._sw_set_tool(-1, 1e9, kSame, kSame, -1)), /radius/);
@@ -147,11 +130,11 @@ assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\
 assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\n4 5"))), /^x\.asc:5: the file ends/);
 assert.match(refusal(() => beginGrid("x.asc", hill(40, 40, headerOf(40, 40, "xllcorner 8\nyllcorner 47\ncellsize 0.0001\nNODATA_value -9999")))), /^x\.asc: its lengths seem to be degrees/);
 assert.match(refusal(() => beginGrid("x.asc", headerOf(16384, 16384, "cellsize 1\n1 2 3\n"))), /^x\.asc: 16384 x 16384 cells need at least [0-9]+ MiB, and a page has [0-9]+ MiB/);
-assert.match(refusal(() => { add(Buffer.from(headerOf(9000, 9000, "cellsize 1\n1 2"))); return withText("x.asc", (at) => replica._sw_check_grid(at, 5e8)); }), /a page has/);
+assert.match(refusal(() => { loaded.add([Buffer.from(headerOf(9000, 9000, "cellsize 1\n1 2"))]); return loaded.withText("x.asc", (at) => replica._sw_check_grid(at, 5e8)); }), /a page has/);
 assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "dx 1\ndy 2\n1 2 3\n4 5 6\n"))), /^x\.asc: has cells of 1 x 2/);
 assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\n4 5 9000\n"))), /^x\.asc: heights from 1 to 9000 span more/);
 assert.match(refusal(() => beginScene("x.scene", Buffer.from("no scene"))), /^x\.scene: not a Sandwall journal file/);
-assert.equal(textAt(replica._sw_hash()), before);
+assert.equal(loaded.hash, before);
 for (let i = 0; i < 16; ++i) {
     good(replica._sw_ask(kReset));
 }

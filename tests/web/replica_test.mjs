@@ -4,48 +4,15 @@
 import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
-import { pathToFileURL } from "node:url";
+import { loadReplica } from "./loaded_replica.mjs";
 
 const [build, folder, list] = process.argv.slice(2);
-const makeReplica = (await import(pathToFileURL(path.resolve(build, "replica.mjs")))).default;
-const wasmBinary = fs.readFileSync(path.join(build, "replica.wasm"));
-const replica = await makeReplica({ wasmBinary });
-const textAt = (address) => replica.UTF8ToString(address);
-
-function withText(text, call) {
-    const bytes = new TextEncoder().encode(text + "\0");
-    const at = replica._malloc(bytes.length);
-    replica.HEAPU8.set(bytes, at);
-    const result = call(at);
-    replica._free(at);
-    return result;
-}
-
-/** Opens parts. Returns "" or the sentence of the refusal. */
-function open(name, parts) {
-    replica._sw_begin();
-    for (const part of parts) {
-        const at = replica._sw_add_part(part.length);
-        assert.ok(at > 0, textAt(replica._sw_problem()));
-        replica.HEAPU8.set(part, at);
-    }
-    return withText(name, (at) => replica._sw_open(at)) === 0 ? "" : textAt(replica._sw_problem());
-}
+const loaded = await loadReplica(build), replica = loaded.wasm;
+const textAt = (address) => loaded.text(address), open = (name, parts) => loaded.open(name, parts);
 
 function partsOf(file, count) {
     const names = [file, ...Array.from({ length: count - 1 }, (_, i) => `${file}.${i + 2}`)];
     return names.map((name) => fs.readFileSync(path.join(folder, name)));
-}
-
-function keep() {
-    const length = replica._sw_state();
-    assert.ok(length > 0, textAt(replica._sw_problem()));
-    return replica.HEAPU8.slice(replica._sw_state_bytes(), replica._sw_state_bytes() + length);
-}
-
-function restore(state) {
-    replica.HEAPU8.set(state, replica._sw_room_for_state(state.length));
-    assert.equal(replica._sw_restore(), 0, textAt(replica._sw_problem()));
 }
 
 function replay(file, count, steps, hashes, hash) {
@@ -57,20 +24,20 @@ function replay(file, count, steps, hashes, hash) {
     let middle = null;
     while (replica._sw_advance() === 1) {
         if (middle === null && replica._sw_step() >= steps / 2) {
-            middle = { step: replica._sw_step(), hash: textAt(replica._sw_hash()), state: keep() };
+            middle = { step: replica._sw_step(), hash: loaded.hash, state: loaded.state().slice() };
         }
     }
     const spent = process.cpuUsage(started), ms = (spent.user + spent.system) / 1000 / steps;
     assert.equal(replica._sw_mismatches(), 0, file);
     assert.equal(replica._sw_matches(), hashes, file);
     assert.equal(replica._sw_step(), steps, file);
-    assert.equal(textAt(replica._sw_hash()), hash, file);
+    assert.equal(loaded.hash, hash, file);
     // Back to the middle and forwards again. The hashes are compared again, and counted once.
-    restore(middle.state);
+    loaded.restore(middle.state.length, (into) => into.set(middle.state));
     assert.equal(replica._sw_step(), middle.step);
-    assert.equal(textAt(replica._sw_hash()), middle.hash);
+    assert.equal(loaded.hash, middle.hash);
     while (replica._sw_step_on() === 1) {}
-    assert.equal(textAt(replica._sw_hash()), hash, `${file}, from the middle`);
+    assert.equal(loaded.hash, hash, `${file}, from the middle`);
     assert.deepEqual([replica._sw_matches(), replica._sw_mismatches()], [hashes, 0], file);
     console.log(`${file}: ${hashes} of ${hashes} hashes, ${hash}, ${ms.toFixed(2)} ms of processor a step`);
 }
@@ -81,9 +48,8 @@ const holes = {};  // cells without ground, by session
 const tools = {};
 for (const [file, count, steps, hashes, hash] of sessions) {
     replay(file, Number(count), Number(steps), Number(hashes), hash);
-    replica._sw_draw();
-    const mask = replica._sw_holes(), cells = replica._sw_columns() * replica._sw_rows();
-    holes[file] = mask === 0 ? 0 : replica.HEAPU8.slice(mask, mask + cells).reduce((sum, one) => sum + one, 0);
+    const cells = replica._sw_columns() * replica._sw_rows(), have = replica._sw_take_holes(), mask = replica._sw_holes();
+    holes[file] = have === 0 ? 0 : replica.HEAPU8.slice(mask, mask + cells).reduce((sum, one) => sum + one, 0);
     tools[file] = [...replica.HEAPF32.slice(replica._sw_tool() >> 2, (replica._sw_tool() >> 2) + 10)];
 }
 // What pages draw beside the sand: cells without ground, and the tool.
@@ -95,14 +61,14 @@ assert.equal((Math.atan2(north, east) * 180 / Math.PI).toFixed(1), "25.0");
 
 // Bad files leave the session before open.
 const [file, count, steps] = sessions.at(-1);
-const last = textAt(replica._sw_hash());
+const last = loaded.hash;
 const good = partsOf(file, Number(count));
 const changed = (at, to) => { const bytes = Buffer.from(good[0]); bytes[at] = to; return [bytes]; };
 assert.match(open("x", [Buffer.alloc(0)]), /^x: is empty/);
 assert.match(open("x", [Buffer.from("no journal at all")]), /^x: not a Sandwall journal file/);
 assert.match(open("x", changed(4, 77)), /^x: written by sandwall 1\.2\.3 .* A page cannot run another release/);
 assert.match(open("x", changed(60, good[0][60] ^ 1)), /^x: its header is cut off or damaged/);
-assert.equal(textAt(replica._sw_hash()), last);
+assert.equal(loaded.hash, last);
 // A torn tail and damage in the middle open up to there.
 assert.equal(open(file, [good[0].subarray(0, good[0].length - 3)]), "");
 assert.match(textAt(replica._sw_shortcoming()), /bytes are an incomplete write/);
@@ -113,14 +79,14 @@ assert.ok(replica._sw_last_step() > 0 && replica._sw_last_step() < Number(steps)
 while (replica._sw_advance() === 1) {}
 assert.equal(replica._sw_mismatches(), 0);
 // A part or a state that is too large is a sentence, and the session goes on.
-const before = textAt(replica._sw_hash());
+const before = loaded.hash;
 for (const makeRoom of [replica._sw_add_part, replica._sw_room_for_state]) {
     for (const size of [2 ** 31 - 4096, 2 ** 32 - 1]) {
         assert.equal(makeRoom(size), 0);
-        assert.equal(textAt(replica._sw_problem()), "This page has no more memory");
+        assert.equal(loaded.problem, "This page has no more memory");
     }
 }
-assert.equal(textAt(replica._sw_hash()), before);
+assert.equal(loaded.hash, before);
 assert.ok(replica._sw_draw() >= 0);
 
 console.log(`${sessions.length} sessions equal the native program's`);

@@ -11,6 +11,7 @@ fi
 folder=$(mktemp -d)
 trap 'rm -r "$folder"' EXIT
 scripts/web.sh --replica
+node tests/web/keyframes_test.mjs
 "$1" "$folder" >"$folder/list"
 node tests/web/replica_test.mjs build/web/bin "$folder" "$folder/list"
 
