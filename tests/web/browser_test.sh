@@ -50,5 +50,5 @@ else
 fi
 if [[ $browser == chromium ]]; then
     node tests/web/no_picture_test.mjs "$folder/gis_tin.journal"
-    node tests/web/touch_in_browser.mjs chromium "$folder/gis_tin.journal"
+    node tests/web/touch_in_browser.mjs "$folder/gis_tin.journal"
 fi
