@@ -68,7 +68,7 @@ std::int32_t SweepBudget::sweepsOf(const sand::Step& step, const sand::Replica& 
         const double budget = static_cast<double>(budgetNs());
         const std::int64_t substeps = sand::substepsOf(step, replica.probe(), replica.engaged());
         const double others = static_cast<double>(hashNs_) + substepNs_ * static_cast<double>(substeps);
-        // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, so that they go on.
+        // A drag or a hash that takes the whole budget still leaves a quarter of it for sweeps, or they would stop.
         sweeps = std::min(sweeps, sweepsIn(std::max(budget - others, budget / 4), substeps, replica.tool()));
     }
     return std::max(static_cast<std::int32_t>(sweeps), 1);

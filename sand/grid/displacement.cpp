@@ -187,7 +187,7 @@ Displacement::Work Displacement::press(const HeightField& field, HeightField* in
     }
     std::vector<Receiver> ring = receivers(field.bounds(), rim, ground, probe, shape_, ahead);
     if (!deal(field, ring, cut.taken, false, probe, shape_)) {
-        // Dragged against a closed rim, or where the cells ahead have no room: the sand escapes to the sides and behind.
+        // Dragged against a closed rim, or the cells ahead have no room: the sand escapes to the sides and behind.
         ring = receivers(field.bounds(), rim, ground, probe, shape_, {0, 0});
         if (!deal(field, ring, cut.taken, true, probe, shape_)) {
             return {.refused = 1};  // the sand stays, and the tool passes through it
