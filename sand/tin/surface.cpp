@@ -149,7 +149,6 @@ void TinSurface::drag(const Tool& tool, std::span<const ProbePoint> path) {
 }
 
 void TinSurface::hold(const Tool& tool, const ProbePoint& probe) {
-    sawAll_ = false;
     displaced(tool, displacementOf(tool).hold(layer_, state_.imprint, rim_, probe));
 }
 

@@ -19,8 +19,12 @@ Displacement::Work Displacement::hold(VertexSand& layer, Imprint& imprint, Rim r
         return {};
     }
     if (imprint.pose) {
+        const double clear = lowestUnderside(probe.z) - kClear;
+        if (rules_.keepsConstraints || imprint.isAnyAbove(layer, clear)) {  // nearly always, and cheap
+            return {};
+        }
         neighbourhood_->look(layer.triangles(), box);
-        if (!rules_.keepsConstraints && !isAnyAbove(layer, lowestUnderside(probe.z) - kClear)) {
+        if (!isAnyAbove(layer, clear)) {
             leave(layer, imprint);
         }
         return {};

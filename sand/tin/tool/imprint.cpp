@@ -125,6 +125,12 @@ void Imprint::takeOutOf(Mesh& mesh) {
     *this = {};
 }
 
+bool Imprint::isAnyAbove(const VertexSand& layer, double height) const {
+    return std::any_of(points.begin(), points.end(), [&](const Point& point) {
+        return lives(layer.triangles(), point) && layer.heights()[index(point.vertex)] > height;
+    });
+}
+
 void Imprint::encode(base::ByteWriter& writer) const {
     writer.put(static_cast<std::uint8_t>(pose ? 1 : 0));
     if (!pose) {

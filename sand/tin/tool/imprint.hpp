@@ -40,6 +40,9 @@ struct Imprint {
     /// stay.
     void takeOutOf(Mesh& mesh);
 
+    /// Returns whether one of the points is a vertex that is higher than `height` [unit].
+    [[nodiscard]] bool isAnyAbove(const VertexSand& layer, double height) const;
+
     void encode(base::ByteWriter& writer) const;
     /// Throws base::FormatError if the bytes are not an imprint, or list more than `most` points or mostEdges(most)
     /// edges.

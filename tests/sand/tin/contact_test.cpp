@@ -2,6 +2,7 @@
 // A tool that is held still while the sand around it sinks or rises.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "sand/tin/tool/displacement.hpp"
@@ -11,12 +12,6 @@ namespace tools {
 namespace {
 
 using namespace tin_samples;
-using sand::ProbePoint;
-using sand::Rim;
-using sand::ToolKind;
-using sand::tin::DetailRules;
-using sand::tin::Displacement;
-using sand::tin::Imprint;
 
 constexpr double kRadius = 6;   // [cell]
 constexpr double kDeepest = 4;  // of the tool below the level [cell]
@@ -53,6 +48,11 @@ public:
         }
         return most / sand::kUnitsPerCell;
     }
+    /// Returns the height of the highest vertex above the lowest place of the underside [cell].
+    [[nodiscard]] double highestAboveTool() const {
+        const auto highest = std::max_element(layer_.heights().begin(), layer_.heights().end());
+        return *highest / sand::kUnitsPerCell + kDeepest;
+    }
     [[nodiscard]] const Imprint& imprint() const { return imprint_; }
     [[nodiscard]] const VertexSand& layer() const { return layer_; }
 
@@ -73,6 +73,19 @@ TEST(TinContact, AToolThatTouchesSandStaysInTheMesh) {
         EXPECT_EQ(bytesOf(held.layer()), before) << sinks;
         EXPECT_EQ(held.imprint(), placed) << sinks;
         EXPECT_TRUE(placed.pose);
+    }
+}
+
+// A margin, because sand at rest may rise a little when the mesh changes, and the tool would come and go.
+TEST(TinContact, AToolLeavesTheMeshOnlyWhenSandIsAnEighthOfACellBelow) {
+    for (const ToolKind kind : {ToolKind::sphere, ToolKind::rectangle}) {
+        HeldInTin held(kind);
+        held.raise(-held.highestAboveTool() - 0.12);
+        held.hold();
+        EXPECT_TRUE(held.imprint().pose);
+        held.raise(-0.01);
+        held.hold();
+        EXPECT_FALSE(held.imprint().pose);
     }
 }
 

@@ -13,12 +13,6 @@ namespace tools {
 namespace {
 
 using namespace tin_samples;
-using sand::ProbePoint;
-using sand::Rim;
-using sand::ToolKind;
-using sand::tin::DetailRules;
-using sand::tin::Displacement;
-using sand::tin::Imprint;
 
 constexpr double kCell = sand::kUnitsPerCell;
 

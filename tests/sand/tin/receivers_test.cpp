@@ -14,11 +14,7 @@ namespace {
 
 using namespace tin_samples;
 using sand::Offset;
-using sand::ProbePoint;
-using sand::Rim;
-using sand::ToolKind;
 using sand::TurnedShape;
-using sand::tin::Imprint;
 
 /// A tool on level sand whose mesh has the tool's outline, and the shares that its receivers get.
 struct Pressed {

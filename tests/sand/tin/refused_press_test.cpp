@@ -15,8 +15,6 @@ namespace {
 
 using namespace tin_samples;
 using sand::Replica;
-using sand::tin::Displacement;
-using sand::tin::Imprint;
 
 constexpr int kSide = 24;          // [cell]
 constexpr int kBelow = 2;          // [cell], of the sand below the largest height

@@ -10,6 +10,12 @@
 
 namespace tin_samples {
 
+using sand::ProbePoint;
+using sand::Rim;
+using sand::ToolKind;
+using sand::tin::DetailRules;
+using sand::tin::Displacement;
+using sand::tin::Imprint;
 using sand::tin::LatticePoint;
 using sand::tin::Vertex;
 using sand::tin::VertexSand;
