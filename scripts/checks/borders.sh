@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Measures the sand at rims, walls, rock faces and holes, and under tools that are held there: one row for each experiment,
-# with the largest value that is right. Fails if a value is larger. scripts/test.sh does not run it. docs/sand.md
+# with the largest value that is right. Fails if a value is larger, as it is in the rows "slope below a tool that touches it".
+# scripts/test.sh does not run it. docs/sand.md
 #
 #   scripts/checks/borders.sh              Fields of 64 cells a side, less than a minute.
 #   scripts/checks/borders.sh --size 256   Fields of 256 cells a side, more than an hour.

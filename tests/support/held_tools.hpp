@@ -89,35 +89,48 @@ inline HeldSettle settleAround(const Ground& ground, int n, sand::ToolKind kind,
     return result;
 }
 
-/// A tool is pressed into uneven sand at the east rim of an open table. The operator settles the sand, with the tool
-/// held, or lifted first. The sand slides away below the tool, which is higher than the slope that stays.
+/// Place of a tool beside the east rim of an open table, and whether it is held or lifted while the sand settles. At a
+/// height of 20 cells it is above the slope that stays. At 12 cells the slope touches one side of it.
+struct SlopeTool {
+    sand::ToolKind kind;
+    double east, height;  // of its centre [cell at n = 64]
+    bool held;
+};
 struct OpenTable {
-    double missing = 0, deepest = 0;  // of the sand beside the tool against an open table [cell³], [cell] at n = 64
+    double missing = 0, deepest = 0;  // of the sand against an open table [cell³], [cell] at n = 64
+    std::int64_t sweeps = 0;          // until all sand is at rest
     bool atRest = false;
 };
-inline OpenTable slideFromTool(int n, sand::ToolKind kind, double east, bool held) {
-    const double scale = n / 64.0, north = 30.2 * scale;
+/// A tool is pressed into level sand on an open table. The operator settles the sand, which slides over the rim.
+inline OpenTable slideFromTool(int n, const SlopeTool& tool) {
+    const double scale = n / 64.0, north = 30.2 * scale, x0 = tool.east * scale;
     Case given = caseOf(kTin, n);
-    given.tool = kind;
+    given.tool = tool.kind;
     given.sweeps = 4;
     given.maxError = 0;
     given.rim = sand::Rim::open;
     given.height = [=](double, double) { return 20 * scale; };
     sand::Replica sand(sceneOf(given));
     Hand hand(sand);
-    hand.drag((east + 4) * scale, north + 7 * scale, east * scale, north, 20 * scale);
-    if (!held) {
+    hand.drag(x0 + 4 * scale, north + 7 * scale, x0, north, tool.height * scale);
+    if (!tool.held) {
         hand.hover();
     }
-    hand.apply(held, {}, sand::Edit::settle);
-    for (int i = 0; i < 1000 && !sand.settled(); ++i) {
-        hand.apply(held, {});
-    }
     OpenTable result;
+    for (int i = 0; i < 1000 && (i == 0 || !sand.settled()); ++i) {
+        hand.apply(tool.held, {}, i == 0 ? sand::Edit::settle : sand::Edit::none);
+        result.sweeps += sand.lastWork().sweeps;
+    }
+    const sand::TurnedShape turned(sand.tool());
     for (int y = 18 * n / 64; y < 42 * n / 64; ++y) {
         for (int x = 40 * n / 64; x < n; ++x) {
-            const double toRim = std::min({n - x - 0.5, y + 0.5, n - y - 0.5});
-            const double less = kTalus * toRim - heightAt(sand, x + 0.5, y + 0.5);
+            const sand::Offset offset{std::int64_t{x} * sand::kProbePerCell + sand::kProbePerCell / 2 - sand.probe().x,
+                                      std::int64_t{y} * sand::kProbePerCell + sand::kProbePerCell / 2 - sand.probe().y};
+            const double table = kTalus * std::min({n - x - 0.5, y + 0.5, n - y - 0.5});
+            // kFree is higher than every table.
+            const double under =
+                tool.held ? 1.0 * turned.underside(sand.probe().z, offset) / sand::kUnitsPerCell : table;
+            const double less = std::min(table, under) - heightAt(sand, x + 0.5, y + 0.5);
             result.missing += std::max(less, 0.0) / scale / scale / scale;
             result.deepest = std::max(result.deepest, less / scale);
         }

@@ -53,8 +53,8 @@ TEST(HeldTool, OfAFinerTinKeepsAllSandOutAndLetsItRest) {
 TEST(HeldTool, OfATinLeavesASlopeAloneThatItDoesNotTouch) {
     constexpr int kFine = 3 * kSide / 2;
     for (const auto& [kind, east] : {std::pair{sphere, 64.7}, {circle, 58.0}}) {  // beyond the rim, within the field
-        const borders::OpenTable lifted = borders::slideFromTool(kFine, kind, east, false);
-        const borders::OpenTable held = borders::slideFromTool(kFine, kind, east, true);
+        const borders::OpenTable lifted = borders::slideFromTool(kFine, {kind, east, 20, false});
+        const borders::OpenTable held = borders::slideFromTool(kFine, {kind, east, 20, true});
         const std::string name(base::nameOf(kind));
         ASSERT_LT(lifted.missing, 2) << "only where the slopes to two rims meet";
         EXPECT_TRUE(held.atRest) << name;
