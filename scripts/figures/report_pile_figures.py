@@ -7,46 +7,51 @@ from report_data import frontier, held, usual_size
 from report_plot import MARKERS, PILES, SERIES, STYLES, label, legend_below, panels, percents, sizes_on
 
 
-def work_precision(table):
+def pile_figure(draw, columns=4):
+    """Calls draw(axis, pile, title) for a panel of each pile, with shares in percent. The legend has so many columns."""
     figure, axes = panels(2)
-    size = usual_size(table)
     for axis, (pile, title) in zip(axes, PILES.items()):
-        for method, style in STYLES.items():
-            rows = table.where(pile=pile, method=method, N=size)
-            seconds = [row["seconds_median"] for row in rows]
-            axis.plot(seconds, [100 * row["misplaced"] for row in rows], label=method, **style)
-            axis.fill_betweenx([100 * row["misplaced"] for row in rows], [row["seconds_min"] for row in rows],
-                               [row["seconds_max"] for row in rows], color=style["color"], alpha=0.2, linewidth=0)
-        label(axis, "time [s], one thread", "sand in the wrong place [%]", f"{title}, N = {size}")
+        draw(axis, pile, title)
         percents(axis)
-    legend_below(figure, axes)
+    legend_below(figure, axes, columns)
     return figure
 
 
+def work_precision(table):
+    size = usual_size(table)
+
+    def draw(axis, pile, title):
+        for method, style in STYLES.items():
+            rows = table.where(pile=pile, method=method, N=size)
+            misplaced = [100 * row["misplaced"] for row in rows]
+            axis.plot([row["seconds_median"] for row in rows], misplaced, label=method, **style)
+            axis.fill_betweenx(misplaced, [row["seconds_min"] for row in rows], [row["seconds_max"] for row in rows],
+                               color=style["color"], alpha=0.2, linewidth=0)
+        label(axis, "time [s], one thread", "sand in the wrong place [%]", f"{title}, N = {size}")
+
+    return pile_figure(draw)
+
+
 def envelope(table):
-    figure, axes = panels(2)
-    for axis, (pile, title) in zip(axes, PILES.items()):
+    def draw(axis, pile, title):
         for method, style in STYLES.items():
             best = frontier(held(table.where(pile=pile, method=method)), "seconds_median", "misplaced")
             axis.plot([row["seconds_median"] for row in best], [100 * row["misplaced"] for row in best], label=method,
                       **style)
         label(axis, "least time over all N [s], one thread", "sand in the wrong place from then on [%]", title)
-        percents(axis)
-    legend_below(figure, axes)
-    return figure
+
+    return pile_figure(draw)
 
 
 def error_at_rest(table):
-    figure, axes = panels(2)
-    for axis, (pile, title) in zip(axes, PILES.items()):
+    def draw(axis, pile, title):
         for method, style in STYLES.items():
             rows = table.where(pile=pile, method=method)
             axis.plot([row["N"] for row in rows], [100 * row["misplaced"] for row in rows], label=method, **style)
         label(axis, "N [cells]", "sand in the wrong place at rest [%]", title)
         sizes_on(axis, table.distinct("N", pile=pile))
-        percents(axis)
-    legend_below(figure, axes)
-    return figure
+
+    return pile_figure(draw)
 
 
 def sweeps(table):
@@ -141,8 +146,7 @@ def mass_drift(table):
 
 
 def certificate(table):
-    figure, axes = panels(2)
-    for axis, (pile, title) in zip(axes, PILES.items()):
+    def draw(axis, pile, title):
         for method in table.distinct("method"):
             rows = table.where(pile=pile, method=method)
             for column, line in (("bound", "-"), ("truth", ":")):
@@ -151,9 +155,8 @@ def certificate(table):
                           label=f"{method}, {'proved' if column == 'bound' else 'true'}", **style)
         label(axis, "N [cells]", "squared distance to the projection,\nshare of that moved [%]", title)
         sizes_on(axis, table.distinct("N"))
-        percents(axis)
-    legend_below(figure, axes, 3)
-    return figure
+
+    return pile_figure(draw, 3)
 
 
 def budget(table):
