@@ -17,7 +17,7 @@
 
 namespace master {
 
-/// What a step has not done, although the journal holds it. See sand::Replica::leftOut().
+/// A part of a step that had no effect, although the journal holds it. See sand::Replica::leftOut().
 struct LeftOut {
     std::uint64_t step = 0;
     std::string what;
@@ -84,7 +84,7 @@ public:
     [[nodiscard]] std::optional<std::uint64_t> settlingSince() const { return settlingSince_; }
     /// Returns the number of steps with a press that was refused (sand::Replica::refusedPress()), since the last start.
     [[nodiscard]] std::uint64_t stepsUnplaced() const { return stepsUnplaced_; }
-    /// Returns the first of these steps; 0 if there is none.
+    /// Returns the number of the first of these steps, or 0.
     [[nodiscard]] std::uint64_t firstStepUnplaced() const { return firstStepUnplaced_; }
     /// Returns the number of steps with an edit since the session began.
     [[nodiscard]] std::uint64_t edits() const { return edits_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The status of a session while it runs: for operators, for the log, and for the file of incidents.
+// The status of a running session. Operators, the log and the file of incidents show it.
 #include <fmt/format.h>
 
 #include <cstddef>

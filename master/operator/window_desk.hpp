@@ -32,14 +32,14 @@ public:
     };
 
     /// `pointer`: all keys of lockstep::keyList() act, because the hand is the pointer. `out` is the folder of the
-    /// session. What `desk` refers to must outlive this object.
+    /// session. The objects that `desk` refers to must outlive this one.
     WindowDesk(const scene::Scene& scene, std::filesystem::path out, bool pointer, Desk desk);
 
     /// Carries out a key that was pressed in a window of `rank`.
     void obey(base::Keystroke key, int rank);
-    /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. Where the view
-    /// is fixed, the wheels count as PointerReport::depth instead. An attempt to move a fixed view is answered in
-    /// its window.
+    /// Moves the view as the pointers in the ranks' windows have dragged it, and zooms by their wheels. If the view is
+    /// fixed, the wheels count as PointerReport::depth instead. An attempt to move a fixed view is answered in its
+    /// window.
     void moveView(std::span<haptic_bridge::PointerReport> pointers);
     /// Changes depth and size of the tool as the wheels have turned. Call it after moveView().
     void turnWheels(std::span<const haptic_bridge::PointerReport> pointers);
