@@ -72,7 +72,7 @@ void tinActive(const Settings& settings, Csv& csv) {
         "100 sweeps after a cone of about 1000 vertices has been put on level sand, in another place in every run;");
     csv.note("first: the mesh's weights must be computed; again: they are known; mean over the vertices that moved");
     csv.columns("N,vertices,raised,moved,first_ms,again_ms,first_ns_per_vertex_sweep,again_ns_per_vertex_sweep");
-    constexpr int kSweeps = 100;
+    constexpr int kTimedSweeps = 100;
     for (const int side : settings.sizes) {
         VertexSand layer = tin_piles::layerOf(Kind::jittered, side, 0, settings.seed);
         sand::tin::Erosion erosion(layer, kSteepest, kSteepest);
@@ -93,14 +93,14 @@ void tinActive(const Settings& settings, Csv& csv) {
                 moved.clear();
                 return 1000 * secondsOf([&] {
                            erosion.wake(raised);
-                           erosion.sweep(layer, kSweeps, nullptr, moved);
+                           erosion.sweep(layer, kTimedSweeps, nullptr, moved);
                        });
             };
             const double first = milliseconds();
-            const double perVertex = 1e6 * first / kSweeps / static_cast<double>(moved.size());
+            const double perVertex = 1e6 * first / kTimedSweeps / static_cast<double>(moved.size());
             const double again = milliseconds();
             csv.row(side, layer.mesh().vertexCount(), raised.size(), moved.size(), first, again, perVertex,
-                    1e6 * again / kSweeps / static_cast<double>(moved.size()));
+                    1e6 * again / kTimedSweeps / static_cast<double>(moved.size()));
             for (const sand::tin::Vertex v : moved) {
                 layer.setHeight(v, 0);
             }
