@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Words of the report that depend on figures."""
 
+from report_data import rounded
+
 
 def listing(words):
     """Returns "a, b and c"."""
@@ -22,7 +24,7 @@ def times(new, old):
     if old <= 0:
         return "as much as 0" if new == old else "more than 0"
     ratio = new / old
-    return f"{ratio:.3g} times" if ratio >= 1 else f"{ratio:.2g} times"
+    return f"{rounded(ratio, 3 if ratio >= 1 else 2)} times"
 
 
 def convergence(orders):

@@ -118,11 +118,6 @@ def usual_size(table):
     return 128 if 128 in table.distinct("N") else table.distinct("N")[-1]
 
 
-def kind(row):
-    """Returns the kind of sand of a row, "grid" or "TIN"."""
-    return row.get("sand", "grid")
-
-
 def held(rows):
     """Returns runs of one pile in which each row's error is replaced by the worst error from there to the run's end.
 
@@ -154,8 +149,13 @@ def least_seconds(rows, error):
     return min(good) if good else None
 
 
+def rounded(value, digits):
+    """Returns a number with so many significant digits. Only numbers from a million and below 0.0001 get an exponent."""
+    return f"{float(f'{value:.{digits}g}'):g}"
+
+
 def percent(share, digits=2):
-    return f"{100 * share:.{digits}g} %"
+    return f"{rounded(100 * share, digits)} %"
 
 
 def markdown(header, rows):
@@ -164,4 +164,4 @@ def markdown(header, rows):
 
 
 def seconds(value):
-    return "never" if value is None else f"{value:.2g} s" if value >= 1 else f"{value * 1e3:.3g} ms" if value >= 1e-3 else f"{float(f'{value * 1e6:.2g}'):g} µs"
+    return "never" if value is None else f"{value:.2g} s" if value >= 1 else f"{value * 1e3:.3g} ms" if value >= 1e-3 else f"{rounded(value * 1e6, 2)} µs"

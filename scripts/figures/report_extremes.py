@@ -2,7 +2,7 @@
 """Text of the report on sand at the ends of its ranges. The verdicts are made from the figures of the table."""
 
 from report_claims import count_of, listing
-from report_data import markdown
+from report_data import markdown, rounded
 
 MEASURES = {"slope": "slope over the talus", "face": "difference over the talus", "thickness": "thickness"}
 
@@ -26,9 +26,9 @@ def extremes(tables):
     lines = []
     for row in table.rows:
         wrong = faults(row)
-        bound = "no motion" if row["stays"] else f"{row['bound']:.4g}"
-        lines.append([row["world"], f"{row['band']:g}", row["sweeps"], row["lost"], MEASURES[row["measure"]], f"{row['start']:.4g}",
-                      f"{row['excess']:.4g}", bound, "no sand may move" if row["stays"] else row["why"],
+        bound = "no motion" if row["stays"] else rounded(row["bound"], 4)
+        lines.append([row["world"], f"{row['band']:g}", row["sweeps"], row["lost"], MEASURES[row["measure"]], rounded(row["start"], 4),
+                      rounded(row["excess"], 4), bound, "no sand may move" if row["stays"] else row["why"],
                       f"**{listing(wrong)}**" if wrong else "holds"])
     bad = [row for row in table.rows if faults(row)]
     nearest = max((row for row in table.rows if row["bound"] != "" and not row["stays"]), key=lambda row: row["excess"] / row["bound"])

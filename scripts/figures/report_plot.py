@@ -50,7 +50,11 @@ def sizes_on(axis, sizes):
 
 
 def percents(axis):
+    """Writes the numbers of the vertical axis without exponents, also those between powers of ten where few of these are shown."""
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    low, high = axis.get_ylim()
+    if axis.get_yscale() == "log" and high < 10 * low:
+        axis.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def legend_below(figure, axes, columns=4):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of docs/report about steps, forces and TINs. Each function takes a table and returns a matplotlib figure."""
 
-from report_data import IN_TIME, kind
+from report_data import IN_TIME
 from report_plot import MARKERS, PILES, SERIES, label, legend_below, panels, percents, sizes_on
 
 
@@ -24,12 +24,12 @@ def dig(table):
     figure, axes = panels(2)
     tools = {}  # the largest field for each kind of sand and each tool
     for row in table.where(cells_per_step=1.5):
-        tool = (kind(row), row["R"])
+        tool = (row["sand"], row["R"])
         tools[tool] = max(row["N"], tools.get(tool, 0))
     radii = sorted({radius for _, radius in tools}, reverse=True)
     for (sand, radius), size in tools.items():
         place = radii.index(radius)
-        rows = [row for row in table.where(N=size, R=radius, cells_per_step=1.5) if kind(row) == sand]
+        rows = table.where(N=size, R=radius, cells_per_step=1.5, sand=sand)
         for axis, x in ((axes[0], "ms_p99"), (axes[1], "sweeps_per_step")):
             axis.plot([row[x] for row in rows], [100 * row["misplaced_held"] for row in rows], color=SERIES[place % len(SERIES)],
                       marker=MARKERS[place % len(MARKERS)], linestyle="--" if sand == "TIN" else "-",
@@ -136,7 +136,7 @@ def tin_piles(table):
             sizes = table.distinct("N", mesh=mesh, pile=pile)
             turns = [table.where(mesh=mesh, pile=pile, N=size) for size in sizes]
             errors = [[100 * row["error"] for row in rows] for rows in turns]
-            for axis, x in zip(axes, ("vertices", "seconds_median" if "seconds_median" in table.columns else "seconds")):
+            for axis, x in zip(axes, ("vertices", "seconds_median")):
                 middle = [sum(row[x] for row in rows) / len(rows) for rows in turns]
                 axis.plot(middle, [sum(some) / len(some) for some in errors], color=colour, marker=marker,
                           linestyle=line, label=f"{mesh} mesh, {names[pile]}")
@@ -159,11 +159,11 @@ def tin_simplify(table):
                 axis.plot([row[vertices] for row in rows], [100 * row[prefix + error] / row["relief"] for row in rows],
                           color=colour, marker=marker, linestyle=line, label=f"{what} of {size}² samples")
             label(axis, "vertices", f"{name} [% of the relief]", name)
-        for error, line in (("max", "-"), ("rms", ":")):
+        for error, line, name in (("max", "-", "largest"), ("rms", ":", "RMS")):
             axes[2].plot([row["ms_median"] for row in rows], [100 * row[error] / row["relief"] for row in rows],
-                         color=colour, marker=marker, linestyle=line, label=f"TIN of {size}², {error}")
+                         color=colour, marker=marker, linestyle=line, label=f"TIN of {size}² samples, {name} by the time")
     label(axes[2], "time [ms], one thread", "error [% of the relief]", "by the time it takes")
     for axis in axes:
         percents(axis)
-        axis.legend()
+    legend_below(figure, axes)
     return figure

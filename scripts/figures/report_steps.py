@@ -2,7 +2,7 @@
 """Text of the report on steps, pictures and builds. Every number and every result in it comes from the tables."""
 
 from report_claims import count_of, listing, times
-from report_data import IN_TIME, kind, markdown, percent
+from report_data import IN_TIME, markdown, percent, rounded
 from report_parts import PRESETS
 
 
@@ -18,27 +18,25 @@ def edit(tables):
                  for r in radii)
     tools = max(ms(sizes[-1], r, "active") for r in radii) / min(ms(sizes[-1], r, "active") for r in radii)
     depends = "has one N here, so that nothing is known about the field" if len(sizes) < 2 else "depends on the tool, and hardly on the field" if across < 2 <= tools else "depends on the field, too" if across >= 2 else "hardly depends on tool or field"
-    same = ""
-    if "hash" in table.columns:
-        pairs = [(size, r) for size in sizes for r in table.distinct("radius", N=size)]
-        equal = count_of(pairs, lambda pair: len(table.distinct("hash", N=pair[0], radius=pair[1])) == 1, "pair")
-        same = f" Both ways give the same hash of the sand in {equal} of N and tool."
+    pairs = [(size, r) for size in sizes for r in table.distinct("radius", N=size)]
+    equal = count_of(pairs, lambda pair: len(table.distinct("hash", N=pair[0], radius=pair[1])) == 1, "pair")
     return (f"The figure shows the time for one press into level sand and 16 sweeps. With active blocks the time {depends}: from "
             f"N = {sizes[0]} to {sizes[-1]} it changes by a factor of at most {across:.2g}, and from the smallest tool to the largest by "
             f"{tools:.2g}. Visiting all blocks instead takes {times(ms(sizes[-1], 12, 'full'), ms(sizes[-1], 12, 'active'))} as long "
-            f"at N = {sizes[-1]} with a tool of 12 cells.{same}")
+            f"at N = {sizes[-1]} with a tool of 12 cells. "
+            f"Both ways give the same hash of the sand in {equal} of N and tool.")
 
 
 def dig(tables):
     table = tables["dig"]
     size = table.distinct("N")[-1]
-    of_tin = max((row["N"] for row in table.rows if kind(row) == "TIN"), default=0)
-    shown = [row for row in table.some(cells_per_step=1.5) if row["N"] == (of_tin if kind(row) == "TIN" else size)]
-    lines = [[kind(row), row["N"], row["R"], row["cells_per_step"], row["sweeps_per_step"], f"{row['ms_p50']:.2f}", f"{row['ms_p99']:.2f}",
+    of_tin = max(table.values("N", sand="TIN"))
+    shown = [row for row in table.some(cells_per_step=1.5) if row["N"] == (of_tin if row["sand"] == "TIN" else size)]
+    lines = [[row["sand"], row["N"], row["R"], row["cells_per_step"], row["sweeps_per_step"], f"{row['ms_p50']:.2f}", f"{row['ms_p99']:.2f}",
               percent(row["misplaced_held"]), percent(row["misplaced_lifted"]), f"{row['bank']:.0f}", f"{row['bank_reach']:.0f}",
               row["steps_after"]] for row in shown]
     idle = max(table.values("idle_us"))
-    tools = dict.fromkeys((kind(row), row["N"], row["R"]) for row in shown)
+    tools = dict.fromkeys((row["sand"], row["N"], row["R"]) for row in shown)
     return ("A sphere is dragged along the diagonal for 200 steps, with its centre at the level of the sand.\n\n"
             "- *behind*: sand behind the hand. This is the sum of |height − height once settled|, divided by the sum of "
             "|height once settled − level|. The tool stays in the sand.\n"
@@ -55,7 +53,7 @@ def dig(tables):
 
 
 def best_in_time(table, of_kind, size, radius):
-    rows = [row for row in table.some(N=size, R=radius) if kind(row) == of_kind and row["ms_p99"] <= IN_TIME]
+    rows = [row for row in table.some(N=size, R=radius, sand=of_kind) if row["ms_p99"] <= IN_TIME]
     tool = f"R = {radius:g} on the {of_kind} of N = {size}"
     if not rows:
         return f"{tool}, no row is so fast"
@@ -87,7 +85,7 @@ def throughput(tables):
 
 def parts(tables):
     table = tables["parts"]
-    lines = [[r["N"], r["ground"], r["state"], f"{r['us_median']:.3g}", r["sweeps"], f"{r['bytes'] / 2**20:.1f}"]
+    lines = [[r["N"], r["ground"], r["state"], rounded(r["us_median"], 3), r["sweeps"], f"{r['bytes'] / 2**20:.1f}"]
              for r in table.rows]
     size = table.distinct("N")[-1]
     settled = table.some(state="settled")
@@ -150,7 +148,7 @@ def hashes(tables):
         table = tables["ranks"]
         same = count_of(table.rows, lambda r: r["session_hash"] == r["replay_hash"] and r["divergences"] == 0, "session")
         rows = [[r["ranks"], f"{r['session_hash']}", f"{r['replay_hash']}", r["divergences"]] for r in table.rows]
-        text += ("\n\nIn whole sessions of 60 steps, all ranks compare their hashes in each frame. One process then replays the "
+        text += ("\n\nIn whole sessions of 60 steps, ranks compare their hashes in each frame. One process then replays the "
                  f"journal. It gets the same hash, and no rank differs, in {same}.\n\n" +
                  markdown(["render ranks", "hash of the session", "hash of the replay", "divergences"], rows))
     return text

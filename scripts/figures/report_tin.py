@@ -16,7 +16,7 @@ def tin_piles(tables):
             iterations, sweeps = ([row[what] for row in rows] for what in ("iterations", "sweeps"))
             lines.append([pile, mesh, rows[0]["vertices"], percent(min(errors)), percent(max(errors)),
                           f"{min(iterations)} … {max(iterations)}", f"{min(sweeps)} … {max(sweeps)}",
-                          seconds(max(row.get("seconds_median", row.get("seconds")) for row in rows)),
+                          seconds(max(row["seconds_median"] for row in rows)),
                           "yes" if all(row["settled"] and row["exact"] for row in rows) else "**no**"])
     rested = count_of(table.rows, lambda r: r["settled"] and r["exact"], "row")
     turned = max(max(errors) / min(errors) for errors in
