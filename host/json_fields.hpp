@@ -145,7 +145,7 @@ template <class AnyJson, class Member>
     }
 }
 
-/// Reads fields from the object `json`. Of all numbers, it takes those from 0 to kMostInJson.
+/// Reads fields from the object `json`. It takes numbers from 0 to kMostInJson.
 class JsonReader {
 public:
     explicit JsonReader(const nlohmann::ordered_json& json) : json_(json) {}

@@ -24,7 +24,7 @@ struct LeftOut {
     bool refused = false;  // sand::Replica::refusedStep()
 };
 
-/// How a settle by sweeps has ended.
+/// The end of a settle by sweeps.
 enum class SettleEnd : std::uint8_t {
     rest,  // all sand came to rest
     hand,  // an engaged tool moved

@@ -96,7 +96,7 @@ public:
     ///
     /// A step may leave out a part of itself. Every replica does so alike, because state and step alone decide:
     /// - The whole step is left out if it moves an engaged tool while sweeps are owed, or if it runs more sweeps than
-    ///   are owed. Nothing but the step number changes. A program that numbers steps correctly makes no such step.
+    ///   are owed. Only the step number changes. A program that numbers steps correctly makes no such step.
     /// - A load whose bytes are not sand for this field is ignored. The step then runs its sweeps.
     /// - An undo is ignored if canUndo() is false. The step then runs its sweeps.
     /// - A path is ignored, except for its end, if it is so long and the tool so large that the step would take

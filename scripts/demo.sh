@@ -3,7 +3,7 @@
 # Runs the demo without a display: a recorded hand writes "GIS" into sand on a passive-stereo wall of 3x4 tiles, which 12
 # render ranks draw.
 set -euo pipefail
-umask g-w,o-w  # what the sessions read, only this user may write
+umask g-w,o-w  # only this user may write the files that sessions read
 root=$(cd "$(dirname "$0")/.." && pwd)
 
 out="$root/out/demo"

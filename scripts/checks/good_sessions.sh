@@ -5,7 +5,7 @@
 #
 # usage: scripts/checks/good_sessions.sh [--out DIR] [--steps N]      (N: steps on each sample wall, default 60)
 set -uo pipefail
-umask g-w,o-w  # what the sessions read, only this user may write
+umask g-w,o-w  # only this user may write the files that sessions read
 root=$(cd "$(dirname "$0")/../.." && pwd)
 out="$root/out/good" steps=60
 while [[ $# -gt 0 ]]; do

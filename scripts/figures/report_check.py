@@ -32,7 +32,7 @@ def same(a, b):
 
 
 def more_rows(old, new):
-    """Returns a line for each N of the new table of which the old one has more rows."""
+    """Returns a line for each N of the new table that has more rows in the old one."""
     sizes = new.distinct("N") if "N" in new.columns and "N" in old.columns else []
     counts = ((size, len(old.where(N=size)), len(new.where(N=size))) for size in sizes)
     return [f"{old.path.name}: has {was} rows with N = {size}, and now {now}" for size, was, now in counts if was > now]

@@ -48,7 +48,7 @@ class Table:
     def _row(self, place, row):
         if "more" in row or None in row.values():
             raise TableFault(f"{self.path.name}: row {place} has not as many values as the table has columns")
-        # A hash is no number, although it may consist of digits alone, or of digits with one e.
+        # A hash stays text, although it may consist of digits alone, or of digits with one e.
         read = {column: text if column.endswith("hash") else number(text) for column, text in row.items()}
         for column, value in read.items():
             empty = value == "" and column not in MAY_BE_EMPTY
