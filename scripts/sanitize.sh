@@ -27,7 +27,7 @@ sessions() {
     echo "== sessions with the address and undefined sanitizers"
     export UBSAN_OPTIONS=print_stacktrace=1
     local suites='Lockstep|Recovery|Ending|Drill|Healing|Resuming|Operator|HeadTracking|BadInput|BadLink|ForeignBuild'
-    suites+='|WrongServer|Watched|FloatEnvironment'
+    suites+='|WrongServer|Watched|FloatEnvironment|Spread'
     ctest --test-dir build/asan/tests/cluster --output-on-failure --no-tests=error -R "^($suites)\."
 }
 
