@@ -114,7 +114,8 @@ TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
         << session->output();
     EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
     const int linked = ask("status")["step"];
-    // The report is not good if the hand felt stale sand for half of the time. On a loaded machine a frame takes a second.
+    // The report is not good if the hand felt stale sand for half of the time. On a loaded machine a frame may take a
+    // second.
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 150; });
     session->signal(SIGINT);
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
