@@ -47,11 +47,11 @@ struct ForceLimits {
     double maxForce = 0;            // [N]
     double slew = 0;                // [N/tick]
     double stepSeconds = 1.0 / 60;  // [s], time from one step to the next
-    double heldSteps = 0;      // [step], time for which a force counts as held; 0: it is computed at every tick
-    double gain = 1;           // factor on the law, so that it is at most as stiff as K at a depth of one radius
-    double lawStiffness = 0;   // [N/m], stiffness of the law with that gain
-    double resolution = 0;     // [m], of a place that reaches the law
-    double fastestThing = 20;  // [m/s], faster than any tip of an arm; infinite for a recording
+    double heldSteps = 0;           // [step], time for which a force counts as held; 0: it is computed at every tick
+    double gain = 1;                // factor on the law, so that it is at most as stiff as K at a depth of one radius
+    double lawStiffness = 0;        // [N/m], stiffness of the law with that gain
+    double resolution = 0;          // [m], of a place that reaches the law
+    double fastestThing = 20;       // [m/s], faster than any tip of an arm; infinite for a recording
     ArmPhysics arm;
 
     /// Returns the limits of `arm` at `scale` [scene unit/m]. `probeStep` [m] is the rounding of places on their way

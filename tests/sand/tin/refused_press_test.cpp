@@ -20,14 +20,14 @@ constexpr int kSide = 24;          // [cell]
 constexpr int kBelow = 2;          // [cell], of the sand below the largest height
 constexpr double kToolRadius = 6;  // [cell]
 
-/// Returns a TIN of level sand. With `divided`, two walls from rim to rim divide it into three parts.
+/// Returns a TIN of level sand. With `divided`, walls from rim to rim leave three strips, which are three parts.
 scene::Scene highScene(bool divided) {
     scene::Scene scene = samples::flatScene(kSide, kSide, kToolRadius);
     sand::Ground walls(kSide, kSide);
     for (int row = 0; row < kSide; ++row) {
         for (int column = 0; column < kSide; ++column) {
             scene.terrain.setHeight(column, row, sand::kMaxHeight - kBelow * sand::kUnitsPerCell);
-            if (divided && (column == 9 || column == 14)) {
+            if (divided && (column < 7 || column == 9 || column == 14 || column > 16)) {
                 walls.setWall(column, row);
             }
         }
