@@ -13,7 +13,6 @@
 namespace {
 
 using base::Keystroke;
-using haptic_bridge::TimedStep;
 using nlohmann::json;
 
 using Desk = test::OperatorDeskTest;

@@ -9,7 +9,6 @@
 
 namespace {
 
-using haptic_bridge::FrameCost;
 using haptic_bridge::Pace;
 using haptic_bridge::SweepBudget;
 using sand::Step;
