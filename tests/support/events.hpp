@@ -54,11 +54,14 @@ inline std::vector<nlohmann::json> eventsIn(const std::string& output, std::stri
 }
 
 /// Returns the output without its events: the text that a person reads.
+///
+/// Leaves out a warning of mpirun, which it prints on a loaded machine if a process that it has begun is quick.
 inline std::string messagesIn(const std::string& output) {
     std::istringstream lines(output);
     std::string text;
     for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with("@sandwall ")) {
+        const bool ofMpirun = line.find("plm:rsh: Warning: setpgid(") != std::string::npos;
+        if (!line.starts_with("@sandwall ") && !ofMpirun) {
             text += line + "\n";
         }
     }

@@ -235,8 +235,10 @@ TEST_F(JournalFile, RefusesWhatIsNoJournal) {
     EXPECT_THROW((void)master::readJournal(file_), base::InputError);
     writeSession(true);
     std::fstream stream(file_, std::ios::in | std::ios::out | std::ios::binary);
-    stream.seekp(30);  // in the header
-    stream.put('\x7f');
+    stream.seekg(30);  // in the header
+    const int byte = stream.get();
+    stream.seekp(30);
+    stream.put(static_cast<char>(byte ^ 1));
     stream.close();
     EXPECT_THROW((void)master::readJournal(file_), base::InputError);
 }
