@@ -27,7 +27,9 @@ export async function serve(session) {
         server.stdout.once("data", (line) => resolve(String(line).trim()));
         server.once("exit", () => reject(new Error("sandwall web has ended")));
     });
-    return { address, end: () => server.kill() };
+    const kill = () => server.kill();
+    process.once("exit", kill);  // of a test that fails, too
+    return { address, end: () => { process.off("exit", kill); kill(); } };
 }
 
 /** Collects what a page complains about: errors, and requests to other servers. */
