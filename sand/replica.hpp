@@ -76,9 +76,9 @@ public:
     ///
     /// 1. An engaged tool displaces sand along step.path.
     /// 2. step.edit is done.
-    /// 3. The sand slides for step.sweeps sweeps, which are a part of those that are owed.
+    /// 3. The sand slides for step.sweeps sweeps, a part of the owed ones.
     ///
-    /// **What is owed.** If nothing is owed when a step begins, the step owes Tuning::sweepsPerStep sweeps. It pays
+    /// **Owed sweeps.** If nothing is owed when a step begins, the step owes Tuning::sweepsPerStep sweeps. It pays
     /// some of them, and the steps after it pay the rest. A step that begins while sweeps are owed owes no sweeps of
     /// its own, and must not move an engaged tool: engaging, lifting, turning and each point of a path are movements.
     /// So the sand does not depend on how sweeps are divided among steps. A sweep that moves no sand ends what is owed.
@@ -88,8 +88,8 @@ public:
     /// - A reset, a load or an undo restores sand, outflow and inertia. On a TIN, only an undo also restores which sand
     ///   moves. Step number, probe, tool and material are not restored. Such a step runs no sweeps, so that it ends
     ///   with exactly the restored sand. Nothing is owed after it. An engaged tool then presses once.
-    /// - A tune takes the place of what was owed: the step owes the new Tuning::sweepsPerStep.
-    /// - A settle takes that place too. It brings all sand to rest within its step. With an engaged tool, and on a
+    /// - A tune replaces the owed sweeps: the step owes the new Tuning::sweepsPerStep.
+    /// - A settle replaces them, too. It brings all sand to rest within its step. With an engaged tool, and on a
     ///   height field with rock or walls, the sand settles by sweeps instead. An engaged tool is then an obstacle.
     ///   These sweeps are owed until all sand is at rest, or until an engaged tool moves. On a TIN, each step runs at
     ///   most settlingSweeps() of them, or Tuning::sweepsPerStep if that is more.
@@ -117,14 +117,14 @@ public:
     /// Returns the work of the last step that was applied. The number of sweeps may differ between equal replicas.
     [[nodiscard]] const StepWork& lastWork() const { return lastWork_; }
     /// Returns one line about what the last apply() has left out: an ignored load, an ignored path, or the whole step.
-    /// Returns an empty text if there was none of these. An ignored undo does not count.
+    /// Returns an empty text if it has done the whole step. An ignored undo does not count.
     [[nodiscard]] const std::string& leftOut() const { return leftOut_; }
-    /// Returns whether the last apply() has left out the whole step because of what was owed.
+    /// Returns whether the last apply() has left out the whole step because of the owed sweeps.
     [[nodiscard]] bool refusedStep() const { return refusedStep_; }
 
     /// Returns whether a press in the last apply() was refused.
     [[nodiscard]] bool refusedPress() const { return refusedPress_; }
-    /// Returns the first press that was refused since the replica was made; nullopt if there was none.
+    /// Returns the first press that was refused since the replica was made, or nullopt.
     [[nodiscard]] const std::optional<RefusedPress>& firstRefusedPress() const {
         return surface_->refusedPresses().first;
     }
@@ -215,12 +215,12 @@ private:
     [[nodiscard]] StateHead head() const;
     /// Returns whether `step` moves a tool that is in the sand before the step or after it.
     [[nodiscard]] bool movesTool(const Step& step) const;
-    /// Returns what is owed when `step` has begun, before its sweeps. Assumes that an undo, reset or load has no
-    /// effect.
+    /// Returns the sweeps that are owed when `step` has begun, before it runs any. Assumes that an undo, reset or load
+    /// has no effect.
     [[nodiscard]] Owed owedBy(const Step& step) const;
     /// Returns the sweeps in which a step without Step::sweeps pays `owed`.
     [[nodiscard]] std::int32_t wholeOf(const Owed& owed) const;
-    /// Returns why `step` must be left out because of what is owed, or an empty text.
+    /// Returns why `step` must be left out because of the owed sweeps, or an empty text.
     [[nodiscard]] std::string whyRefused(const Step& step) const;
     void tune(const Tuning& tuning);
     /// Displaces the sand below the tool at its current position.

@@ -285,7 +285,7 @@ int main(int argc, char** argv) {
     line.option("--seed", options.seed, "of the first random scene").showDefault();
     return host::runMain(line, argc, argv, [&] {
         if (options.search > 0) {
-            return borders::search(options.search, options.seed) ? 0 : 1;
+            return borders::playRandomScenes(options.search, options.seed) ? 0 : 1;
         }
         if (!options.dig.empty()) {
             return dig(options.dig, options.steps) ? 0 : 1;

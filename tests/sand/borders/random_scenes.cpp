@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <random>
 #include <string>
 #include <vector>
@@ -116,7 +119,7 @@ std::string playRandom(std::uint32_t seed) {
 
 }  // namespace
 
-bool search(int scenes, std::uint32_t seed) {
+bool playRandomScenes(int scenes, std::uint32_t seed) {
     int wrong = 0;
     for (int i = 0; i < scenes; ++i) {
         std::string why;

@@ -8,6 +8,6 @@ namespace borders {
 /// Plays `scenes` random sessions with walls, holes, rims and tools, the first with `seed`. Compares the volume of
 /// every part that walls or holes separate, to the unit, and the hash of a replica that loads the last state. Prints
 /// each scene that is wrong. Returns whether none is.
-bool search(int scenes, std::uint32_t seed);
+bool playRandomScenes(int scenes, std::uint32_t seed);
 
 }  // namespace borders
