@@ -8,19 +8,28 @@ import layout
 from rank_hosts import BadInput
 
 
-def complaint_of(ended):
-    lines = ended.stderr.strip().splitlines() or [f"the check of the display ended with status {ended.returncode}"]
-    return lines[-1].removeprefix("sandwall-render-node: ")
+LONGEST_PROBE = 60  # [s], of a render node that opens one window
+
+
+def probe(render_node, rank, *words, stdin=subprocess.DEVNULL):
+    """Returns the output of the render node's check of this desktop. Throws BadInput in one line if no window can be opened."""
+    try:
+        probed = subprocess.run([render_node, "--probe", rank, "--gl", "glfw", *words], stdin=stdin, capture_output=True, text=True,
+                                errors="replace", timeout=LONGEST_PROBE, check=False)
+    except subprocess.TimeoutExpired:
+        # GLFW waits without end for a window that a window manager has not shown, for example while it starts.
+        raise BadInput(f"the desktop has shown no window for {LONGEST_PROBE} s; look whether its window manager runs, and try again") from None
+    if probed.returncode != 0:
+        lines = probed.stderr.strip().splitlines() or [f"the check of the display ended with status {probed.returncode}"]
+        raise BadInput(lines[-1].removeprefix("sandwall-render-node: "))
+    return probed.stdout
 
 
 def work_area(render_node):
     """Returns the desktop's area for windows as WIDTHxHEIGHT+X+Y. Throws BadInput in one line if no window can be opened."""
-    probed = subprocess.run([render_node, "--probe", "0", "--gl", "glfw", "--json"], stdin=subprocess.DEVNULL, capture_output=True,
-                            text=True, errors="replace", check=False)
-    if probed.returncode != 0:
-        raise BadInput(complaint_of(probed))
+    said = probe(render_node, "0", "--json")
     try:
-        area = checked_json.parse(probed.stdout)["work_area"]
+        area = checked_json.parse(said)["work_area"]
         return "{width:d}x{height:d}+{x:d}+{y:d}".format(**area)
     except (ValueError, KeyError, TypeError):
         raise BadInput("the render node names no area of the desktop; " + layout.MEND) from None

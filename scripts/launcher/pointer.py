@@ -4,7 +4,6 @@
 import os
 import pathlib
 import shlex
-import subprocess
 
 import desk
 import layout
@@ -35,10 +34,11 @@ def windows_of(wall, render_node, check):
         raise BadInput(f"try: no X server accepts connections at DISPLAY={os.environ['DISPLAY']}; {ELSEWHERE}")
     words = desk.words_for(wall, render_node, check)
     if "--desk" not in words:
-        with open(wall, "rb") as text:
-            probed = subprocess.run([render_node, "--probe", "1", "--gl", "glfw"], stdin=text, capture_output=True, text=True, errors="replace")
-        if probed.returncode != 0:
-            raise BadInput(f"try: {desk.complaint_of(probed)}; {ELSEWHERE}")
+        try:
+            with open(wall, "rb") as text:
+                desk.probe(render_node, "1", stdin=text)
+        except BadInput as error:
+            raise BadInput(f"try: {error}; {ELSEWHERE}") from None
     return words
 
 

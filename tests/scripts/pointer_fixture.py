@@ -47,12 +47,23 @@ def edges(picture):
 
 
 class Display(x_server.XServer):
-    """A screen with a pointer and keys. Its pixels can be read. `manager` is the command of a window manager."""
+    """A screen with a pointer and keys. Its pixels can be read. `manager` is the command of openbox, if it has a window manager."""
 
     def __init__(self, width, height, manager=None):
         self.folder = tempfile.TemporaryDirectory(prefix="sandwall-screen-")
         super().__init__(f"{width}x{height}", "-fbdir", self.folder.name)
-        self.manager = manager and subprocess.Popen(manager, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.manager = manager and self.managed_by(manager)
+
+    def managed_by(self, manager):
+        """Starts a window manager, and waits until it has started. While it starts, it may overlook a new window."""
+        started = pathlib.Path(self.folder.name) / "started"
+        process = subprocess.Popen([*manager, "--startup", f"touch {started}"], env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.monotonic() + PATIENCE
+        while not started.exists():
+            if process.poll() is not None or time.monotonic() > deadline:
+                raise AssertionError(f"{manager[0]} has not started")
+            time.sleep(LOOK_AGAIN)
+        return process
 
     def do(self, *words):
         """Runs xdotool with these words, and returns what it prints."""

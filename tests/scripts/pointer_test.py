@@ -5,6 +5,7 @@
 usage: pointer_test.py   (SANDWALL_BIN: folder of the programs; SANDWALL_KEEP_PICTURES: folder for screenshots)
 """
 
+import pathlib
 import tempfile
 import unittest
 import unittest.mock
@@ -13,6 +14,7 @@ import pointer_fixture
 from pointer_fixture import launch
 
 import desk  # noqa: E402  (its folder is named by pointer_fixture)
+from rank_hosts import BadInput  # noqa: E402
 
 TILE = (160, 120)  # [pixel]
 # Four windows. Three are without gaps on one display, and that in the south-east is on a display of its own. The bezels
@@ -217,6 +219,14 @@ class Refused(unittest.TestCase):
         line = self.refused("try", DISPLAY=":987")
         self.assertIn("no X server accepts connections at DISPLAY=:987; ", line)
         self.assertIn("--gl osmesa", line)
+
+    def test_a_desktop_that_shows_no_window_is_not_awaited_without_end(self):
+        with tempfile.TemporaryDirectory() as folder, unittest.mock.patch.object(desk, "LONGEST_PROBE", 0.2):
+            node = pathlib.Path(folder) / "node"
+            node.write_text("#!/bin/sh\nexec sleep 100\n")
+            node.chmod(0o755)
+            with self.assertRaisesRegex(BadInput, "has shown no window for 0.2 s; look whether its window manager runs"):
+                desk.probe(node, "1")
 
     def test_unknown_names_list_the_known_ones(self):
         self.assertIn("dunes, ellipses", self.refused("try", "--scene", "nowhere"))
