@@ -6,7 +6,6 @@ The machine of the launcher decides at run time, because on a cluster the mpirun
 
 import dataclasses
 import glob
-import ipaddress
 import itertools
 import os
 import re
@@ -16,7 +15,7 @@ import stat
 import subprocess
 import tempfile
 
-from rank_hosts import HERE, BadInput
+from rank_hosts import HERE, BadInput, is_address
 
 SUPPORTED = "Sandwall supports Open MPI 4.1 and 5"
 ANSWER_SECONDS = 20
@@ -202,14 +201,6 @@ def passed_on(job):
             given.add(name)
             words += ["-x", word]
     return words
-
-
-def is_address(host):
-    try:
-        ipaddress.ip_address(host)
-        return True
-    except ValueError:
-        return False
 
 
 def current_umask():

@@ -24,30 +24,59 @@ class BadInput(Exception):
 
 
 def is_here(host):
-    """Returns whether `host` is a name of this machine. Its own name and the one in the list may be short or full."""
-    name = socket.gethostname()
-    if host in (HERE, "127.0.0.1", name):
+    """Returns whether `host` is a name or an address of this machine. Letters may be small or capital.
+
+    Its own name and the one in the list may be short or full. Another name of this machine has one of its addresses. A
+    loopback address is not enough for that, because files of hosts give it to many names.
+    """
+    host, name = plain(host), plain(socket.gethostname())
+    if host in (name, HERE) or host.startswith(f"{HERE}."):
         return True
+    found = addresses(host)
+    if any(is_own(address) and not is_loopback(address) for address in found):
+        return True
+    if is_address(host):
+        return any(map(is_own, found))
     # Machines of several domains may have the same first label, so that two full names must be equal.
     if host.split(".")[0] != name.split(".")[0] or ("." in host and "." in name):
         return False
-    return has_address_here(host) is not False
+    return not found or any(map(is_own, found))
 
 
-def has_address_here(host):
-    """Returns whether `host` has an address of this machine, or None if the name cannot be resolved."""
+def plain(host):
+    """Returns a name as all its spellings have it: in small letters, and without the dot that ends a full name."""
+    return host.lower().removesuffix(".")
+
+
+def is_address(host):
     try:
-        addresses = socket.getaddrinfo(host, None, type=socket.SOCK_DGRAM)
+        ipaddress.ip_address(host)
+        return True
+    except ValueError:
+        return False
+
+
+def addresses(host):
+    """Returns the addresses of `host` as (family, address). It has none if the name cannot be resolved."""
+    try:
+        return [(family, address) for family, _, _, _, address in socket.getaddrinfo(host, None, type=socket.SOCK_DGRAM)]
     except (OSError, UnicodeError):
-        return None
-    for family, kind, _, _, address in addresses:
-        with socket.socket(family, kind) as tried:
-            try:
-                tried.bind((address[0], 0, *address[2:]))  # only a machine's own addresses can be bound
-                return True
-            except OSError:
-                pass
-    return False
+        return []
+
+
+def is_own(found):
+    """Returns whether an address of addresses() is one of this machine. Only such an address can be bound."""
+    family, address = found
+    with socket.socket(family, socket.SOCK_DGRAM) as tried:
+        try:
+            tried.bind((address[0], 0, *address[2:]))
+            return True
+        except OSError:
+            return False
+
+
+def is_loopback(found):
+    return ipaddress.ip_address(found[1][0].partition("%")[0]).is_loopback
 
 
 def checked_host(host, where):
@@ -56,9 +85,15 @@ def checked_host(host, where):
     return HERE if is_here(host) else host
 
 
+def spelled_once(hosts):
+    """Returns `hosts` with the first spelling of each name. ssh and DNS take small and capital letters for the same."""
+    known = {}
+    return [known.setdefault(plain(host), host) for host in hosts]
+
+
 def hosts_of_wall(lines, wall):
     """Returns the host of every render rank, from the output of `sandwall-check WALL --hosts`."""
-    return [HERE if line == NO_HOST else checked_host(line, wall) for line in lines.split()]
+    return spelled_once([HERE if line == NO_HOST else checked_host(line, wall) for line in lines.split()])
 
 
 def hosts_of_file(path, ranks):
@@ -99,7 +134,8 @@ def entries_of_file(path):
             if spare:
                 words.remove("spare")
             entries.append((checked_host(words[0], where), slots_of(words[1:], where), spare))
-    return entries
+    names = spelled_once([host for host, _, _ in entries])
+    return [(name, slots, spare) for name, (_, slots, spare) in zip(names, entries)]
 
 
 def slots_of(words, where):

@@ -27,20 +27,24 @@ class HostsOfWall(unittest.TestCase):
 
 
 class ThisMachine(unittest.TestCase):
-    """This machine has the address 127.0.0.1 here. 192.0.2.1 is an address for documentation, which no machine has."""
+    """192.0.2.1 is an address for documentation. It is not one of this machine, unless a test says so with `own_address`."""
 
-    def here(self, own, listed, address):
+    def here(self, own, listed, address, own_address=None):
         def resolve(host, port, **kinds):
             if address is None:
                 raise socket.gaierror(f"{host} is unknown")
             return [(socket.AF_INET, socket.SOCK_DGRAM, 17, "", (address, 0))]
-        with mock.patch("socket.gethostname", return_value=own), mock.patch("socket.getaddrinfo", resolve):
+
+        def is_own(found):
+            return found[1][0] in ("127.0.0.1", "127.0.1.1", own_address)
+        with mock.patch("socket.gethostname", return_value=own), mock.patch("socket.getaddrinfo", resolve), \
+                mock.patch("rank_hosts.is_own", is_own):
             return rank_hosts.is_here(listed)
 
     def test_short_and_full_names_are_this_machine(self):
-        for own in ("node01", "node01.example.org"):
-            for listed in ("node01", "node01.example.org"):
-                for address in ("127.0.0.1", None):
+        for own in ("node01", "node01.example.org", "NODE01"):
+            for listed in ("node01", "node01.example.org", "NODE01", "Node01.Example.ORG.", "LocalHost", "localhost.localdomain"):
+                for address in ("127.0.0.1", "127.0.1.1", None):
                     self.assertTrue(self.here(own, listed, address), (own, listed, address))
 
     def test_a_machine_of_another_domain_is_not_this_one(self):
@@ -49,6 +53,19 @@ class ThisMachine(unittest.TestCase):
         self.assertFalse(self.here("node01", "node01.example.com", "192.0.2.1"))
         self.assertFalse(self.here("node01.example.org", "node01", "192.0.2.1"))
         self.assertFalse(self.here("node01", "node02", "127.0.0.1"))
+        self.assertFalse(self.here("node01", "node02", "192.0.2.1", own_address="192.0.2.7"))
+
+    def test_an_address_of_this_machine_is_this_machine(self):
+        for address in ("127.0.0.1", "127.0.1.1", "192.0.2.1"):
+            self.assertTrue(self.here("node01", address, address, own_address="192.0.2.1"), address)
+        self.assertFalse(self.here("node01", "192.0.2.1", "192.0.2.1"))
+
+    def test_another_name_with_an_address_of_this_machine_is_this_machine(self):
+        self.assertTrue(self.here("node01", "wall-head", "192.0.2.1", own_address="192.0.2.1"))
+
+    def test_the_addresses_that_the_system_knows_are_found(self):
+        self.assertTrue(all(rank_hosts.is_own(found) for found in rank_hosts.addresses("127.0.0.1")))
+        self.assertFalse(any(rank_hosts.is_own(found) for found in rank_hosts.addresses("203.0.113.9")))
 
 
 class HostsOfFile(unittest.TestCase):
@@ -79,6 +96,9 @@ class HostsOfFile(unittest.TestCase):
         self.assertEqual(self.hosts("a slots=0\n", 2), "FILE:1: slots must be from 1 to 1024, got 0")
         self.assertEqual(self.hosts("a slots=9999\n", 2), "FILE:1: slots must be from 1 to 1024, got 9999")
         self.assertIn("FILE:3: 'a,b' is not a host name", self.hosts("\n\na,b\n", 2))
+
+    def test_two_spellings_of_a_name_are_one_host(self):
+        self.assertEqual(self.hosts("node02\nNODE02\nnode02.\nnode03\n", 4), ["node02", "node02", "node02", "node03"])
 
     def test_a_file_in_any_encoding_is_read(self):
         text = "# B\u00fcro\r\nnode01 slots=2\r\n"
