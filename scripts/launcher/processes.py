@@ -40,11 +40,16 @@ def die_with(parent):
 
 
 class StopSignals:
-    """Counts the signals that ask the session to end. Create it before the first process is started."""
+    """Counts the signals that ask the session to end. Create it before the first process is started.
+
+    SIGHUP stays ignored if the launcher was started so, as nohup does. A shell without job control starts a command in the
+    background with SIGINT ignored, so that SIGINT counts in any case.
+    """
 
     def __init__(self):
         self.count = 0
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        hang_up = [] if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN else [signal.SIGHUP]
+        for number in (signal.SIGINT, signal.SIGTERM, *hang_up):
             signal.signal(number, self.add)
 
     def add(self, *_):

@@ -56,6 +56,25 @@ class Stopping(Supervised):
         process.communicate(timeout=60)
         self.assertEqual((process.returncode, len(self.commands())), (137, 1))
 
+    def test_a_connection_that_ends_stops_a_session_unless_nohup_has_started_it(self):
+        self.tries("until read -r -t 0.1 line; do progress 1 1; done; echo $line > $folder/asked; exit 0")
+        for command in ([], ["nohup"]):
+            (self.folder / "tries").unlink(missing_ok=True)
+            (self.folder / "asked").unlink(missing_ok=True)
+            (self.folder / "out/session.journal").unlink(missing_ok=True)
+            process = subprocess.Popen([*command, *self.command(["-"])], env=self.environment, stdin=subprocess.PIPE,
+                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.wait_for("journal", (self.folder / "out/session.journal").exists)
+            process.send_signal(signal.SIGHUP)
+            if command:
+                for _ in range(10):  # the launcher looks for signals between two of these lines
+                    self.assertEqual(process.stdout.readline(), "a line of progress\n")
+                process.stdin.write("typed\n")
+                process.stdin.flush()
+            error = process.communicate(timeout=60)[1]
+            self.assertEqual((process.returncode, (self.folder / "asked").read_text()), (0, "typed\n" if command else "stop\n"), error)
+            self.assertEqual("stopping" in error, not command)
+
     def test_ctrl_c_ends_a_wait_between_two_tries(self):
         # From the second restart on, the launcher waits before a restart.
         self.tries(*["progress 1 1; dies 1 host 9"] * 9)
