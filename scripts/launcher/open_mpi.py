@@ -21,9 +21,15 @@ SUPPORTED = "Sandwall supports Open MPI 4.1 and 5"
 ANSWER_SECONDS = 20
 VERSION = re.compile(r"^mpirun \(Open MPI\) (([0-9]{1,4})\.([0-9]{1,4})\S{0,40})$", re.MULTILINE)
 AGENTS = ("OMPI_MCA_plm_rsh_agent", "PRTE_MCA_plm_ssh_agent")  # each names a program in place of ssh
-# Variables that a scheduler sets in a job, and its name in Open MPI 5.
-SCHEDULERS = {"SLURM_JOB_ID": "slurm", "SLURM_JOBID": "slurm", "PBS_JOBID": "pbs", "LSB_JOBID": "lsf", "PE_HOSTFILE": "gridengine",
-              "FLUX_JOB_ID": "flux"}
+# The launcher chooses the hosts. mpirun must not take them from the file of hosts or the default host of a user's or a site's Open MPI,
+# or from a scheduler, such as a shell of salloc or Grid Engine.
+OWN_HOSTS_4 = {"orte_default_hostfile": "none", "orte_default_dash_host": "none", "ras": "^slurm,gridengine,tm,loadleveler,lsf,alps",
+               "plm": "^slurm,tm,lsf,alps", "plm_rsh_disable_qrsh": "1", "plm_rsh_disable_llspawn": "1"}
+OWN_HOSTS_5 = {"PRTE_MCA_prte_default_hostfile": "none", "PRTE_MCA_prte_default_dash_host": "none"}
+IN_SCHEDULERS_JOB_5 = {"PRTE_MCA_plm": "ssh", "PRTE_MCA_ras": "^slurm,pbs,lsf,gridengine,flux"}
+SCHEDULERS = ("SLURM_JOB_ID", "SLURM_JOBID", "PBS_JOBID", "LSB_JOBID", "PE_HOSTFILE", "FLUX_JOB_ID")  # variables of a scheduler's job
+# Variables of a process that mpirun has started. mpirun refuses to start another mpirun there.
+IN_A_JOB = ("OMPI_UNIVERSE_SIZE", "OMPI_COMM_WORLD_RANK")
 RANK = "PMIX_RANK"  # Open MPI 5 sets it for every process before the process begins
 RELAY = "SANDWALL_RELAY"  # descriptor to which a rank writes what must reach the launcher; with _LOST, what its file does not take (host/rank_output.hpp)
 RANK_LOG = "SANDWALL_RANK_LOG"  # the file of a rank's output, for a rank that the launcher cannot read
@@ -63,7 +69,8 @@ class OpenMpi4:
         # -q, because our own line reports the failure. With tags, the launcher also reads mpirun's lines about ended ranks.
         # Then mpirun prints which signal ended which rank. It does not wait a second for the others, which have already ended.
         output = ["-q"] if job.output is None else ["--tag-output", "--mca", "odls_base_sigkill_timeout", "0"]
-        return ["mpirun", *output, "--oversubscribe", "--bind-to", "none", *self.transport(job), *passed_on(job), *self.programs(job)]
+        own_hosts = [word for name, value in OWN_HOSTS_4.items() for word in ("--mca", name, value)]
+        return ["mpirun", *output, "--oversubscribe", "--bind-to", "none", *own_hosts, *self.transport(job), *passed_on(job), *self.programs(job)]
 
     def transport(self, job):
         """Returns the options for communication: shared memory within a host, TCP between hosts."""
@@ -95,9 +102,6 @@ class OpenMpi4:
     def variables(self, environment):
         """Returns the variables for mpirun itself that a job needs in this environment."""
         return {}
-
-    def require_no_scheduler(self, environment):
-        """Throws BadInput if mpirun would take its hosts from a scheduler."""
 
     def tidy(self, pid):
         """Removes what the mpirun with this process id has left behind."""
@@ -171,14 +175,8 @@ class OpenMpi5:
     def variables(self, environment):
         """Passes the program in place of ssh on under the name that Open MPI 5 reads."""
         agent = environment.get(AGENTS[1]) or environment.get(AGENTS[0])
-        return {AGENTS[1]: agent} if agent else {}
-
-    def require_no_scheduler(self, environment):
-        for variable, scheduler in SCHEDULERS.items():
-            left_out = environment.get("PRTE_MCA_ras", "").startswith("^") and scheduler in environment["PRTE_MCA_ras"]
-            if environment.get(variable) and not (left_out and environment.get("PRTE_MCA_plm") == "ssh"):
-                raise BadInput(f"{variable}: is set, and mpirun (Open MPI) {self.version} would start the ranks on the scheduler's hosts; "
-                               f"export PRTE_MCA_plm=ssh PRTE_MCA_ras=^{scheduler}, or unset {variable}; docs/cluster.md")
+        in_job = any(environment.get(name) for name in SCHEDULERS)
+        return {**OWN_HOSTS_5, **(IN_SCHEDULERS_JOB_5 if in_job else {}), **({AGENTS[1]: agent} if agent else {})}
 
     def tidy(self, pid):
         """After a job that failed, prterun leaves its folder in the folder for temporary files."""
@@ -227,6 +225,10 @@ class Question:
     """`mpirun --version`, which runs while the launcher does other work."""
 
     def __init__(self):
+        """Throws BadInput in a job of mpirun, where no other mpirun can run."""
+        if inside := next((name for name in IN_A_JOB if name in os.environ), None):
+            raise BadInput(f"{inside}: is set, because mpirun has started this command, and Open MPI starts no mpirun from another; "
+                           "leave out the mpirun before it, because sandwall starts its own")
         self.kind = None
         # Standard error too, because MPICH's mpirun complains there.
         self.process = subprocess.Popen(["mpirun", "--version"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -241,7 +243,6 @@ class Question:
                 self.process.communicate()
                 raise BadInput(f"mpirun: does not answer --version within {ANSWER_SECONDS} s; {SUPPORTED}") from error
             self.kind = kind_of(said)
-            self.kind.require_no_scheduler(os.environ)
         return self.kind
 
 

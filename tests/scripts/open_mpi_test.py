@@ -48,14 +48,6 @@ class Versions(unittest.TestCase):
             self.assertIn(found, str(refusal.exception))
             self.assertIn("supports Open MPI 4.1 and 5", str(refusal.exception))
 
-    def test_a_scheduler_that_open_mpi_5_would_obey_is_refused(self):
-        FOUR.require_no_scheduler({"SLURM_JOB_ID": "1"})
-        FIVE.require_no_scheduler({"SLURM_JOB_ID": "1", "PRTE_MCA_plm": "ssh", "PRTE_MCA_ras": "^slurm"})
-        for set_here in ({"SLURM_JOB_ID": "1"}, {"PBS_JOBID": "1"}, {"SLURM_JOB_ID": "1", "PRTE_MCA_plm": "ssh"},
-                         {"LSB_JOBID": "1", "PRTE_MCA_plm": "ssh", "PRTE_MCA_ras": "^slurm"}):
-            with self.assertRaisesRegex(BadInput, r"is set, and mpirun \(Open MPI\) 5.0.7 would start .* export PRTE_MCA_plm=ssh"):
-                FIVE.require_no_scheduler(set_here)
-
 
 class Commands(unittest.TestCase):
     def command(self, mpi, hosts, **more):
@@ -67,6 +59,17 @@ class Commands(unittest.TestCase):
             " -n 1 --host localhost master : -n 2 --host a:2 node a b : -n 1 --host localhost:1 node a b : "
             "-n 1 --host b:1 node a b : -n 1 --host a:1 node a b"))
         self.assertTrue(self.command(FOUR, [HERE] * 3).endswith(" -n 1 master : -n 3 node a b"))
+
+    def test_the_launcher_and_no_file_or_scheduler_chooses_the_hosts(self):
+        for hosts in ([HERE] * 2, ["a", HERE]):
+            command = self.command(FOUR, hosts)
+            for words in ("orte_default_hostfile none", "orte_default_dash_host none", "ras ^slurm,gridengine,", "plm ^slurm,", "plm_rsh_disable_qrsh 1"):
+                self.assertIn(f"--mca {words}", command)
+        self.assertEqual(FIVE.variables({})["PRTE_MCA_prte_default_hostfile"], "none")
+        for name in open_mpi.SCHEDULERS:
+            found = FIVE.variables({name: "7"})
+            self.assertEqual((found["PRTE_MCA_plm"], found["PRTE_MCA_ras"]), ("ssh", "^slurm,pbs,lsf,gridengine,flux"))
+        self.assertNotIn("PRTE_MCA_plm", FIVE.variables({"SLURM_JOB_ID": ""}))
 
     def test_version_4_keeps_what_is_behind_the_first_dot_of_a_name(self):
         self.assertIn("--mca orte_keep_fqdn_hostnames 1", self.command(FOUR, ["wall-node.1.example.org", "wall-node.2.example.org"]))
@@ -101,8 +104,9 @@ class Commands(unittest.TestCase):
             self.assertEqual([command.count(f"-x {name}") for name in ("SANDWALL_EVENTS", "A", "LP_NUM_THREADS")], [1, 1, 1], command)
 
     def test_the_program_in_place_of_ssh_is_passed_on_to_version_5(self):
-        self.assertEqual(FIVE.variables({"OMPI_MCA_plm_rsh_agent": "/a"}), {"PRTE_MCA_plm_ssh_agent": "/a"})
-        self.assertEqual((FIVE.variables({}), FOUR.variables({"OMPI_MCA_plm_rsh_agent": "/a"})), ({}, {}))
+        self.assertEqual(FIVE.variables({"OMPI_MCA_plm_rsh_agent": "/a"})["PRTE_MCA_plm_ssh_agent"], "/a")
+        self.assertNotIn("PRTE_MCA_plm_ssh_agent", FIVE.variables({}))
+        self.assertEqual(FOUR.variables({"OMPI_MCA_plm_rsh_agent": "/a"}), {})
         for name in open_mpi.AGENTS:
             self.assertEqual(open_mpi.remote_shell({name: "/a -v:/b"}), ["/a", "-v"])
 
@@ -252,6 +256,12 @@ class Launcher(LauncherTest):
         path = self.folder / "bin" / "mpirun"
         path.write_text("#!/bin/sh\necho 'HYDRA build details:'\n")
         self.assertIn("sandwall: mpirun: `mpirun --version` prints 'HYDRA build details:'; Sandwall supports", self.refused(["-"]))
+
+    def test_a_session_inside_a_job_of_mpirun_is_refused_in_one_line(self):
+        self.script("mpirun", "#!/bin/sh\n")
+        for name in ("OMPI_COMM_WORLD_RANK", "OMPI_UNIVERSE_SIZE"):
+            with mock.patch.dict(self.environment, {name: "0"}):
+                self.assertIn(f"sandwall: {name}: is set, because mpirun has started this command", self.refused(["-"]))
 
     def test_hosts_with_another_version_are_refused(self):
         self.script("mpirun", "#!/bin/sh\n")

@@ -5,6 +5,7 @@ by a script in place of ssh."""
 
 import re
 import unittest
+from unittest import mock
 
 from launcher_fixture import LauncherTest
 
@@ -35,6 +36,20 @@ class Placement(LauncherTest):
     def test_here_is_here(self):
         ranks = self.ranks(["node1", "node2"], "--here")
         self.assertEqual([ranks[rank][0] for rank in range(3)], ["here"] * 3)
+
+    def test_neither_a_default_file_of_hosts_nor_a_scheduler_takes_the_ranks_elsewhere(self):
+        # The variables are those of a shell of salloc and of one of Grid Engine. away77 would answer no connection.
+        (self.folder / ".openmpi").mkdir()
+        self.write("hosts.default", "away77 slots=8\n")
+        self.write(".openmpi/mca-params.conf", f"orte_default_hostfile = {self.folder}/hosts.default\norte_default_dash_host = away77\n")
+        slurm = {"SLURM_JOBID": "7", "SLURM_JOB_ID": "7", "SLURM_NODELIST": "away[77-78]", "SLURM_JOB_NODELIST": "away[77-78]",
+                 "SLURM_TASKS_PER_NODE": "2(x2)", "SLURM_JOB_NUM_NODES": "2"}
+        grid_engine = {"SGE_ROOT": "/opt/sge", "ARC": "lx", "JOB_ID": "7", "PE_HOSTFILE": self.write("pe", "away77 8 all.q@away77 UNDEFINED\n")}
+        for variables, hosts in (({"HOME": str(self.folder)}, ["-", "-"]), (slurm, ["-", "node1"]), (grid_engine, ["-", "node1"])):
+            with self.subTest(variables), mock.patch.dict(self.environment, variables):
+                (self.folder / "placed").unlink(missing_ok=True)
+                ranks = self.ranks(hosts)
+                self.assertEqual([ranks[rank][0] for rank in range(3)], ["here", *(host.replace("-", "here") for host in hosts)])
 
 
 if __name__ == "__main__":
