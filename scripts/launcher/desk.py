@@ -5,6 +5,7 @@ import subprocess
 
 import checked_json
 import layout
+import marked_answer
 from rank_hosts import BadInput
 
 
@@ -20,8 +21,8 @@ def probe(render_node, rank, *words, stdin=subprocess.DEVNULL):
         # GLFW waits without end for a window that a window manager has not shown, for example while it starts.
         raise BadInput(f"the desktop has shown no window for {LONGEST_PROBE} s; look whether its window manager runs, and try again") from None
     if probed.returncode != 0:
-        lines = probed.stderr.strip().splitlines() or [f"the check of the display ended with status {probed.returncode}"]
-        raise BadInput(lines[-1].removeprefix("sandwall-render-node: "))
+        why = marked_answer.own_line(probed.stderr) or f"the check of the display ended with status {probed.returncode}"
+        raise BadInput(why.removeprefix("sandwall-render-node: "))
     return probed.stdout
 
 

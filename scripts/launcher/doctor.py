@@ -13,6 +13,7 @@ import tempfile
 
 import checked_json
 import first_frame
+import marked_answer
 import open_mpi
 import session_folder
 from examined_host import ANSWER_SECONDS, is_red, machines, show
@@ -23,25 +24,23 @@ MOST_CLOCK_SECONDS = 1.0  # a session subtracts the difference; a larger one mak
 RANK_MEGABYTES = 256  # a rank of 512 x 512 cells and 1024 x 768 pixels holds about 140
 OUT_MEGABYTES = 256
 MOST_HOSTS_AT_ONCE = 32
-# Commands for a host, which prints one answer per line. {node} is the path of the render rank's program there.
-QUESTIONS = ('echo "build $({node} --version --json 2>&1 | head -n 1)"; '
-             'echo "mpi $(mpirun --version 2>&1 | head -n 1)"; '
+# Commands for a host, whose answers begin with a word each. {node} is the path of the render rank's program there.
+QUESTIONS = (marked_answer.SAY + '; {node} --version --json 2>&1 | say build; '
+             'mpirun --version 2>&1 | say mpi; '
              'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; '
              'echo "client $SSH_CONNECTION"')
 
 
 def build_of(answer):
-    """Returns the build id in the output of --version --json, or None if the output has none."""
-    try:
-        found = checked_json.parse(answer)
-    except ValueError:
-        return None
-    build = found.get("build") if isinstance(found, dict) else None
-    return build if isinstance(build, str) else None
-
-
-def last_line(text):
-    return (text.strip().split("\n") or [""])[-1]
+    """Returns the build id in the output of --version --json, or None if no line of the output has one."""
+    for line in answer.splitlines():
+        try:
+            found = checked_json.parse(line)
+        except ValueError:
+            continue
+        if isinstance(found, dict) and isinstance(found.get("build"), str):
+            return found["build"]
+    return None
 
 
 def probed(said):
@@ -101,28 +100,31 @@ class Doctor:
 
     def reach(self, host):
         """Returns the host's answers by their first words, or None if the host cannot be reached."""
-        status, said, complaint = host.ask.run(QUESTIONS.format(node=shlex.quote(self.node)))
-        if status != 0:
-            host.add(False, "ssh", f"cannot be reached: {last_line(complaint) or f'exit status {status}'}; "
-                     f"`ssh -o BatchMode=yes {host.name} true` must end without output (docs/hosts.md)")
+        status, said, complaint = host.ask.run(QUESTIONS.replace("{node}", shlex.quote(self.node)))
+        answers = marked_answer.named_lines(said)
+        if "memory" not in answers:
+            host.add(False, "ssh", f"cannot be reached: {marked_answer.last_line(complaint) or f'exit status {status}'}; "
+                     f"`ssh -o BatchMode=yes {host.name} true` must end with status 0 (docs/hosts.md)")
             return None
         if host.name != HERE:
             host.add(True, "ssh", "answers")
-        return {first: rest for first, _, rest in (line.partition(" ") for line in said.splitlines())}
+        return answers
 
     def check_programs(self, host, answers):
         build = build_of(answers.get("build", ""))
         if build is None:
-            host.add(False, "build", f"{self.node} does not answer ({answers.get('build', '')}); install the same build at the same path everywhere")
+            host.add(False, "build", f"{self.node} does not answer ({marked_answer.last_line(answers.get('build', ''))}); install the same build at the same path everywhere")
         elif build == self.build:
             host.add(True, "build", build)
         else:
             host.add(False, "build", f"{build}, here it is {self.build}; install the same build at the same path everywhere")
-        mpi = answers.get("mpi", "")
+        said = answers.get("mpi", "")
+        found = open_mpi.VERSION.search(said)
+        mpi = found[0] if found else said
         if host.name == HERE:
             self.mpi = mpi
         if "Open MPI" not in mpi:
-            host.add(False, "mpi", f"no mpirun on the path of a command ({mpi}); apt-get install openmpi-bin")
+            host.add(False, "mpi", f"no mpirun on the path of a command ({marked_answer.last_line(mpi)}); apt-get install openmpi-bin")
         elif complaint := unsupported(mpi):
             host.add(False, "mpi", complaint)
         elif self.mpi and mpi != self.mpi:
@@ -173,7 +175,7 @@ class Doctor:
         for rank in host.probes:
             status, said, complaint = host.ask.run(f"{shlex.quote(self.node)} --probe {rank} --gl {self.gl} --json",
                                                    self.wall_text if rank else "", PROBE_SECONDS)
-            answers.setdefault((status, said, last_line(complaint)), []).append(rank)
+            answers.setdefault((status, said, marked_answer.own_line(complaint)), []).append(rank)
         for (status, said, complaint), ranks in answers.items():
             who = spans(ranks) + ": " if ranks != [0] else ""
             found = probed(said) if status == 0 else None
@@ -220,7 +222,7 @@ def version_of(program):
         return None, f"no answer within {ANSWER_SECONDS} s"
     except OSError as error:
         return None, f"{program}: cannot be run ({error.strerror})"
-    return build_of(ended.stdout), last_line(ended.stderr)
+    return build_of(ended.stdout), marked_answer.own_line(ended.stderr)
 
 
 def check_master(host, master, build):

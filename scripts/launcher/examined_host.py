@@ -3,7 +3,6 @@
 
 import json
 import os
-import shlex
 import socket
 import subprocess
 import sys
@@ -11,12 +10,38 @@ import threading
 import time
 
 import checked_json
+import marked_answer
 import open_mpi
+from processes import kill_group
 from rank_hosts import HERE, BadInput
 
-ANSWER_SECONDS = 20
+ANSWER_SECONDS = 45  # a login may wait 30 s for a name or a folder
 CLOCK_ROUNDS = 5
+TIME = "@time "  # begins a line with the time of a host
 COLOURS = {"ok ": 32, "RED": 31, "no ": 33}
+
+
+def ended_in(seconds, command, text):
+    """Runs a command with this input, or without any. Returns (exit status, standard output, standard error).
+
+    Throws subprocess.TimeoutExpired after `seconds`.
+    """
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL if text is None else subprocess.PIPE, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True) as process:
+        try:
+            said, complained = process.communicate(text, timeout=seconds)
+        except BaseException:
+            kill_group(process)
+            raise
+        return process.returncode, said, complained
+
+
+def time_in(stream):
+    """Reads lines until one has a time, and returns the time [s]. Throws ValueError if none has."""
+    for line in stream:
+        if line.startswith(TIME):
+            return float(line[len(TIME):])
+    raise ValueError("the host has ended the connection")
 
 
 class Ask:
@@ -24,52 +49,49 @@ class Ask:
 
     def __init__(self, host):
         self.host = host
-        agent = open_mpi.remote_shell()
-        if agent[0] == "ssh":
-            agent += ["-o", f"ConnectTimeout={ANSWER_SECONDS // 2}"]
-        self.words = ["sh", "-c"] if host == HERE else [*agent, host]
+        self.words = ["sh", "-c"] if host == HERE else [*open_mpi.remote_shell(), host]
 
     def command(self, line):
-        # sh runs the line, because the user's own shell on the host may be another one.
-        return [*self.words, line if self.host == HERE else "sh -c " + shlex.quote(line)]
+        return [*self.words, marked_answer.marked(line)]
 
     def run(self, line, text=None, seconds=ANSWER_SECONDS):
-        """Returns (exit status, standard output, standard error). The status is None after `seconds` without an answer."""
-        given = {"stdin": subprocess.DEVNULL} if text is None else {"input": text}
+        """Returns (exit status, standard output, standard error) of the line itself, without what a login prints.
+
+        The status is None if the line has not run to its end, also after `seconds` without an answer.
+        """
         try:
-            ended = subprocess.run(self.command(line), capture_output=True, text=True, errors="replace",
-                                   timeout=seconds, check=False, **given)
+            ended = ended_in(seconds, self.command(line), text)
         except subprocess.TimeoutExpired:
             return None, "", f"no answer within {seconds} s"
         except OSError as error:
             raise BadInput(f"{self.words[0]}: cannot be run; install openssh-client, or name another program in "
                            "OMPI_MCA_plm_rsh_agent") from error
-        return ended.returncode, ended.stdout, ended.stderr
+        return marked_answer.of_both(*ended)
 
     def clock(self):
         """Returns (clock of the host minus clock of this machine, uncertainty) [s], or None if the host prints no time.
 
         Asks several times over one connection and takes the quickest answer.
         """
-        command = "while read -r line; do date +%s.%N; done"
+        command = f"while read -r line; do printf '\\n{TIME}%s\\n' \"$(date +%s.%N)\"; done"
         with subprocess.Popen(self.command(command), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                              stderr=subprocess.DEVNULL, text=True, bufsize=1) as process:
+                              stderr=subprocess.DEVNULL, text=True, errors="replace", bufsize=1, start_new_session=True) as process:
             best = None
-            patience = threading.Timer(ANSWER_SECONDS, process.kill)
+            patience = threading.Timer(ANSWER_SECONDS, kill_group, [process])
             patience.start()
             try:
                 for _ in range(CLOCK_ROUNDS):
-                    asked = time.time()
+                    asked, began = time.time(), time.monotonic()
                     process.stdin.write("now\n")
-                    there = float(process.stdout.readline())
-                    half = (time.time() - asked) / 2
+                    there = time_in(process.stdout)
+                    half = (time.monotonic() - began) / 2
                     if best is None or half < best[1]:
                         best = (there - asked - half, half)
             except (ValueError, BrokenPipeError):
                 return None
             finally:
                 patience.cancel()
-                process.kill()
+                kill_group(process)
         return best
 
 

@@ -6,6 +6,7 @@ import shutil
 import subprocess
 
 import console
+import marked_answer
 from rank_hosts import BadInput
 
 PATTERN = "frame_%06d.png"  # the names that the master gives to the pictures
@@ -33,6 +34,6 @@ def encode(folder, frames_per_second):
     made = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     if made.returncode != 0:
         film.unlink(missing_ok=True)
-        said = (made.stderr.strip().split("\n")[-1]) or f"exit status {made.returncode}"
+        said = marked_answer.last_line(made.stderr) or f"exit status {made.returncode}"
         raise BadInput(f"{folder}/film.mp4: ffmpeg failed: {said}; the {frames} pictures are whole")
     console.OUT.line(f"{folder}/film.mp4: {frames} frames")

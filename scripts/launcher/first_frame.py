@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 import layout
+import marked_answer
 
 START_SECONDS = 60  # for one rank; drivers of OpenGL that start for the first time compile shaders for long
 MORE_SECONDS = 2  # for each further rank
@@ -42,8 +43,7 @@ def check(host, wall, backend, ranks=1, options=(), variables=None):
         try:
             ended = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace",
                                    timeout=seconds, check=False, env=variables)
-            last = (ended.stderr.strip().split("\n") or [""])[-1]
-            complaint = "" if ended.returncode == 0 else last or f"exit status {ended.returncode}"
+            complaint = "" if ended.returncode == 0 else marked_answer.own_line(ended.stderr) or f"exit status {ended.returncode}"
         except subprocess.TimeoutExpired:
             complaint = f"a session shows no frame within {seconds} s"
     shown = "a session shows a frame" + (f" on {ranks} ranks" if ranks > 1 else "")

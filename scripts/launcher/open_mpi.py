@@ -19,6 +19,7 @@ from rank_hosts import HERE, BadInput, is_address
 
 SUPPORTED = "Sandwall supports Open MPI 4.1 and 5"
 ANSWER_SECONDS = 20
+CONNECT_SECONDS = 20  # for a connection of ssh; a host that is off does not refuse it
 VERSION = re.compile(r"^mpirun \(Open MPI\) (([0-9]{1,4})\.([0-9]{1,4})\S{0,40})$", re.MULTILINE)
 AGENTS = ("OMPI_MCA_plm_rsh_agent", "PRTE_MCA_plm_ssh_agent")  # each names a program in place of ssh
 # The launcher chooses the hosts. mpirun must not take them from the file of hosts or the default host of a user's or a site's Open MPI,
@@ -252,4 +253,5 @@ def remote_shell(environment=os.environ):
     The variable may name several commands, separated by colons; this is the first.
     """
     given = next((environment[name] for name in AGENTS if environment.get(name)), "")
-    return shlex.split(given.split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
+    words = shlex.split(given.split(":")[0]) or ["ssh", "-o", "BatchMode=yes"]
+    return [*words, "-o", f"ConnectTimeout={CONNECT_SECONDS}"] if words[0] == "ssh" else words

@@ -39,6 +39,14 @@ def die_with(parent):
     return ask
 
 
+def kill_group(process):
+    """Kills a process that leads a session, with its children. A child that stays would hold the output open."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+
+
 class StopSignals:
     """Counts the signals that ask the session to end. Create it before the first process is started.
 

@@ -6,13 +6,15 @@ import socket
 import subprocess
 import time
 
+import marked_answer
 import open_mpi
+from processes import kill_group
 from rank_hosts import HERE, BadInput
 
-REACH_SECONDS = 20
+REACH_SECONDS = 45  # a login may wait 30 s for a name or a folder
 # Machines may have the same name. Each start of a machine has another boot id.
-IDENTITY = "echo \"$(uname -n) $(cat /proc/sys/kernel/random/boot_id)\""
-VERSION = "mpirun --version 2>/dev/null | head -n 1"
+QUESTIONS = (marked_answer.SAY + '; test -x {node} && echo "program yes"; '
+             'echo "machine $(uname -n) $(cat /proc/sys/kernel/random/boot_id)"; mpirun --version 2>/dev/null | say mpi')
 
 
 def identity_here():
@@ -25,10 +27,10 @@ def identity_here():
     return f"{socket.gethostname()}/{boot}"
 
 
-def identity_of(line):
-    """Returns the identity in a host's answer to IDENTITY, or "" if the line is something else."""
-    words = line.split()
-    return "/".join(words) if len(words) == 2 and len(line) < 400 else ""
+def identity_of(words):
+    """Returns the identity in a host's answer, or "" if it is something else than a name and a boot id."""
+    found = words.split()
+    return "/".join(found) if len(found) == 2 and len(words) < 400 else ""
 
 
 class Answers:
@@ -45,17 +47,16 @@ def ask(hosts, node, version=None):
     asked = []
     found = Answers()
     deadline = time.monotonic() + REACH_SECONDS
-    # sh runs it, because the user's own shell on the host may be another one.
-    command = "sh -c " + shlex.quote(f"test -x {shlex.quote(node)} && {IDENTITY} && {VERSION}")
+    command = marked_answer.marked(QUESTIONS.replace("{node}", shlex.quote(node)))
     try:
         for host in others:
             asked.append(subprocess.Popen([*agent, host, command], stdin=subprocess.DEVNULL,
-                                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace"))
+                                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
+                                          start_new_session=True))
         for host, process in zip(others, asked):
-            complaint, said = complaint_of(process, node, deadline, agent)
-            lines = [*said.split("\n"), "", ""]
-            found.identities[host] = identity_of(lines[0])
-            other = open_mpi.VERSION.search(lines[1])
+            complaint, answers = complaint_of(process, node, deadline, agent)
+            found.identities[host] = identity_of(answers.get("machine", ""))
+            other = open_mpi.VERSION.search(answers.get("mpi", ""))
             if not complaint and version and other and other[1] != version:
                 complaint = f"has mpirun (Open MPI) {other[1]}, and this machine {version}; install the same version on every host"
             if complaint:
@@ -65,7 +66,7 @@ def ask(hosts, node, version=None):
     finally:
         for process in asked:
             if process.poll() is None:
-                process.kill()
+                kill_group(process)
                 process.wait()
             process.stdout.close()
             process.stderr.close()
@@ -73,14 +74,16 @@ def ask(hosts, node, version=None):
 
 
 def complaint_of(process, node, deadline, agent):
-    """Returns (why the host that `process` asks cannot run a rank, or None if it can; what it has printed)."""
+    """Returns (why the host that `process` asks cannot run a rank, or None if it can; its answers by their first words)."""
     try:
         said, complained = process.communicate(timeout=max(0, deadline - time.monotonic()))
     except subprocess.TimeoutExpired:
-        return f"no answer within {REACH_SECONDS} s; docs/hosts.md", ""
-    complained = complained.strip().split("\n")[-1]
-    if process.returncode == 1 and not complained:
-        return f"has no {node}; install the same build at the same path on every host", ""
-    if process.returncode != 0:
-        return f"cannot be reached: {complained or f'{agent[0]} failed'}; docs/hosts.md", ""
-    return None, said
+        return f"no answer within {REACH_SECONDS} s; docs/hosts.md", {}
+    status, said, complained = marked_answer.of_both(process.returncode, said, complained)
+    answers = marked_answer.named_lines(said)
+    if "machine" not in answers:
+        why = marked_answer.last_line(complained) or (f"{agent[0]} failed" if status else "it runs no command")
+        return f"cannot be reached: {why}; docs/hosts.md", {}
+    if "program" not in answers:
+        return f"has no {node}; install the same build at the same path on every host", {}
+    return None, answers

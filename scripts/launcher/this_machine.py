@@ -9,6 +9,7 @@ import doctor
 import examined_host
 import first_frame
 import layout
+import marked_answer
 import screens
 from rank_hosts import HERE, BadInput
 
@@ -75,7 +76,7 @@ def check_gl(host, node, chosen):
         try:
             ended = subprocess.run([node, "--probe", "0", "--gl", backend, "--json"], stdin=subprocess.DEVNULL, capture_output=True,
                                    text=True, errors="replace", timeout=doctor.PROBE_SECONDS, check=False)
-            found, complaint = doctor.probed(ended.stdout) if ended.returncode == 0 else None, doctor.last_line(ended.stderr)
+            found, complaint = doctor.probed(ended.stdout) if ended.returncode == 0 else None, marked_answer.own_line(ended.stderr)
         except subprocess.TimeoutExpired:
             found, complaint = None, f"no answer within {doctor.PROBE_SECONDS} s"
         if found:

@@ -23,6 +23,7 @@ case $host in
     blind*) export MADE_UP_DISPLAY=none ;;
     narrow*) export MADE_UP_DISPLAY=narrow ;;
     late*) export MADE_UP_SHIFT=3600 ;;
+    greets*) echo "Good morning"; printf '%010000d' 7; echo "last login yesterday" >&2 ;;
     walled*) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22"; export MADE_UP_FIREWALL=1 ;;
     *) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22" ;;
 esac
@@ -103,6 +104,11 @@ class Doctor(LauncherTest):
         self.assertEqual(found[self.name, "gl"][1], "rank 2: auto: made-up renderer")
         self.assertRegex(found["sound1", "ports"][1], r"connects to this machine at 127\.0\.0\.1, port \d+")
 
+    def test_a_login_that_prints_lines_changes_nothing(self):
+        status, found = self.examine(["greets1", "-", "greets1"])
+        self.assertEqual((status, self.reds(found)), (0, 0), found)
+        self.assertEqual(found["greets1", "mpi"][1], "mpirun (Open MPI) 4.1.4")
+
     def test_hosts_on_which_no_session_starts_are_red_at_the_end(self):
         self.environment["MPI_FAULT"] = "no daemon on sound1"
         status, found = self.examine(["sound1", "-"])
@@ -128,7 +134,7 @@ class Doctor(LauncherTest):
     def test_a_host_that_does_not_answer_is_asked_nothing_more(self):
         self.assertEqual(self.only_red("away1", "ssh"),
                          "cannot be reached: ssh: connect to host away1 port 22: No route to host; "
-                         "`ssh -o BatchMode=yes away1 true` must end without output (docs/hosts.md)")
+                         "`ssh -o BatchMode=yes away1 true` must end with status 0 (docs/hosts.md)")
 
     def test_another_build_is_named_with_ours(self):
         self.assertEqual(self.only_red("old1", "build"), "00000000000000ff, here it is 0123456789abcdef; "
