@@ -11,7 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "base/input_error.hpp"
+#include "base/not_yet_error.hpp"
 #include "host/event.hpp"
 #include "host/rank_output.hpp"
 #include "host/regular_file.hpp"
@@ -273,7 +273,7 @@ int runMain(CommandLine& line, int argc, char** argv, const std::function<int()>
         return run();
     } catch (const base::InputError& error) {
         writeLine(line.name() + ": " + error.what() + "\n");
-        return base::kExitBadInput;
+        return dynamic_cast<const base::NotYetError*>(&error) == nullptr ? base::kExitBadInput : base::kExitNotYet;
     } catch (const std::exception& error) {
         writeLine(line.name() + ": failed: " + error.what() + "\n");
         return failed;

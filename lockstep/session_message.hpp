@@ -57,6 +57,7 @@ struct Readiness {
     // one. The rank has set it back. Empty if nothing was changed.
     std::string otherFloats{};
     std::string tile{};  // name of the tile that the rank draws; empty at the master
+    bool mayStillCome = false;  // whether `error` is about something that a later start may find (base::NotYetError)
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("host", base::text(it.host, kMostText));
@@ -67,6 +68,7 @@ struct Readiness {
         visit("tile", base::text(it.tile, kMostText));
         visit("shortcomings", base::texts(it.shortcomings, kMostText));
         visit("frames_to_ignore", it.framesToIgnore);
+        visit("may_still_come", it.mayStillCome);
     }
 };
 

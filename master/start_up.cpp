@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "base/input_error.hpp"
+#include "base/not_yet_error.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "host/build_id.hpp"
@@ -120,8 +120,13 @@ void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vect
                 fmt::format("{}: is of build {}, but the master is of build {}; install the same build on every host",
                             names[rank], ranks[rank].buildId, host::buildId()));
         }
-        if (!ranks[rank].error.empty()) {
+        if (!ranks[rank].error.empty() && !ranks[rank].mayStillCome) {
             throw base::InputError(fmt::format("{}: {}", names[rank], ranks[rank].error));
+        }
+    }
+    for (std::size_t rank = 1; rank < ranks.size(); ++rank) {
+        if (!ranks[rank].error.empty()) {
+            throw base::NotYetError(fmt::format("{}: {}", names[rank], ranks[rank].error));
         }
     }
     for (std::size_t rank = 1; rank < ranks.size(); ++rank) {

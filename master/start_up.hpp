@@ -46,7 +46,8 @@ void requirePlaces(const std::vector<lockstep::RankHost>& ranks, const walls::Wa
 /// Throws base::InputError if a rank draws another tile than that of its number in the wall.
 void requireTiles(const std::vector<lockstep::Readiness>& ranks, const walls::Wall& wall);
 
-/// Throws base::InputError with the reason if a rank cannot take part. Otherwise prints the requests of the wall file
+/// Throws base::InputError with the reason if a rank cannot take part: base::NotYetError if a later start may find what
+/// all such ranks miss. Otherwise prints the requests of the wall file
 /// that ranks cannot meet. `names` are the names of the ranks in messages.
 void requireReady(const std::vector<lockstep::Readiness>& ranks, const std::vector<std::string>& names);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/float_environment.hpp"
+#include "base/not_yet_error.hpp"
 #include "host/build_id.hpp"
 #include "host/clock.hpp"
 #include "host/print_line.hpp"
@@ -289,6 +290,7 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Exec
         readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().framesToIgnore());
     } catch (const std::exception& error) {
         readiness.error = error.what();
+        readiness.mayStillCome = dynamic_cast<const base::NotYetError*>(&error) != nullptr;
     }
     (void)lockstep::gatherReadiness(cluster, readiness);
     if (!lockstep::agreeToGoOn(cluster, false)) {

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "base/not_yet_error.hpp"
 #include "host/clock.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "render_node/gl/window_icon.hpp"
@@ -64,8 +65,8 @@ GLFWmonitor* monitorNamed(const WindowRequest& wanted, const std::string& displa
         }
         there += (there.empty() ? "there is " : ", ") + name + " (" + sizeText(area.high - area.low) + ")";
     }
-    throw InputError("output " + wanted.output.name + ": no monitor " + wanted.output.monitor + " on display " +
-                     display + "; " + (there.empty() ? "there is none" : there));
+    throw base::NotYetError("output " + wanted.output.name + ": no monitor " + wanted.output.monitor + " on display " +
+                            display + "; " + (there.empty() ? "there is none" : there));
 }
 
 void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <stdexcept>
 
-#include "base/input_error.hpp"
+#include "base/not_yet_error.hpp"
 
 namespace render_node {
 namespace {
@@ -61,8 +61,8 @@ XWatch::XWatch(const std::string& display, const std::string& processName, bool 
     : name_(chosenDisplay(display, needsWindows ? "choose another --device" : "draw off screen with --gl osmesa")),
       display_(XOpenDisplay(name_.c_str())) {
     if (display_ == nullptr) {
-        throw base::InputError("--gl glfw: cannot open X display " + name_ +
-                               "; is its server running, and may this user use it (docs/backends.md)?");
+        throw base::NotYetError("--gl glfw: cannot open X display " + name_ +
+                                "; is its server running, and may this user use it (docs/backends.md)?");
     }
     std::array<char, 256> host{};
     (void)gethostname(host.data(), host.size() - 1);

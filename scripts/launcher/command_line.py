@@ -8,6 +8,7 @@ import os
 import environment
 
 BAD_INPUT = 2
+NOT_YET = 75  # something is missing that may still come (base::kExitNotYet)
 
 
 class Parser(argparse.ArgumentParser):

@@ -19,6 +19,7 @@ import job_stream
 from console import print_line
 
 KEPT_TRIES = 8
+MOST_HELD = 1000  # lines
 LAST_LINES = 16  # of each rank, for a report
 LONGEST_LINE = 1 << 16  # bytes of mpirun's own lines that are kept
 BACKTRACE = re.compile(rb"\[[\w.-]+:\d+\] \[ *\d+\] ")  # Open MPI prints it for a process that a signal ends
@@ -32,16 +33,18 @@ class JobLog:
     journal is whole.
 
     `mpi` is one of open_mpi.py. If it lets ranks write files of their own, `ranks` are those on this machine, whose files are
-    OUT/log/try_N.rank_R.out and .err.
+    OUT/log/try_N.rank_R.out and .err. With `held`, lines are shown from the first frame on, or by release().
     """
 
-    def __init__(self, folder, number, mpi, ranks=()):
+    def __init__(self, folder, number, mpi, ranks=(), held=False):
         self.path = pathlib.Path(folder) / f"try_{number}"
         self.mpi = mpi
         self.out = job_stream.Stream(f"{self.path}.out", console.OUT, mpi)
         self.err = job_stream.Stream(f"{self.path}.err", console.ERROR, mpi)
         self.streams = [self.out, self.err, *self.open_ranks(ranks if mpi.keeps_output else ())]
         self.hosts_file = None
+        # Lines that are not shown yet, because the wall may be incomplete; None: each line is shown at once.
+        self.held = collections.deque(maxlen=MOST_HELD) if held else None
         self.rank_logs = {}  # HOST:PATH of the output of ranks on other hosts
         self.last_by_rank = collections.defaultdict(lambda: collections.deque(maxlen=LAST_LINES))  # last lines by rank; mpirun's own lines have the key None
         self.mpiruns = b""  # the last lines of mpirun itself on standard error
@@ -80,13 +83,25 @@ class JobLog:
                 if event := events.parse(line):
                     self.read_event(event)
                     if events.wanted():
-                        stream.shown.line(line)
+                        self.show(stream, line)
                     continue
                 self.read(rank, line, stream)
                 if not stream.hides(rank, line):
-                    stream.shown.line(line)
+                    self.show(stream, line)
         if ended and (damaged := self.out.damaged + self.err.damaged):
             print_line(f"{damaged} damaged pieces of the output of ranks on other hosts are left out")
+
+    def show(self, stream, line):
+        if self.held is None:
+            stream.shown.line(line)
+        else:
+            self.held.append((stream, line))
+
+    def release(self):
+        """Shows the lines that were held, and from now on each line at once."""
+        held, self.held = self.held or (), None
+        for stream, line in held:
+            stream.shown.line(line)
 
     def read_event(self, event):
         """Takes what the launcher needs from an event. Leaves out a field that is not as the schema of events says."""
@@ -96,6 +111,7 @@ class JobLog:
             if frame is None or step is None:
                 return
             self.frame, self.step = frame, step
+            self.release()
             self.shown_at = time.monotonic()
             if event.get("hand") in ("hand linked", "hand streams"):
                 self.hand = time.monotonic()

@@ -23,6 +23,10 @@ class BadInput(Exception):
         super().__init__(checked_json.one_line(str(line)))
 
 
+class NotYet(BadInput):
+    """Something is missing that may still come, such as a host that still starts. The line says what."""
+
+
 def is_here(host):
     """Returns whether `host` is a name or an address of this machine. Letters may be small or capital.
 

@@ -11,6 +11,7 @@ import open_mpi
 from processes import kill_group
 from rank_hosts import HERE, BadInput
 
+LOOK_SECONDS = 0.1
 REACH_SECONDS = 45  # a login may wait 30 s for a name or a folder
 # Machines may have the same name. Each start of a machine has another boot id.
 QUESTIONS = (marked_answer.SAY + '; test -x {node} && echo "program yes"; '
@@ -34,14 +35,21 @@ def identity_of(words):
 
 
 class Answers:
-    """The answers of hosts. `complaints` has the reason of each host that cannot run a rank, and `identities` the identity of each."""
+    """The answers of hosts. `complaints` has the reason of each host that cannot run a rank, and `identities` the identity of each.
+
+    `absent` are the hosts among `complaints` that may still come: they do not answer, or their programs are on a file system
+    that is not mounted yet.
+    """
 
     def __init__(self):
-        self.complaints, self.identities = {}, {HERE: identity_here()}
+        self.complaints, self.identities, self.absent = {}, {HERE: identity_here()}, set()
 
 
-def ask(hosts, node, version=None):
-    """Asks all other hosts at once whether they have the program `node`, and an mpirun of the same `version`, if that is given."""
+def ask(hosts, node, version=None, stopped=lambda: False):
+    """Asks all other hosts at once whether they have the program `node`, and an mpirun of the same `version`, if that is given.
+
+    Gives up the hosts that have not answered as soon as stopped() is true.
+    """
     agent = open_mpi.remote_shell()
     others = sorted(set(hosts) - {HERE}, key=hosts.index)
     asked = []
@@ -54,7 +62,9 @@ def ask(hosts, node, version=None):
                                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
                                           start_new_session=True))
         for host, process in zip(others, asked):
-            complaint, answers = complaint_of(process, node, deadline, agent)
+            complaint, answers = complaint_of(process, node, deadline, agent, stopped)
+            if complaint:
+                found.absent.add(host)
             found.identities[host] = identity_of(answers.get("machine", ""))
             other = open_mpi.VERSION.search(answers.get("mpi", ""))
             if not complaint and version and other and other[1] != version:
@@ -73,10 +83,20 @@ def ask(hosts, node, version=None):
     return found
 
 
-def complaint_of(process, node, deadline, agent):
+def outputs_of(process, deadline, stopped):
+    """Returns (standard output, standard error) of a process that ends. Throws TimeoutExpired at `deadline`, or if stopped()."""
+    while True:
+        try:
+            return process.communicate(timeout=LOOK_SECONDS)
+        except subprocess.TimeoutExpired:
+            if stopped() or time.monotonic() > deadline:
+                raise
+
+
+def complaint_of(process, node, deadline, agent, stopped):
     """Returns (why the host that `process` asks cannot run a rank, or None if it can; its answers by their first words)."""
     try:
-        said, complained = process.communicate(timeout=max(0, deadline - time.monotonic()))
+        said, complained = outputs_of(process, deadline, stopped)
     except subprocess.TimeoutExpired:
         return f"no answer within {REACH_SECONDS} s; docs/hosts.md", {}
     status, said, complained = marked_answer.of_both(process.returncode, said, complained)

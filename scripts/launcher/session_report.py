@@ -11,6 +11,7 @@ import console
 import layout
 import session_results
 import session_rules
+from command_line import NOT_YET
 from rank_hosts import BadInput
 from session_lines import BAD, GOOD, NOTE, UNMEASURED
 
@@ -139,7 +140,7 @@ class Report:
             except (LookupError, TypeError, AttributeError, ValueError, ArithmeticError):  # fields that do not fit each other
                 console.print_line(f"{self.out}/summary.json: fields are missing, or do not fit each other; the file is damaged")
                 summary, lines, status = None, [], status or BAD_INPUT
-        elif status not in (0, BAD_INPUT):  # a master that ends in order writes a summary, and bad input was refused before there was a session
+        elif status not in (0, BAD_INPUT, NOT_YET):  # a master that ends in order writes a summary; the others were refused before there was a session
             lines = lines_of_no_summary()
         if summary is None and self.as_json:
             status = status or NOT_GOOD

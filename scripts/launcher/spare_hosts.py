@@ -7,7 +7,7 @@ import socket
 import events
 import rank_hosts
 import reachable
-from rank_hosts import BadInput
+from rank_hosts import BadInput, NotYet
 
 STRIKES = 2  # number of failures of a host's ranks after which a spare takes its place
 
@@ -16,10 +16,11 @@ class SessionHosts:
     """The hosts of all render ranks, and the spares.
 
     `names` has the host of every render rank in their order. `spares` has (host, slots) in the order of use. `version` is that
-    of this machine's mpirun, which every host must have.
+    of this machine's mpirun, which every host must have. stopped() ends the wait for answers.
     """
 
-    def __init__(self, names, spares, node, version):
+    def __init__(self, names, spares, node, version, stopped=lambda: False):
+        self.stopped = stopped
         self.names, self.spares, self.node, self.version = list(names), list(spares), node, version
         self.identities = {}  # of every host that has answered, as reachable.py reads them
         self.strikes = collections.Counter()
@@ -38,21 +39,22 @@ class SessionHosts:
     def require_reachable(self, print_line):
         """Replaces hosts that cannot be reached or have failed too often by spares, and prints each replacement.
 
-        Throws BadInput if a host cannot be reached and no spare can replace it.
+        Throws BadInput if a host cannot run a rank and no spare can replace it: NotYet if the host may still come.
         """
-        complaints = self.ask(self.names)
+        answers = self.ask(self.names)
+        complaints = answers.complaints
         for host in [host for host, strikes in self.strikes.items() if strikes >= STRIKES and host in self.names]:
             if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), print_line):
                 self.strikes[host] = 0  # no spare can replace the host, so its count begins again
         for host, complaint in complaints.items():
             if host in self.names and not self.replace(host, complaint, print_line):
-                raise BadInput(complaint)
+                raise NotYet(complaint) if host in answers.absent else BadInput(complaint)
 
     def ask(self, hosts):
-        """Returns {host: reason} for every host that cannot run a rank. Notes which machines the others are."""
-        answers = reachable.ask(hosts, self.node, self.version)
+        """Returns the reachable.Answers of the hosts. Notes which machines they are."""
+        answers = reachable.ask(hosts, self.node, self.version, self.stopped)
         self.identities.update(answers.identities)
-        return answers.complaints
+        return answers
 
     def places(self):
         """Returns the options that tell the master on which machine each rank must run."""
@@ -77,7 +79,7 @@ class SessionHosts:
             if slots < len(ranks):
                 continue
             self.spares.remove((spare, slots))
-            if self.ask([spare]):
+            if self.ask([spare]).complaints:
                 print_line(f"spare {spare} cannot be reached either")
                 continue
             self.names = [spare if name == host else name for name in self.names]

@@ -12,9 +12,12 @@ import console
 import events
 import failed_processes
 import job_log
+import marked_answer
 import session_control
 import session_folder
+from command_line import NOT_YET
 from console import print_line
+from patience import Patience, Stopped
 from process_failure import content_of, failure_of_job, failure_without_log, taken
 from processes import HapticServer, Input, Job, exit_status
 from rank_hosts import BadInput
@@ -25,6 +28,7 @@ FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
 ENDED_IN_ORDER = ("sand", "summary")  # `what` of failure.json, after which a restart would not help
 JOURNAL = "session.journal"
+MASTERS = "sandwall-master: "  # begins a line of the master
 
 
 def force_share(options):
@@ -64,10 +68,12 @@ class Supervisor:
     more options for the master, and `log` keeps the output, unless it is None. `server_at(address, start)` returns the haptic server's command; it is None for a session without a device.
     """
 
-    def __init__(self, out, hosts, mpi, start_of, server_at, haptic, options, stop):
+    def __init__(self, out, hosts, mpi, start_of, server_at, haptic, options, stop, patience=None):
         self.out, self.hosts = pathlib.Path(out), hosts
         self.mpi, self.start_of, self.server_at, self.haptic = mpi, start_of, server_at, haptic
         self.stop = stop
+        self.patience = patience or Patience(None, stop)
+        self.shown = False  # whether a try has shown a frame
         self.supervised = options.restarts > 0
         self.allowance = Allowance(options.restarts, options.restart_window)
         self.limits = f"--restarts {options.restarts} in --restart-window {options.restart_window:g}"
@@ -92,13 +98,17 @@ class Supervisor:
                     self.watch = self.watch_of(server)
                 if self.supervised:
                     self.logs = self.prepare_logs(folder)
-                elif self.mpi.keeps_output:
+                elif self.mpi.keeps_output or self.waits():
                     self.logs = pathlib.Path(folder)
                 return self.tries()
             finally:
                 self.mark_restart(None)
                 if server:
                     server.stop()
+
+    def waits(self):
+        """Returns whether the session may wait for its wall."""
+        return self.patience.seconds is not None
 
     def watch_of(self, server):
         return ServerWatch(server, self.out, lambda failure: self.may_go_on(failure, showed_a_frame=True), self.allowance.wait)
@@ -126,10 +136,22 @@ class Supervisor:
             if self.logs:
                 number += 1
                 job_log.forget_tries(self.logs, job_log.KEPT_TRIES - 1)
-                log = job_log.JobLog(self.logs, number, self.mpi, self.hosts.ranks_here())
+                log = job_log.JobLog(self.logs, number, self.mpi, self.hosts.ranks_here(), held=self.waits())
             status = self.one_try(words, log)
+            self.shown = self.shown or (log is not None and log.frame is not None)
+            if status == NOT_YET and self.stop.count == 0 and (self.waits() or not self.shown):
+                if not self.waits():
+                    log and log.close()
+                    return NOT_YET  # the master has printed what is missing
+                missing = marked_answer.own_line("\n".join(log.last_by_rank[0]), MASTERS).removeprefix(MASTERS)
+                log.close()
+                self.patience.wait(missing or "the wall")
+                continue
+            if log:
+                log.release()
             if log and log.force is not None:
                 self.force = log.force
+            self.patience.renew()
             if status in (0, BAD_INPUT) or not self.supervised or self.stop.count > 0 or self.gave_up:
                 self.note_last_failure(status, log)
                 return FAILED if self.gave_up else exit_status(status)
@@ -229,10 +251,14 @@ class Supervisor:
         self.pause()
         try:
             self.hosts.struck(failure)
-            self.hosts.require_reachable(print_line)
+            reach = lambda: self.hosts.require_reachable(print_line)
+            self.patience.until_there(reach) if self.waits() else reach()
+        except Stopped:
+            pass
         except BadInput as complaint:
-            self.report(str(complaint))
-            return False
+            if self.stop.count == 0:
+                self.report(str(complaint))
+                return False
         if self.stop.count > 0:
             print_line(f"stopped between two tries; all shown steps: {self.out / JOURNAL}; `run --resume` continues the session")
             return False

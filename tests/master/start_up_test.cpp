@@ -8,6 +8,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "base/not_yet_error.hpp"
+#include "host/build_id.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/refusal.hpp"
@@ -79,6 +81,29 @@ TEST(StartUp, RefusesARankThatDrawsAnotherTile) {
     ranks[2].host = "n2";
     EXPECT_EQ(test::refusalOf([&] { master::requireTiles(ranks, wallOf(2)); }),
               "rank 2 on n2: draws the tile t1 in place of t2; run the programs of one build");
+}
+
+TEST(StartUp, WaitsOnlyForRanksWhoseDisplaysMayStillCome) {
+    std::vector<lockstep::Readiness> ranks(3);
+    for (lockstep::Readiness& rank : ranks) {
+        rank.buildId = host::buildId();
+    }
+    const std::vector<std::string> names{"the master", "rank 1", "rank 2"};
+    const auto refuse = [&] { master::requireReady(ranks, names); };
+    EXPECT_NO_THROW(refuse());
+    ranks[1].error = "no display";
+    ranks[1].mayStillCome = true;
+    EXPECT_THROW(refuse(), base::NotYetError);
+    EXPECT_EQ(test::refusalOf(refuse), "rank 1: no display");
+    ranks[2].error = "no such mode";
+    EXPECT_EQ(test::refusalOf(refuse), "rank 2: no such mode") << "a wait cannot help rank 2";
+    EXPECT_THROW(refuse(), base::InputError);
+    try {
+        refuse();
+    } catch (const base::NotYetError&) {
+        FAIL() << "the launcher would wait for rank 1 in vain";
+    } catch (const base::InputError&) {
+    }
 }
 
 TEST(StartUp, RefusesAGridThatDoesNotFitTheMemory) {

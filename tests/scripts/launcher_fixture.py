@@ -91,10 +91,10 @@ class LauncherTest(unittest.TestCase):
         self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         return ended.stdout.replace(str(self.folder / "bin") + "/", "").replace(str(self.folder) + "/", "")
 
-    def refused(self, hosts, *options):
+    def refused(self, hosts, *options, status=2):
         """Returns the error line with which a session is refused."""
         ended = self.start(hosts, *options)
-        self.assertEqual((ended.returncode, ended.stdout), (2, ""), ended.stderr)
+        self.assertEqual((ended.returncode, ended.stdout), (status, ""), ended.stderr)
         self.assertEqual(ended.stderr.count("\n"), 1, ended.stderr)
         self.assertRegex(ended.stderr, "^sandwall( run)?: ")
         return ended.stderr.replace(str(self.folder) + "/", "")

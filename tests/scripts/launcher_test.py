@@ -186,11 +186,11 @@ class Refusals(LauncherTest):
         self.assertEqual(self.refused(["-"]), "sandwall: wall.toml:3: no\n")
 
     def test_a_host_that_cannot_be_reached_is_named_with_its_rank(self):
-        self.assertEqual(self.refused(["-", "away1"]), "sandwall: away1 (rank 2): cannot be reached: ssh: connect to host "
+        self.assertEqual(self.refused(["-", "away1"], status=75), "sandwall: away1 (rank 2): cannot be reached: ssh: connect to host "
                          "away1 port 22: No route to host; docs/hosts.md\n")
 
     def test_a_host_without_the_programs_is_named_with_its_rank(self):
-        line = self.refused(["-", "-", "bare1"])
+        line = self.refused(["-", "-", "bare1"], status=75)
         self.assertIn("bare1 (rank 3): has no ", line)
         self.assertIn("sandwall-render-node; install the same build at the same path on every host", line)
 
