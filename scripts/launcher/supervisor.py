@@ -4,6 +4,7 @@
 import collections
 import os
 import pathlib
+import re
 import shutil
 import tempfile
 import time
@@ -27,6 +28,7 @@ BAD_INPUT = 2
 FAILED = 1
 FIRST_WAIT, LONGEST_WAIT = 1, 8  # wait before the second restart in a row, and the longest wait [s]
 ENDED_IN_ORDER = ("sand", "summary")  # `what` of failure.json, after which a restart would not help
+KILLS = ("SIGKILL", "SIGTERM")  # signals from outside, such as of a system without memory
 JOURNAL = "session.journal"
 MASTERS = "sandwall-master: "  # begins a line of the master
 
@@ -36,6 +38,11 @@ def force_share(options):
     if options.force is None and options.force_scale is None:
         return None
     return 0 if options.force == "off" else options.force_scale if options.force_scale is not None else 1
+
+
+def last_words(failure):
+    """Returns the last line of a failed process without its numbers, which may be those of processes."""
+    return re.sub("[0-9]+", "0", next((line for line in reversed(failure.last_lines) if line.strip()), ""))
 
 
 class Allowance:
@@ -84,6 +91,7 @@ class Supervisor:
         self.failed = failed_processes.FailedProcesses(self.out, self.resume and (self.out / JOURNAL).exists())
         self.watch = self.job = None  # watch: the ServerWatch of a session with a haptic server
         self.restarting = False  # whether the job has failed and has not shown a frame since then
+        self.before_frame = None  # the failure of the last try, if that try has shown no frame
         self.gave_up = False
         self.logs = None  # folder of the logs; without --restarts a temporary one, or None if the output is not kept
 
@@ -160,6 +168,8 @@ class Supervisor:
                 return FAILED  # the master has printed why the session is not good
             failure = failure_of_job(status, log, self.hosts, taken(self.out / "failure.json"))
             log.close()
+            if self.same_again(failure):
+                return FAILED
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):
                 return FAILED
             self.mark_restart(failure)
@@ -239,6 +249,21 @@ class Supervisor:
             return True
         self.report(f"more failures than {self.limits} allows")
         return False
+
+    def same_again(self, failure):
+        """Ends the session if a try has failed before its first frame exactly as the try before. Another try would not help.
+
+        Returns whether it has. It goes on after a kill from outside, and where a spare may replace the host.
+        """
+        before, self.before_frame = self.before_frame, failure if failure.frame is None else None
+        if before is None or failure.frame is not None or failure.how in KILLS or (failure.rank and self.hosts.spares):
+            return False
+        if before.text != failure.text or last_words(before) != last_words(failure):
+            return False
+        self.failures.append(failure)
+        self.failed.add(failure, restarted=False)
+        self.report("the same failure twice before the first frame, so that another try would not help")
+        return True
 
     def pause(self):
         """Waits before a restart, longer each time. Returns at once when a signal asks the session to end."""

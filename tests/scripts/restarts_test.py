@@ -3,6 +3,7 @@
 """Tests how scripts/sandwall run names a rank or mpirun that has ended, starts the session again, and finally gives
 up."""
 
+import json
 import re
 import subprocess
 import tempfile
@@ -154,6 +155,28 @@ class GivenUp(Supervised):
         self.tries(*["sleep 0.3; dies 1 host 6"] * 3)
         status, _, error = self.ended(["-"], "--restarts", "1", "--restart-window", "0.1")
         self.assertEqual((status, len(self.commands())), (1, 2), error)
+
+    def test_the_same_failure_twice_before_a_frame_is_the_end(self):
+        self.tries(*["complain 1 'process 4711 has no room'; dies 1 host 6"] * 9)
+        status, _, error = self.ended(["-"], "--restarts", "5")
+        self.assertEqual((status, len(self.commands())), (1, 2), error)
+        self.assertIn("sandwall: the session is given up: the same failure twice before the first frame", error)
+        found = [json.loads(line)["restarted"] for line in (self.folder / "out/failures.jsonl").read_text().splitlines()]
+        self.assertEqual(found, [True, False])
+
+    def test_mpirun_that_refuses_twice_is_the_end(self):
+        self.tries(*["banner 'There is no room for process 4711'; exit 213"] * 9)
+        status, _, error = self.ended(["-"], "--restarts", "5")
+        self.assertEqual((status, len(self.commands())), (1, 2), error)
+        self.assertIn("There is no room for process 4711", error)
+
+    def test_failures_that_differ_or_come_from_outside_are_not_the_same(self):
+        for number, texts in enumerate((["complain 1 one; dies 1 host 6", "complain 1 two; dies 1 host 6"], ["dies 1 host 6", "dies 2 host 6"],
+                                        ["dies 1 host 9", "dies 1 host 9"], ["dies 1 host 6", "progress 2 1; dies 1 host 6"])):
+            with self.subTest(number):
+                (self.folder / "tries").unlink(missing_ok=True)
+                self.tries(*texts, "exit 0")
+                self.assertEqual(self.ended(["-", "-"])[0], 0)
 
     def test_failures_far_apart_are_not_counted_together(self):
         self.tries(*["progress 2 1; sleep 0.3; dies 1 host 6"] * 3, "exit 0")
