@@ -13,6 +13,7 @@ import tempfile
 
 import checked_json
 import first_frame
+import machine_needs
 import marked_answer
 import open_mpi
 import session_folder
@@ -28,6 +29,7 @@ MOST_HOSTS_AT_ONCE = 32
 QUESTIONS = (marked_answer.SAY + '; {node} --version --json 2>&1 | say build; '
              'mpirun --version 2>&1 | say mpi; '
              'echo "memory $(sed -n "s/^MemAvailable: *//p" /proc/meminfo)"; '
+             'df -Pk /dev/shm 2>&1 | say shm; df -Pk "${TMPDIR:-/tmp}" 2>&1 | say tmp; '
              'echo "client $SSH_CONNECTION"')
 
 
@@ -94,6 +96,7 @@ class Doctor:
             self.check_programs(host, answers)
             self.check_memory(host, answers)
             if host.name != HERE:
+                check_needs(host, machine_needs.of_answers(answers, max(1, host.slots)))
                 self.check_clock(host)
                 self.check_way_back(host, answers)
             self.check_gl(host)
@@ -187,6 +190,11 @@ class Doctor:
                 host.add(False, "screen", f"{who}{line}; docs/backends.md", ranks=ranks)
 
 
+def check_needs(host, needs):
+    """Adds what mpirun needs of the host. `needs` are those of machine_needs. Returns whether all are met."""
+    return all([host.add(need.good(), need.name, need.why or need.words) for need in needs])
+
+
 def check_out(host, out):
     """Adds whether `out` on this machine can be written and has room for journal and pictures."""
     place = pathlib.Path(out).absolute()
@@ -228,7 +236,7 @@ def version_of(program):
 def check_master(host, master, build):
     """Adds whether the master's program on this machine is of the build `build`."""
     said, complaint = version_of(master)
-    host.add(said == build, "master", said if said == build else
+    host.add(said is not None and said == build, "master", said if said and said == build else
              f"build {said or complaint}, the ranks have {build}; cmake --build build/release")
 
 
@@ -243,6 +251,7 @@ def examine(hosts, wall, node, master, out, gl, as_json=False, options=()):
     doctor = Doctor(node, build, text, gl)
     check_master(here, master, build)
     check_out(here, out)
+    check_needs(here, machine_needs.here(1 + here.slots))
     doctor.examine(here)  # first, because the other hosts are compared with this machine
     with concurrent.futures.ThreadPoolExecutor(MOST_HOSTS_AT_ONCE) as pool:
         list(pool.map(doctor.examine, others))

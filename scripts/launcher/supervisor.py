@@ -13,6 +13,7 @@ import console
 import events
 import failed_processes
 import job_log
+import machine_needs
 import marked_answer
 import session_control
 import session_folder
@@ -271,13 +272,16 @@ class Supervisor:
         while time.monotonic() < until and self.stop.count == 0:
             time.sleep(0.05)
 
+    def require_ready(self):
+        machine_needs.require(len(self.hosts.ranks_here()))
+        self.hosts.require_reachable(print_line)
+
     def ready_again(self, failure):
         """Waits, and replaces a lost host by a spare. Prints why and returns False if the session cannot continue."""
         self.pause()
         try:
             self.hosts.struck(failure)
-            reach = lambda: self.hosts.require_reachable(print_line)
-            self.patience.until_there(reach) if self.waits() else reach()
+            self.patience.until_there(self.require_ready) if self.waits() else self.require_ready()
         except Stopped:
             pass
         except BadInput as complaint:

@@ -9,6 +9,7 @@ import doctor
 import examined_host
 import first_frame
 import layout
+import machine_needs
 import marked_answer
 import screens
 from rank_hosts import HERE, BadInput
@@ -95,11 +96,13 @@ def examine(node, master, out, backend, as_json):
     doctor.check_master(host, master, build)
     check_launcher(host)
     doctor.check_out(host, out)
+    can_start = doctor.check_needs(host, machine_needs.here(2))
     examiner = doctor.Doctor(node, build, None, backend)
     answers = examiner.reach(host)
     if answers is not None:
         examiner.check_programs(host, answers)
-        check_start(host, backend)
+        if can_start:
+            check_start(host, backend)
         check_cores(host)
         check_memory(host, answers)
         check_display(host)

@@ -94,10 +94,10 @@ class Doctor(LauncherTest):
         status, found = self.examine(["sound1", "-", "sound1", "sound1"])
         self.assertEqual((status, self.reds(found)), (0, 0), found)
         self.assertEqual([check for host, check in found if host == self.name],
-                         ["master", "disk", "build", "mpi", "memory", "gl", "start"])
+                         ["master", "disk", "lo", "shm", "tmp", "build", "mpi", "memory", "gl", "start"])
         self.assertEqual(found[self.name, "start"][1], "a session shows a frame on 4 ranks")
         self.assertEqual([check for host, check in found if host == "sound1"],
-                         ["ssh", "build", "mpi", "memory", "clock", "ports", "gl"])
+                         ["ssh", "build", "mpi", "memory", "shm", "tmp", "clock", "ports", "gl"])
         self.assertEqual(found["sound1", "build"][1], "0123456789abcdef")
         self.assertEqual(found["sound1", "memory"][1], "8192 MiB free, 3 ranks may take 768")
         self.assertEqual(found["sound1", "gl"][1], "ranks 1, 3-4: auto: made-up renderer")
