@@ -34,12 +34,13 @@ install(TARGETS ${programs} ${modules} RUNTIME DESTINATION ${private} LIBRARY DE
 install(FILES ${option_lists} DESTINATION ${private})
 install(PROGRAMS scripts/launcher/sandwall DESTINATION ${private}/python)
 install(FILES
-    scripts/launcher/checked_json.py scripts/launcher/command_line.py scripts/launcher/completion.py
+    scripts/launcher/bounded_log.py scripts/launcher/checked_json.py scripts/launcher/command_line.py scripts/launcher/completion.py
     scripts/launcher/console.py scripts/launcher/desk.py scripts/launcher/doctor.py
     scripts/launcher/environment.py scripts/launcher/events.py scripts/launcher/examined_host.py
     scripts/launcher/failed_processes.py scripts/launcher/film.py scripts/launcher/first_frame.py
-    scripts/launcher/job_log.py scripts/launcher/job_stream.py scripts/launcher/json_schema.py
-    scripts/launcher/layout.py scripts/launcher/mpirun_end.py scripts/launcher/open_mpi.py scripts/launcher/pointer.py
+    scripts/launcher/job_guard.py scripts/launcher/job_log.py scripts/launcher/job_outlet.py scripts/launcher/job_stream.py scripts/launcher/json_schema.py
+    scripts/launcher/layout.py scripts/launcher/machine_needs.py scripts/launcher/marked_answer.py
+    scripts/launcher/mpirun_end.py scripts/launcher/patience.py scripts/launcher/open_mpi.py scripts/launcher/pointer.py
     scripts/launcher/process_failure.py scripts/launcher/processes.py scripts/launcher/program_options.py
     scripts/launcher/programs.py scripts/launcher/rank_hosts.py scripts/launcher/reachable.py
     scripts/launcher/screens.py scripts/launcher/server_watch.py scripts/launcher/session_control.py

@@ -15,6 +15,7 @@ import time
 import checked_json
 import console
 import events
+import job_outlet
 import job_stream
 from console import print_line
 
@@ -29,8 +30,8 @@ RANK_LOG = b"@log "  # begins the line in which a rank on another host names the
 class JobLog:
     """The output of one try of a session, OUT/log/try_N.out and .err.
 
-    The output goes to files because a pipe would break if this launcher ended: SIGPIPE would kill the job before its
-    journal is whole.
+    The output of mpirun goes through pipes, so that a full disk or a limit of file size cannot hinder it. The logs keep the
+    first and the newest lines (bounded_log.py).
 
     `mpi` is one of open_mpi.py. If it lets ranks write files of their own, `ranks` are those on this machine, whose files are
     OUT/log/try_N.rank_R.out and .err. With `held`, lines are shown from the first frame on, or by release().
@@ -42,6 +43,7 @@ class JobLog:
         self.out = job_stream.Stream(f"{self.path}.out", console.OUT, mpi)
         self.err = job_stream.Stream(f"{self.path}.err", console.ERROR, mpi)
         self.streams = [self.out, self.err, *self.open_ranks(ranks if mpi.keeps_output else ())]
+        self.pump = job_outlet.Pump([self.out.outlet, self.err.outlet])
         self.hosts_file = None
         # Lines that are not shown yet, because the wall may be incomplete; None: each line is shown at once.
         self.held = collections.deque(maxlen=MOST_HELD) if held else None
@@ -72,6 +74,10 @@ class JobLog:
         self.hosts_file = job_stream.new_file(path)
         os.write(self.hosts_file, text.encode())
         return job_stream.path_of(self.hosts_file, path)
+
+    def outlets(self):
+        """Returns the ends of the pipes from which the output of mpirun is read."""
+        return [self.out.outlet.reading, self.err.outlet.reading]
 
     def follow(self, ended=False):
         """Shows and reads the output since the last call."""
@@ -156,8 +162,12 @@ class JobLog:
         return (int(found[1]), int(found[2])) if found else None
 
     def close(self):
+        if self.pump is None:
+            return
+        self.pump.stop()
+        self.pump = None
         for stream in self.streams:
-            os.close(stream.file)
+            stream.close()
         if self.hosts_file is not None:
             os.close(self.hosts_file)
 

@@ -8,13 +8,16 @@ import pathlib
 import re
 import zlib
 
+import bounded_log
 import console
+import job_outlet
 import session_folder
 from console import print_line
 
 LONGEST_LINE = 1 << 16  # bytes that are held back for the rest of a line
 RESERVE = 1 << 18  # bytes of disk that are kept free for messages about a full disk
-FALLOC_FL_KEEP_SIZE = 1
+FALLOC_FL_KEEP_SIZE, FALLOC_FL_PUNCH_HOLE = 1, 2
+TOO_FAST = "output came faster than it can be shown; some lines are not shown"
 BANNER = re.compile(rb"-{60,}")
 # A line that a rank on another host sends through mpirun: rank, length of the text, CRC-32 of rank and text
 # (host/rank_output.cpp writes it).
@@ -31,6 +34,15 @@ def new_file(path, complain=print_line):
     except OSError as error:
         complain(f"{path}: cannot be made ({error.strerror}); the output of this try is shown and not kept")
         return os.memfd_create(path.name)
+
+
+def new_log(path, complain=print_line):
+    """Makes a file for a log and returns its descriptor, or None if the disk takes no file."""
+    try:
+        return session_folder.new_file(path, os.O_RDWR | os.O_APPEND)
+    except OSError as error:
+        complain(f"{path}: cannot be made ({error.strerror}); the output of this try is shown and not kept")
+        return None
 
 
 def path_of(descriptor, path):
@@ -60,28 +72,35 @@ def relayed(line):
 
 
 class Stream:
-    """The standard output or standard error of mpirun, a file that is read while it grows."""
+    """The standard output or standard error of mpirun, a pipe whose content is kept in a log."""
 
-    def __init__(self, path, shown, mpi, complain=print_line):
-        self.file = new_file(path, complain)
+    def __init__(self, path, shown, mpi):
+        self.path = path
+        self.outlet = job_outlet.Outlet(new_log(path))
+        self.begin(self.outlet.file, shown, mpi)
+
+    def begin(self, file, shown, mpi):
+        self.file = file  # the job writes into it
+        self.complained = False
         self.shown = shown
         self.mpi = mpi
         self.damaged = 0  # pieces of output that were neither whole lines of ranks nor mpirun's own
         self.offset = 0
-        self.reserved = 0
+        self.reserved = self.freed = 0
         self.rank = None  # rank of the current piece; mpirun's own output has None
         self.held = collections.defaultdict(bytes)  # the unfinished line of each rank
         self.carried = b""  # the end of the last piece, if it may be the beginning of a tag
         self.in_banner = False
         self.in_ranks_banner = False  # whether the last line under a tag belongs to a banner that goes on
-        self.reserve()
 
-    def reserve(self):
-        """Reserves room on the disk, so that messages about a full disk can still be written."""
-        if self.reserved - self.offset < RESERVE // 2:
-            length = ctypes.c_long(RESERVE)
-            LIBC.fallocate(self.file, FALLOC_FL_KEEP_SIZE, ctypes.c_long(self.offset), length)
-            self.reserved = self.offset + RESERVE
+    def complain(self, why):
+        """Prints once why output is missing."""
+        if not self.complained:
+            self.complained = True
+            print_line(f"{self.path}: {why}")
+
+    def close(self):
+        self.outlet.close()
 
     def lines(self, ended):
         """Yields (rank, line) of every line completed since the last call. If `ended`, yields the unfinished lines too."""
@@ -103,10 +122,15 @@ class Stream:
             yield from found
 
     def tagged(self, ended):
-        while piece := os.pread(self.file, 1 << 16, self.offset):
-            self.offset += len(piece)
-            yield from self.split(self.carried + piece)
-        self.reserve()
+        piece, left_out = self.outlet.take()
+        if left_out:
+            self.complain(TOO_FAST)
+            self.held.clear()
+            self.carried, self.rank = b"", None
+            piece = piece.partition(b"\n")[2]
+        if self.outlet.log.why:
+            self.complain(f"cannot be written ({self.outlet.log.why}); output is shown and not kept")
+        yield from self.split(self.carried + piece)
         if ended:
             yield from self.split(self.carried, last=True)
             yield from ((rank, line) for rank, line in self.held.items() if line)
@@ -151,19 +175,44 @@ class RankStream(Stream):
 
     def __init__(self, path, shown, mpi, rank):
         # A rank whose file cannot be made sends its lines through mpirun, whose stream has complained already.
-        self.own_rank = rank
-        super().__init__(path, shown, mpi, complain=lambda line: None)
+        self.own_rank, self.path = rank, path
+        self.most = bounded_log.most_bytes()
+        self.begin(new_file(path, complain=lambda line: None), shown, mpi)
+        self.reserve()
 
     def reserve(self):
-        """Reserves room for the master alone, which writes the messages about a full disk."""
-        if self.own_rank == 0:
-            super().reserve()
+        """Reserves room on the disk for the master, which writes the messages about a full disk."""
+        if self.own_rank == 0 and self.reserved - self.offset < RESERVE // 2:
+            length = ctypes.c_long(RESERVE)
+            LIBC.fallocate(self.file, FALLOC_FL_KEEP_SIZE, ctypes.c_long(self.offset), length)
+            self.reserved = self.offset + RESERVE
+
+    def free_middle(self):
+        """Gives the disk the room of lines in the middle of a long file back, while the rank still writes at its end."""
+        first, newest = self.most // 2, self.offset - self.most // 4
+        if newest - max(self.freed, first) > self.most // 8:
+            LIBC.fallocate(self.file, FALLOC_FL_KEEP_SIZE | FALLOC_FL_PUNCH_HOLE, ctypes.c_long(first), ctypes.c_long(newest - first))
+            self.freed = newest
+
+    def close(self):
+        if self.offset > self.most:
+            try:
+                bounded_log.shorten(self.file, self.offset, self.most, 0)
+            except OSError:
+                pass  # the disk is full; the middle was freed already
+        os.close(self.file)
 
     def lines(self, ended):
-        while piece := os.pread(self.file, 1 << 16, self.offset):
+        size = os.fstat(self.file).st_size
+        if size - self.offset > job_outlet.MOST_AT_ONCE:
+            self.complain(TOO_FAST)
+            self.offset = size - job_outlet.PIECE
+            self.held.clear()
+        while self.offset < size and (piece := os.pread(self.file, 1 << 16, self.offset)):
             self.offset += len(piece)
             yield from ((self.own_rank, line) for _, line in self.add(piece))
         self.reserve()
+        self.free_middle()
         if ended:
             yield from ((self.own_rank, line) for line in self.held.values() if line)
 

@@ -8,6 +8,7 @@ import dataclasses
 import errno
 import os
 import re
+import resource
 import socket
 import tempfile
 
@@ -17,6 +18,7 @@ SHARED = "/dev/shm"
 # Open MPI 4.1 makes a file of 4 MiB for each process in shared memory, and refuses if it has not 5 % more. It fills little of it.
 SHARED_MEBIBYTES, SHARED_MEBIBYTES_PER_RANK = 5, 1
 TEMPORARY_MEBIBYTES = 12  # PMIx of Open MPI 4.1 takes 8 MiB for the first ranks, and fails at a full disk
+FILE_MEBIBYTES = 16  # of the largest file: mpirun's have 4 MiB, and a log 8
 CONNECT_SECONDS = 2
 # A line of `df -Pk`: size, used and available [KiB], and the mount point.
 FILE_SYSTEM = re.compile(r"\s(\d{1,15})\s+-?\d{1,15}\s+(-?\d{1,15})\s+\S+%\s+/")
@@ -86,13 +88,21 @@ def free_of(folder):
     return found.f_blocks * found.f_frsize >> 20, found.f_bavail * found.f_frsize >> 20
 
 
+def file_size():
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)[0]
+    if limit != resource.RLIM_INFINITY and limit >> 20 < FILE_MEBIBYTES:
+        return Need("limit", f"ulimit -f: a file may have {limit >> 10} KiB, and a session needs {FILE_MEBIBYTES << 10}; raise the limit, or set it "
+                    "to unlimited, because the journal grows", may_come=False)
+    return Need("limit", "", "files may have any size" if limit == resource.RLIM_INFINITY else f"files of up to {limit >> 20} MiB")
+
+
 def here(ranks):
     """Returns the needs on this machine, on which this number of ranks runs, with the master."""
     try:
         shared = shared_memory(*free_of(SHARED), ranks)
     except OSError as error:
         shared = Need("shm", f"{SHARED}: cannot be read ({error.strerror}), and mpirun needs it; mount a tmpfs there", may_come=False)
-    return [loopback(), shared, temporary_here()]
+    return [loopback(), shared, file_size(), temporary_here()]
 
 
 def of_answers(answers, ranks):

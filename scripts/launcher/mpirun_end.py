@@ -6,6 +6,7 @@ import os
 import pathlib
 
 STUCK_SECONDS = 10  # far longer than mpirun needs to end, because it counts only while mpirun sleeps
+START_SECONDS = 120  # for mpirun to start its first process; it sleeps while it waits for daemons on other hosts
 LOOK_SECONDS = 0.5
 
 
@@ -43,7 +44,7 @@ class EndWatch:
     """Watches an mpirun for the deadlock that Open MPI 4.1 sometimes has when it ends after a rank has failed.
 
     The thread that frees PMIx then waits for another one, which waits for a lock of the first. All ranks have ended, and
-    mpirun sleeps for ever.
+    mpirun sleeps for ever. An mpirun that could not write its temporary files may sleep for ever before its first rank.
     """
 
     def __init__(self, pid, seconds=STUCK_SECONDS):
@@ -55,11 +56,11 @@ class EndWatch:
         self.since = None  # time since which mpirun has slept without children [s]
 
     def stuck(self, now):
-        """Returns whether mpirun has had running children, and has slept without them for `seconds`. `now` is monotonic [s]."""
+        """Returns whether mpirun has slept for too long without running children. `now` is monotonic [s]."""
         if now >= self.next_look:
             self.next_look = now + LOOK_SECONDS
             self.look(now)
-        return self.since is not None and now - self.since > self.seconds
+        return self.since is not None and now - self.since > (self.seconds if self.had_children else START_SECONDS)
 
     def look(self, now):
         known = self.child and process(self.child)
@@ -72,7 +73,7 @@ class EndWatch:
         # On a busy machine, mpirun may need long. It then waits for a processor, or has used some time of it.
         sleeps = own is not None and own.state == "S" and own.ticks == self.ticks
         self.ticks = own and own.ticks
-        if not sleeps or not self.had_children:
+        if not sleeps:
             self.since = None
         elif self.since is None:
             self.since = now

@@ -6,6 +6,7 @@ import pathlib
 import secrets
 import signal
 import subprocess
+import sys
 import threading
 import time
 
@@ -117,8 +118,8 @@ class HapticServer:
 class Job:
     """The mpirun of a session, in its own process group. It is asked to stop over its standard input.
 
-    The output of the job goes to the log if there is one, else to the launcher's output. It never goes to a pipe: if the launcher
-    ended, SIGPIPE would kill the job before the journal is whole. The job ends when its input ends.
+    The output of the job goes to the log if there is one, else to the launcher's output. The job ends when its input ends. A
+    guard (job_guard.py) sees to that if the launcher ends.
     """
 
     started = 0
@@ -130,6 +131,7 @@ class Job:
         output = {"stdout": log.out.file, "stderr": log.err.file} if log else {}
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, env={**environment, MARK: self.mark},
                                         start_new_session=True, bufsize=0, **output)
+        self.guard = Guard(self.process.pid, self.mark, log.outlets() if log else [])
         self.deadline = None
         self.asked = self.terminated = self.stuck = False
         self.end_watch = EndWatch(self.process.pid)
@@ -163,6 +165,7 @@ class Job:
         if self.log:
             self.log.follow(ended=status is not None)
         if status is not None:
+            self.guard.end()
             return STUCK_STATUS if self.stuck else status
         now = time.monotonic()
         if not self.stuck and self.end_watch.stuck(now):
@@ -190,16 +193,43 @@ class Job:
 
     def clear(self):
         """Waits until no process of the job is left on this machine, because the next master needs the journal alone."""
-        mark = f"{MARK}={self.mark}".encode()
-        deadline = time.monotonic() + KILL_SECONDS
-        while left := marked(mark):
-            if time.monotonic() > deadline:
-                for process in left:
-                    try:
-                        os.kill(process, signal.SIGKILL)
-                    except (ProcessLookupError, PermissionError):
-                        pass  # it has ended
-            time.sleep(LOOK_SECONDS)
+        clear(f"{MARK}={self.mark}".encode())
+
+
+class Guard:
+    """The process that ends a job if the launcher ends. `outputs` are the pipes of the job's output, which it then empties."""
+
+    def __init__(self, mpirun, mark, outputs):
+        life, self.life = os.pipe2(os.O_CLOEXEC)
+        command = [sys.executable, "-S", str(pathlib.Path(__file__).with_name("job_guard.py")), str(life), str(mpirun), f"{MARK}={mark}",
+                   *map(str, outputs)]
+        try:
+            self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                            pass_fds=[life, *outputs], start_new_session=True)
+        finally:
+            os.close(life)
+
+    def end(self):
+        """Ends the guard. Call it after the end of the job."""
+        if self.life is not None:
+            self.process.kill()
+            self.process.wait()
+            os.close(self.life)
+            self.life = None
+
+
+def clear(mark, meanwhile=lambda: None):
+    """Waits until no process has `mark` in its environment, and kills those that do not end. Calls meanwhile() again and again."""
+    deadline = time.monotonic() + KILL_SECONDS
+    while left := marked(mark):
+        if time.monotonic() > deadline:
+            for process in left:
+                try:
+                    os.kill(process, signal.SIGKILL)
+                except (ProcessLookupError, PermissionError):
+                    pass  # it has ended
+        meanwhile()
+        time.sleep(LOOK_SECONDS)
 
 
 def exit_status(status):
@@ -214,16 +244,15 @@ def marked(mark):
 
     Root can read every process's environment, and any user can write any mark into that of a process.
     """
-    found = []
-    for entry in os.listdir("/proc"):
-        if entry.isdigit():
-            try:
-                ours = os.stat(f"/proc/{entry}").st_uid == os.geteuid()
-                if ours and mark in pathlib.Path("/proc", entry, "environ").read_bytes().split(b"\0"):
-                    found.append(int(entry))
-            except OSError:
-                pass  # it has ended, or belongs to another user
-    return found
+    return [int(entry) for entry in os.listdir("/proc") if entry.isdigit() and has_mark(entry, mark)]
+
+
+def has_mark(pid, mark):
+    try:
+        ours = os.stat(f"/proc/{pid}").st_uid == os.geteuid()
+        return ours and mark in pathlib.Path("/proc", str(pid), "environ").read_bytes().split(b"\0")
+    except OSError:
+        return False  # it has ended, or belongs to another user
 
 
 class Input:

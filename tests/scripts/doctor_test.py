@@ -94,7 +94,7 @@ class Doctor(LauncherTest):
         status, found = self.examine(["sound1", "-", "sound1", "sound1"])
         self.assertEqual((status, self.reds(found)), (0, 0), found)
         self.assertEqual([check for host, check in found if host == self.name],
-                         ["master", "disk", "lo", "shm", "tmp", "build", "mpi", "memory", "gl", "start"])
+                         ["master", "disk", "lo", "shm", "limit", "tmp", "build", "mpi", "memory", "gl", "start"])
         self.assertEqual(found[self.name, "start"][1], "a session shows a frame on 4 ranks")
         self.assertEqual([check for host, check in found if host == "sound1"],
                          ["ssh", "build", "mpi", "memory", "shm", "tmp", "clock", "ports", "gl"])

@@ -78,6 +78,9 @@ class Machine(LauncherTest):
         self.refused_within(["-m"], f"mount -t tmpfs -o size=16m none {self.folder}/small && ! cat /dev/zero 2>&- > {self.folder}/small/full", 75,
                             "./small: 0 MiB free, and mpirun needs 12 for temporary files")
 
+    def test_a_limit_of_file_size_is_named(self):
+        self.refused_within(["-m"], "ulimit -f 1000", 2, "ulimit -f: a file may have ")
+
     def test_a_loopback_interface_that_is_down_is_named(self):
         self.refused_within(["-n"], "true", 75, "lo: no connection to 127.0.0.1 (")
 

@@ -19,7 +19,7 @@ import processes
 
 SECONDS = 0.5
 # Each begins as a shell and becomes a program that waits for no child: the child that ends stays a zombie.
-STUCK = "sleep 0.2 & exec sleep 1000"
+STUCK = "sleep 2 & exec sleep 1000"
 AT_WORK = "sleep 0.2 & exec python3 -c 'while True: pass'"
 WITH_A_RANK = "sleep 0.2 & sleep 1000 & exec sleep 1000"
 BEFORE_ITS_RANKS = "exec sleep 1000"
@@ -142,11 +142,15 @@ class EndWatch(unittest.TestCase):
                 self.assertIsNone(self.show(60, mpirun=state))
 
     def test_one_before_its_first_rank_or_with_a_rank_is_not_stuck(self):
-        self.assertIsNone(self.show(60))
+        self.assertIsNone(self.show(110))
         self.assertIsNone(self.show(60, rank="S"))
         self.assertIsNone(self.show(9))
         self.assertIsNone(self.show(60, rank="R"), "another rank")
         self.assertIsNone(self.show(9), "the seconds count from the end of the last rank")
+
+    def test_one_that_sleeps_before_its_first_rank_is_stuck_after_two_minutes(self):
+        found = self.show(200)
+        self.assertTrue(120 <= found <= 122, f"{found} s: it looks twice in a second")
 
     def test_one_that_has_ended_is_not_stuck(self):
         self.show(1, rank="S")

@@ -47,7 +47,7 @@ class ThisMachine(LauncherTest):
 
     def test_every_question_is_answered(self):
         found = self.findings(0)
-        self.assertEqual(list(found), ["master", "disk", "lo", "shm", "tmp", "build", "mpi", "start", "cores", "memory", "display", "osmesa", "egl", "glfw"])
+        self.assertEqual(list(found), ["master", "disk", "lo", "shm", "limit", "tmp", "build", "mpi", "start", "cores", "memory", "display", "osmesa", "egl", "glfw"])
         self.assertEqual(found["cores"]["cores"], len(os.sched_getaffinity(0)))
         self.assertEqual(found["memory"]["free_mebibytes"], 8192)
         self.assertEqual(found["egl"]["renderer"], "made-up renderer")
