@@ -48,17 +48,27 @@ def kill_group(process):
         pass
 
 
+def is_terminal(descriptor):
+    try:
+        return os.isatty(descriptor)
+    except OSError:
+        return False  # it is closed
+
+
 class StopSignals:
     """Counts the signals that ask the session to end. Create it before the first process is started.
 
-    SIGHUP stays ignored if the launcher was started so, as nohup does. A shell without job control starts a command in the
-    background with SIGINT ignored, so that SIGINT counts in any case.
+    SIGHUP stays ignored if the launcher was started so, as nohup does. It is ignored too if no stream of the launcher is a
+    terminal, because then the end of a terminal ends no input and no output. `nohup timeout 8h sandwall run` needs this:
+    timeout sets SIGHUP back. A shell without job control starts a command in the background with SIGINT ignored, so that
+    SIGINT counts in any case.
     """
 
     def __init__(self):
         self.count = 0
-        hang_up = [] if signal.getsignal(signal.SIGHUP) == signal.SIG_IGN else [signal.SIGHUP]
-        for number in (signal.SIGINT, signal.SIGTERM, *hang_up):
+        ignored = signal.getsignal(signal.SIGHUP) == signal.SIG_IGN or not any(map(is_terminal, (0, 1, 2)))
+        signal.signal(signal.SIGHUP, signal.SIG_IGN if ignored else self.add)
+        for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self.add)
 
     def add(self, *_):

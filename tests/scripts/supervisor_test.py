@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests which output of its programs scripts/sandwall run passes on, and how it is stopped."""
 
+import os
 import pathlib
+import pty
 import signal
 import subprocess
 import unittest
@@ -56,24 +58,36 @@ class Stopping(Supervised):
         process.communicate(timeout=60)
         self.assertEqual((process.returncode, len(self.commands())), (137, 1))
 
-    def test_a_connection_that_ends_stops_a_session_unless_nohup_has_started_it(self):
+    def hung_up(self, command, terminal, types):
+        """Sends SIGHUP to a session that `command` starts. Then types a line that ends it, if the test expects it to go on.
+
+        Returns the line that has ended it, and what it has printed for a person.
+        """
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        for name in ("tries", "asked", "out/session.journal"):
+            (self.folder / name).unlink(missing_ok=True)
+        process = subprocess.Popen([*command, *self.command(["-"])], env=self.environment, stdin=theirs if terminal else subprocess.PIPE,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+        os.close(theirs)
+        self.wait_for("journal", (self.folder / "out/session.journal").exists)
+        process.send_signal(signal.SIGHUP)
+        if types:
+            for _ in range(10):  # the launcher looks for signals between two of these lines
+                self.assertEqual(process.stdout.readline(), "a line of progress\n")
+            os.write(ours if terminal else process.stdin.fileno(), b"typed\n")
+        error = process.communicate(timeout=60)[1]
+        self.assertEqual(process.returncode, 0, error)
+        return (self.folder / "asked").read_text(), error
+
+    def test_the_end_of_its_terminal_ends_a_session_unless_nohup_has_started_it(self):
         self.tries("until read -r -t 0.1 line; do progress 1 1; done; echo $line > $folder/asked; exit 0")
-        for command in ([], ["nohup"]):
-            (self.folder / "tries").unlink(missing_ok=True)
-            (self.folder / "asked").unlink(missing_ok=True)
-            (self.folder / "out/session.journal").unlink(missing_ok=True)
-            process = subprocess.Popen([*command, *self.command(["-"])], env=self.environment, stdin=subprocess.PIPE,
-                                       stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            self.wait_for("journal", (self.folder / "out/session.journal").exists)
-            process.send_signal(signal.SIGHUP)
-            if command:
-                for _ in range(10):  # the launcher looks for signals between two of these lines
-                    self.assertEqual(process.stdout.readline(), "a line of progress\n")
-                process.stdin.write("typed\n")
-                process.stdin.flush()
-            error = process.communicate(timeout=60)[1]
-            self.assertEqual((process.returncode, (self.folder / "asked").read_text()), (0, "typed\n" if command else "stop\n"), error)
-            self.assertEqual("stopping" in error, not command)
+        asked, error = self.hung_up([], terminal=True, types=False)
+        self.assertEqual(asked, "stop\n")
+        self.assertIn("stopping", error)
+        ignoring = ["sh", "-c", "trap '' HUP; exec \"$@\"", "sh"]
+        for command, terminal in ((ignoring, True), ([], False), (["nohup", "timeout", "100"], False)):
+            self.assertEqual(self.hung_up(command, terminal, types=True)[0], "typed\n", command)
 
     def test_ctrl_c_ends_a_wait_between_two_tries(self):
         # From the second restart on, the launcher waits before a restart.
