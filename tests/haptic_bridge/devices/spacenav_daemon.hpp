@@ -19,6 +19,8 @@
 
 namespace test {
 
+inline const std::string kSpnavLibrary = SANDWALL_BIN_DIR "/fake-spnav.so";  // speaks to a SpacenavDaemon
+
 /// A spacenavd whose cap a test pushes. Its socket is at $SPNAV_SOCKET of this process and of those that it starts.
 ///
 /// Like the real one, it sends an event only when something changes, and answers questions unless it is of version 0.

@@ -13,11 +13,9 @@ namespace {
 using haptic_bridge::Pose;
 using haptic_bridge::SpacenavDevice;
 
-const std::string kLibrary = SANDWALL_BIN_DIR "/fake-spnav.so";
-
 class SpacenavLoss : public testing::Test {
 protected:
-    void open() { device_.emplace(kLibrary); }
+    void open() { device_.emplace(test::kSpnavLibrary); }
     /// Reads the device a millisecond of the hand later.
     Pose next() { return device_->read(time_ += 1e-3); }
     /// Pushes the cap to the east and presses the first button. Waits until the hand digs.
@@ -178,7 +176,7 @@ TEST_F(SpacenavLoss, IsToldInALineAndTheServerReportsIt) {
     const std::string sceneFile = folder_.write("small.toml", test::kSmallScene);
     const scene::Scene scene = scene::loadScene(sceneFile);
     auto words = test::ServerProcess::usual(sceneFile, folder_, 0, "realtime");
-    words[3] = "spacenav:" + kLibrary;
+    words[3] = "spacenav:" + test::kSpnavLibrary;
     test::ServerProcess server(folder_, words);
     haptic_bridge::Client client(server.address(), test::offerOf(scene));
     test::Wall wall(scene);
@@ -189,7 +187,7 @@ TEST_F(SpacenavLoss, IsToldInALineAndTheServerReportsIt) {
     ASSERT_TRUE(test::eventually([&] { return goesOn() && wall.replica.engaged(); }));
     daemon_->end();
     ASSERT_TRUE(test::eventually([&] { return goesOn() && !wall.replica.engaged(); }));
-    const std::string device = "sandwall-haptic-server: device spacenav:" + kLibrary;
+    const std::string device = "sandwall-haptic-server: device spacenav:" + test::kSpnavLibrary;
     const auto prints = [&](const std::string& line) {
         return test::eventually([&] { return goesOn() && server.errors().find(device + line) != std::string::npos; });
     };

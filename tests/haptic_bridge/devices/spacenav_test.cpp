@@ -15,8 +15,6 @@ namespace {
 
 using haptic_bridge::SpacenavDevice;
 
-const std::string kLibrary = SANDWALL_BIN_DIR "/fake-spnav.so";
-
 /// A daemon whose cap a test pushes, and the time of the hand.
 class Spacenav : public testing::Test {
 protected:
@@ -25,7 +23,7 @@ protected:
 };
 
 TEST_F(Spacenav, APushIsASpeed) {
-    SpacenavDevice device(kLibrary);
+    SpacenavDevice device(test::kSpnavLibrary);
     daemon_.push(175, -350, 700);  // half to the right, fully down, and farther away than the cap can go
     // Another thread polls the library. The test's time does not advance until the event has arrived.
     double x = 0, time = 0;
@@ -53,7 +51,7 @@ TEST_F(Spacenav, APushIsASpeed) {
 
 // A pause is a server that was stopped, or a debugger. The hand would jump through the sand.
 TEST_F(Spacenav, APauseMovesTheHandByATenthOfASecondAtMost) {
-    SpacenavDevice device(kLibrary);
+    SpacenavDevice device(test::kSpnavLibrary);
     daemon_.push(350, 350, 350);
     double time = 0;
     ASSERT_TRUE(test::eventually([&] {
@@ -72,7 +70,7 @@ TEST_F(Spacenav, APauseMovesTheHandByATenthOfASecondAtMost) {
 }
 
 TEST_F(Spacenav, TheHandStaysInReachOfTheField) {
-    SpacenavDevice device(kLibrary);
+    SpacenavDevice device(test::kSpnavLibrary);
     const auto pushed = [&](int push, double& time) {
         daemon_.push(push, push, push);
         const haptic_bridge::Pose from = device.read(time);
@@ -111,7 +109,7 @@ TEST_F(Spacenav, SaysWhatIsMissing) {
               "--device spacenav:" SANDWALL_BIN_DIR "/bad-driver.so: " SANDWALL_BIN_DIR
               "/bad-driver.so has no spnav_open; name the file of libspnav");
     daemon_.end();
-    EXPECT_EQ(complaint(kLibrary), "--device spacenav: no daemon answers; start spacenavd");
+    EXPECT_EQ(complaint(test::kSpnavLibrary), "--device spacenav: no daemon answers; start spacenavd");
 }
 
 TEST(RealDevice, IsADriverOrASixAxisMouseAndNothingElse) {
