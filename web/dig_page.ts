@@ -2,6 +2,7 @@
 // The part of the page that digs.
 import { DigPanel } from "./dig_panel";
 import { DigPointer } from "./dig_pointer";
+import { fetchSandwallFile } from "./fetched";
 import type { DigBegunMessage, DugMessage, FromHand, SandMessage, ToWorker } from "./messages";
 import type { View } from "./view";
 
@@ -70,12 +71,11 @@ export class DigPage {
     /** Begins to dig in a sample scene. */
     async open(scene: string): Promise<void> {
         try {
-            const answer = await fetch(`${encodeURIComponent(scene)}.scene`);
-            if (!answer.ok) {
-                throw new Error("the server does not have it");
+            const file = await fetchSandwallFile(`${encodeURIComponent(scene)}.scene`);
+            if ("why" in file) {
+                throw new Error(file.why);
             }
-            const bytes = await answer.arrayBuffer();
-            this.page.tell({ dig: { name: scene, scene: bytes } }, [bytes]);
+            this.page.tell({ dig: { name: scene, scene: file.bytes } }, [file.bytes]);
         } catch (error) {
             this.page.problem(`${scene}: cannot be fetched (${(error as Error).message}); build the page again`);
         }

@@ -32,6 +32,11 @@ export class DigPointer {
         canvas.addEventListener("pointermove", (event) => this.move(event));
         canvas.addEventListener("pointerup", (event) => this.up(event));
         canvas.addEventListener("pointercancel", (event) => this.up(event));
+        // A pointer that is unplugged, or a button that is released while another window or a menu has the pointer, may
+        // send none of these.
+        canvas.addEventListener("lostpointercapture", (event) => event.pointerId === this.pressedBy && this.letGo());
+        addEventListener("blur", () => this.letGo());
+        document.addEventListener("visibilitychange", () => this.letGo());
     }
 
     private down(event: PointerEvent): void {
@@ -66,7 +71,19 @@ export class DigPointer {
         this.waiting = undefined;
     }
 
+    /** Lifts the tool where it is. */
+    private letGo(): void {
+        this.cancelWaiting();
+        if (this.pressedBy !== undefined) {
+            this.pressedBy = undefined;
+            this.takeReadings([{ ...this.before!, ms: performance.now(), pressed: false }]);
+        }
+    }
+
     private move(event: PointerEvent): void {
+        if (event.pointerId === this.pressedBy && (event.buttons & 1) === 0) {
+            this.letGo();  // its release was lost
+        }
         const first = this.waiting?.event;
         if (first && event.pointerId === first.pointerId) {
             if (Math.hypot(event.clientX - first.clientX, event.clientY - first.clientY) < kFarPixels) {

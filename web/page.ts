@@ -94,7 +94,8 @@ worker.onmessage = ({ data }: MessageEvent<FromWorker>) => {
         default: return dig.take(data);
     }
 };
-worker.onerror = (event) => problem(`The page's worker has failed: ${event.message}`);
+// A worker that could not be loaded sends an event without a message.
+worker.onerror = ({ message }) => problem(message ? `The page's worker has failed: ${message}` : "worker.js cannot be loaded; put all files of the page on the server");
 
 openDroppedFiles({ tell, problem });
 const named = query.get("journal"), scene = query.get("dig");

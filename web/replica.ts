@@ -13,8 +13,12 @@ export class Replica {
     static async load(): Promise<Replica> {
         // The glue is not bundled, because it finds replica.wasm beside itself.
         const address = new URL("./replica.mjs", self.location.href).href;
-        const made = await import(/* @vite-ignore */ address);
-        return new Replica(await made.default());
+        try {
+            const made = await import(/* @vite-ignore */ address);
+            return new Replica(await made.default());
+        } catch (error) {
+            throw new Error(`replica.mjs and replica.wasm cannot be loaded (${(error as Error).message}); put all files of the page on the server`);
+        }
     }
 
     private text(address: number): string { return this.wasm.UTF8ToString(address); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opens files: those that a person drops or chooses, and a journal of the page's own server.
+import { fetchSandwallFile } from "./fetched";
 import type { ToWorker } from "./messages";
 
 /** What opening uses of the page. */
@@ -32,7 +33,11 @@ async function openFiles(files: File[], page: Opener): Promise<void> {
 /** Opens the files that are dropped on the page, or chosen. */
 export function openDroppedFiles(page: Opener): void {
     const input = document.getElementById("files") as HTMLInputElement, over = (is: boolean) => document.body.classList.toggle("over", is);
-    input.onchange = () => void openFiles([...input.files!], page);
+    input.onchange = () => {
+        const files = [...input.files!];
+        input.value = "";  // otherwise a browser sends no event when a file is chosen again, after it has changed
+        void openFiles(files, page);
+    };
     addEventListener("dragover", (event) => {
         event.preventDefault();
         over(true);
@@ -52,15 +57,15 @@ export async function fetchJournal(path: string, page: Opener): Promise<void> {
         return page.problem("The page only opens journals of its own server; drop the files instead.");
     }
     const parts: ArrayBuffer[] = [];
-    for (let part = 1; ; ++part) {
-        const answer = await fetch(part === 1 ? url : `${url.href}.${part}`);
-        if (!answer.ok) {
+    for (;;) {
+        const part = await fetchSandwallFile(parts.length === 0 ? url : `${url.href}.${parts.length + 1}`);
+        if ("bytes" in part) {
+            parts.push(part.bytes);
+        } else if (parts.length === 0) {
+            return page.problem(`${path}: ${part.why}; check the address`);
+        } else {
             break;
         }
-        parts.push(await answer.arrayBuffer());
-    }
-    if (parts.length === 0) {
-        return page.problem(`${path}: the server does not have it; check the address`);
     }
     page.tell({ open: { name: url.pathname.slice(url.pathname.lastIndexOf("/") + 1), address: url.pathname, parts } }, parts);
 }

@@ -63,9 +63,7 @@ void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
 
 Pose MappedDevice::read(double time) {
     const ArmReading reading = arm_->read(time);
-    if (!reading.present) {
-        troubles_.count(Trouble::absent);
-    }
+    troubles_.answered(reading.present);
     if (!reading.present || !check_.accept(time, reading.place)) {
         reading_.present = false;
         pose_.engaged = false;

@@ -78,7 +78,7 @@ std::unique_ptr<Device> openDevice(const std::string& spec, const HandSettings& 
         throw base::InputError("--device pointer: needs no haptic server; give it to scripts/sandwall run");
     }
     if (kind == "spacenav" && (spec == kind || !what.empty())) {
-        return std::make_unique<SpacenavDevice>(what.empty() ? "libspnav.so.0" : what);
+        return std::make_unique<SpacenavDevice>(what);
     }
     throw base::InputError("--device " + spec +
                            ": unknown device; give script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, "

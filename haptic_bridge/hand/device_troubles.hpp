@@ -33,8 +33,25 @@ public:
         return counts_[static_cast<std::size_t>(trouble)].load(std::memory_order_relaxed);
     }
 
+    /// Counts a reading that the device has answered, or has not. A reading without an answer is Trouble::absent.
+    void answered(bool answers) {
+        if (!answers) {
+            count(Trouble::absent);
+        }
+        if (!answers && !away()) {
+            losses_.store(losses() + 1, std::memory_order_relaxed);
+        }
+        away_.store(!answers, std::memory_order_relaxed);
+    }
+    /// Returns how often the device has stopped to answer.
+    [[nodiscard]] std::uint64_t losses() const { return losses_.load(std::memory_order_relaxed); }
+    /// Returns whether the device has not answered the last reading.
+    [[nodiscard]] bool away() const { return away_.load(std::memory_order_relaxed); }
+
 private:
     std::array<std::atomic<std::uint64_t>, kTroubles> counts_{};
+    std::atomic<std::uint64_t> losses_{0};
+    std::atomic<bool> away_{false};
 };
 
 /// Makes lines for the user out of the counts of troubles. Used by one thread.

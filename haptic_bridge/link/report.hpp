@@ -62,6 +62,8 @@ struct Report {
     std::uint64_t feltTicks = 0;                  // of these, ticks that pushed a force above 0
     std::uint64_t faultedTicks = 0;               // of these, ticks in which a fault pushed 0 (kFaults)
     bool literal = false;                         // the server runs with --guards literal
+    std::uint64_t deviceLosses = 0;               // times that the device stopped to answer
+    bool deviceAway = false;                      // the device does not answer now
     Audited audited = Audited::no;                // agreed or differed only in the last report of a link
     /// The order of the bytes. The names are the keys in `haptic` of summary.json (master/summary.hpp).
     template <class Self, class Visit>
@@ -93,6 +95,8 @@ struct Report {
         visit("guarded_ticks", base::byName<Guard>(it.guards));
         visit("refused/connections", base::byName<RefusalCode>(it.refused));
         visit("literal", it.literal);
+        visit("device_losses", it.deviceLosses);
+        visit("device_away", it.deviceAway);
         visit("audited", it.audited);
     }
     friend bool operator==(const Report&, const Report&) = default;

@@ -30,6 +30,12 @@ void ChannelHand::drain() {
     channel_.samples.consume_all([this](const HandSample& sample) { add(sample); });
 }
 
+void ChannelHand::collect() {
+    if (const std::int64_t now = now_(); last().engaged && !waits() && now - last().readNs > kPatienceNs) {
+        add({.readNs = now, .probe = last().probe, .read = false});
+    }
+}
+
 void ChannelHand::publish(const sand::Replica& replica, bool edited) {
     edits_ += edited ? 1 : 0;
     // The hand feels sand in which its oldest waiting movement is missing. The guards see how old that is.

@@ -34,9 +34,12 @@ public:
 };
 
 /// Hand in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
+///
+/// If the force thread hangs, for example in a driver, the tool is lifted after kPatienceNs, until samples come again.
 class ChannelHand : public DeviceHand {
 public:
-    using Clock = std::function<std::int64_t()>;  // [ns], the clock of HapticTick::tick()
+    static constexpr std::int64_t kPatienceNs = 500'000'000;  // [ns] since the last sample was read
+    using Clock = std::function<std::int64_t()>;              // [ns], the clock of HapticTick::tick()
 
     /// Uses the host's clock.
     ChannelHand(const HapticTick& hand, HandChannel& channel, int stepsPerSecond);
@@ -53,6 +56,7 @@ public:
     [[nodiscard]] std::uint64_t dropped() const override { return Hand::dropped() + channel_.overflow; }
 
 private:
+    void collect() override;
     void copy(const sand::Replica& replica);
 
     const HapticTick& hand_;

@@ -57,6 +57,10 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     report.feltTicks = hand.handTicks().felt();
     report.faultedTicks = hand.handTicks().faulted();
     report.literal = hand.guards().mode() == Guards::Mode::literal;
+    if (const TroubleCounts* troubles = hand.device().troubles()) {
+        report.deviceLosses = troubles->losses();
+        report.deviceAway = troubles->away();
+    }
     return report;
 }
 

@@ -10,7 +10,7 @@ namespace haptic_bridge {
 void ServerOptions::addTo(host::CommandLine& line) {
     line.option("--scene", scene, "scene file, the same as the wall's").required();
     line.option("--device", device, "script:gis, script:FILE, trace:FILE.csv, driver:FILE.so, sim:PRESET or spacenav")
-        .beginnings({"script:", "trace:", "driver:", "sim:", "spacenav"})
+        .beginnings({"script:", "trace:", "driver:", "sim:", "spacenav", "spacenav:"})
         .required();
     line.option("--map", map, "mapping from the device to the scene; docs/devices.md")
         .metavar("KEY=VALUE")

@@ -13,6 +13,8 @@
 #include <utility>
 
 #include "base/input_error.hpp"
+#include "host/clock.hpp"
+#include "render_node/gl/button_watch.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/gl/glfw_window.hpp"
 #include "render_node/gl/part_copy.hpp"
@@ -102,7 +104,13 @@ public:
     }
     [[nodiscard]] std::vector<PointerEvent> takePointer() override {
         check();
-        return std::exchange(input_->pointer, {});
+        std::vector<PointerEvent> events = std::exchange(input_->pointer, {});
+        buttons_.follow(events);
+        if (const std::int64_t now = host::monotonicNs(); buttons_.due(now)) {
+            const std::vector<PointerEvent> lost = buttons_.look(watch_.buttons(), now);
+            events.insert(events.end(), lost.begin(), lost.end());
+        }
+        return events;
     }
     void awaitEvents(double seconds) override { glfwWaitEventsTimeout(seconds); }
 
@@ -158,6 +166,7 @@ private:
     GlfwLibrary library_;
     std::vector<GlfwWindow> windows_;
     std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
+    ButtonWatch buttons_;
     bool eyesInTurn_;
     bool mayClose_;  // whether a user who closes a window ends the session
     std::optional<SwapGroup> group_;

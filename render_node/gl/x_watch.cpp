@@ -97,6 +97,14 @@ void XWatch::takeEvents() {
     }
 }
 
+ButtonWatch::Down XWatch::buttons() const {
+    Window root = None, child = None;
+    int rootX = 0, rootY = 0, x = 0, y = 0;
+    unsigned int mask = 0;
+    XQueryPointer(display_, DefaultRootWindow(display_), &root, &child, &rootX, &rootY, &x, &y, &mask);
+    return {.left = (mask & Button1Mask) != 0, .view = (mask & (Button2Mask | Button3Mask)) != 0};
+}
+
 int XWatch::firstLost() {
     takeEvents();
     if (lost_ < 0 && !refusal.empty()) {

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "render_node/gl/button_watch.hpp"
+
 struct _XDisplay;  // NOLINT(bugprone-reserved-identifier): Xlib's own name of its Display
 
 namespace render_node {
@@ -32,6 +34,8 @@ public:
     /// Returns the index of the first lost window, or -1. Throws std::runtime_error if the server refused a request for
     /// another reason.
     [[nodiscard]] int firstLost();
+    /// Returns the buttons of the pointer that are down now. Asks the X server.
+    [[nodiscard]] ButtonWatch::Down buttons() const;
     [[nodiscard]] const std::string& name() const { return name_; }  // ":1"
 
 private:

@@ -94,13 +94,17 @@ def hand(summary, failures):
     words = f"linked {counted(told['links'], 'time')} {SESSION}, {where}"
     if again := summary["haptic"]["reconnects"]:
         words = f"links made again: {again} {SESSION}; {words}"
+    lost, away = (summary["haptic"].get(key, 0) for key in ("device_losses", "device_away"))
+    if lost:
+        at_end = ", and did not answer at the end" if away else ""
+        words = f"the device stopped answering {counted(lost, 'time')} {SERVER_START}{at_end}; {words}"
     if died := [failure for failure in failures if failure["server"] and failure["now"] and not failure["restarted"]]:
         return BAD, f"{died[-1]['what']} and was not started again; {words}"
     if told["frames_with_hand"] == 0 and summary["seconds"] >= LONGEST_WAIT_FOR_HAND:
         return BAD, f"never linked {START}: {told['last_refusal'] or 'no answer'}; {words}"
     if not told["linked_at_end"]:
         return NOTE, f"not linked at the end; {words}"
-    return NOTE if again or shown - told["frames_with_hand"] > MOST_FRAMES_WITHOUT_HAND * shown else GOOD, words
+    return NOTE if again or lost or shown - told["frames_with_hand"] > MOST_FRAMES_WITHOUT_HAND * shown else GOOD, words
 
 
 def force(summary, _):

@@ -211,11 +211,15 @@ TEST(Summary, SaysWhatTheDeviceGot) {
     summary.haptic->feltTicks = 300;
     summary.haptic->faultedTicks = 5;
     summary.haptic->literal = true;
+    summary.haptic->deviceLosses = 2;
+    summary.haptic->deviceAway = true;
     const nlohmann::json haptic = written(summary)["haptic"];
     EXPECT_EQ(haptic["hand_ticks"], 900);
     EXPECT_EQ(haptic["felt_ticks"], 300);
     EXPECT_EQ(haptic["faulted_ticks"], 5);
     EXPECT_EQ(haptic["literal"], true);
+    EXPECT_EQ(haptic["device_losses"], 2);
+    EXPECT_EQ(haptic["device_away"], true);
 }
 
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {

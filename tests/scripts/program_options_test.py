@@ -92,7 +92,8 @@ class Devices(LauncherTest):
     def test_known_strokes_are_a_device(self):
         self.assertEqual(program_options.device("script:stroke"), f"script:{ROOT / 'haptic_bridge' / 'devices' / 'stroke.strokes'}")
         (self.folder / "stroke").write_text("")
-        for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "pointer", "none"):
+        for spec in ("script:stroke", "script:gis", "script:none.strokes", "script:no/such", "spacenav", "spacenav:./my_spnav.so",
+                     "driver:./my.so:what", "sim:touch", "trace:hand.csv", "pointer", "none"):
             self.assertEqual(program_options.device(spec), spec)
 
     def test_an_unknown_device_names_the_known_ones(self):

@@ -34,7 +34,7 @@ SUMMARY = {
                "refused": {"servers": REFUSALS, "connections": REFUSALS}, "force_us": {"p50": 2.0, "p99": 3.0}, "half_round_trip_ms": TRIP,
                "half_round_trip_to_master_ms": TRIP, "step_message_bytes": 140.0, "steps_withheld": 0,
                "steps_withheld_by": {"wall": 0, "disk": 0, "pause": 0, "start": 0}, "samples_dropped": 0, "ticks": 10400, "ticks_missed": 0,
-               "literal": False, "hand_ticks": 10000, "felt_ticks": 4000, "faulted_ticks": 0, "guarded_ticks": {**GUARDS, "ramp": 500}},
+               "literal": False, "device_losses": 0, "device_away": False, "hand_ticks": 10000, "felt_ticks": 4000, "faulted_ticks": 0, "guarded_ticks": {**GUARDS, "ramp": 500}},
     "master_memory_bytes": 1 << 26,
     "journal": {"policy": "required", "state": "written", "whole": True, "parts": 1, "checkpoints": 1, "checkpoints_failed": 0,
                 "checkpoints_beyond": 0, "checkpoint_copy_ms": SPREAD, "full_disk": {"times": 0, "seconds": 0.0}},

@@ -270,6 +270,10 @@ class Hands(Lines):
     def test_links_made_again_are_noted(self):
         self.only("hand", NOTE, "links made again: 500 in the session", haptic__reconnects=500, hand__links=501)
 
+    def test_a_device_that_stopped_answering_is_noted(self):
+        self.only("hand", NOTE, "the device stopped answering 1 time since the last start of the haptic server; linked", haptic__device_losses=1)
+        self.only("hand", NOTE, "stopped answering 2 times", ", and did not answer at the end; linked", haptic__device_losses=2, haptic__device_away=True)
+
     def test_steps_withheld_have_their_cause(self):
         by = {"wall": 0, "disk": 0, "pause": 0, "start": 0}
         for cause, words, mark in (("wall", "because the wall was behind", NOTE), ("disk", "because the disk had no room", NOTE),

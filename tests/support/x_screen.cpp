@@ -5,6 +5,7 @@
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
 #include <X11/extensions/Xrandr.h>
+#include <dlfcn.h>
 
 #include <chrono>
 #include <cmath>
@@ -213,6 +214,31 @@ void XScreen::button(unsigned long window, unsigned int number, bool down) const
     event.xbutton.same_screen = True;
     event.xbutton.button = number;
     XSendEvent(display_.get(), window, False, down ? ButtonPressMask : ButtonReleaseMask, &event);
+    XSync(display_.get(), False);
+}
+
+bool XScreen::pressForReal(unsigned int number, bool down) const {
+    using Fake = int(_XDisplay*, unsigned int, int, unsigned long);
+    static void* const library = dlopen("libXtst.so.6", RTLD_NOW);
+    const auto fake = library == nullptr ? nullptr : reinterpret_cast<Fake*>(dlsym(library, "XTestFakeButtonEvent"));
+    if (fake == nullptr) {
+        return false;
+    }
+    fake(display_.get(), number, down ? True : False, CurrentTime);
+    XSync(display_.get(), False);
+    return true;
+}
+
+void XScreen::focusAnotherWindow() const {
+    const Window other = XCreateSimpleWindow(display_.get(), root_, 0, 0, 1, 1, 0, 0, 0);
+    XMapWindow(display_.get(), other);
+    XSync(display_.get(), False);
+    XSetInputFocus(display_.get(), other, RevertToNone, CurrentTime);
+    XSync(display_.get(), False);
+}
+
+void XScreen::hide(unsigned long window) const {
+    XUnmapWindow(display_.get(), window);
     XSync(display_.get(), False);
 }
 

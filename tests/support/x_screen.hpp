@@ -54,6 +54,11 @@ public:
     /// Presses or releases a button. 1 is the left button. 4 and 5 are the wheel's notches away from the user and
     /// towards the user.
     void button(unsigned long window, unsigned int number, bool down) const;
+    /// Presses or releases a button of the pointer itself. Returns false without libXtst.
+    [[nodiscard]] bool pressForReal(unsigned int number, bool down) const;
+    /// Gives the focus to a window of the test's own.
+    void focusAnotherWindow() const;
+    void hide(unsigned long window) const;
 
 private:
     struct Close {

@@ -53,6 +53,7 @@ async function badFiles(page, good) {
         const { problem, hash, matches } = await page.evaluate(() => ({ ...document.body.dataset }));
         assert.match(problem, sentence);
         assert.deepEqual([hash, matches], [before.hash, before.matches], "the session stays");
+        assert.equal(await input.evaluate(({ value }) => value), "", "a browser sends no event if the input still has a file of this name");
     }
     const late = Math.floor(bytes.length * 0.98);  // behind the header, which is most of a short session
     for (const [file, sentence] of [[put("torn.journal", bytes.subarray(0, bytes.length - 3)), /incomplete write/], [put("damaged.journal", changed(late, bytes[late] ^ 1)), /damaged at byte/]]) {

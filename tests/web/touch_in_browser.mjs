@@ -34,9 +34,9 @@ async function fingers(...tracks) {
         await hand.end();
     }
 }
+const send = (type, [x, y], buttons) => control.send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", buttons, clickCount: 1, pointerType: "pen" });
 async function pen(track) {
     const at = await placing(), [first, ...rest] = track.map((place) => at(place)), last = rest.at(-1);
-    const send = (type, [x, y], buttons) => control.send("Input.dispatchMouseEvent", { type, x, y, button: type === "mouseMoved" ? "none" : "left", buttons, clickCount: 1, pointerType: "pen" });
     await send("mouseMoved", first, 0);
     await send("mousePressed", first, 1);
     for (const place of rest) {
@@ -94,6 +94,34 @@ async function rest() {
     await until(`Number(document.body.dataset.step) >= ${step}`);
 }
 
+/** Begins to dig with a pen, loses it by `lose`, and moves it on, with the buttons that it reports. Then nothing may dig. */
+async function lostPen(lose, buttons) {
+    const at = await placing(), track = way([0.4, 0.5], [0.6, 0.55]).map((place) => at(place));
+    await send("mouseMoved", track[0], 0);
+    await send("mousePressed", track[0], 1);
+    await send("mouseMoved", track[1], 1);
+    await lose();
+    await send("mouseMoved", track[2], buttons);
+    await undo();
+    for (const place of track.slice(3)) {
+        await send("mouseMoved", place, buttons);
+        await pause(16);
+    }
+    await rest();
+    assert.equal(await canUndo(), false, "a lost pen digs nothing");
+    await send("mouseReleased", track.at(-1), 0);
+}
+
+/** Takes the pen's capture away, as a browser does when the pen is gone. */
+const loseCapture = () => page.evaluate(() => {
+    const sand = document.getElementById("sand");
+    for (let id = 0; id < 20; ++id) {  // a script cannot know the pen's number
+        if (sand.hasPointerCapture(id)) {
+            sand.releasePointerCapture(id);
+        }
+    }
+});
+
 async function whileDigging() {
     // A small field, which is drawn quickly also in software.
     const folder = fs.mkdtempSync(path.join(os.tmpdir(), "touch-")), grid = path.join(folder, "flat.asc");
@@ -106,6 +134,9 @@ async function whileDigging() {
         assertMoved(await moved(dig), []);
         await undo();  // there was a stroke
     }
+    await lostPen(() => page.evaluate(() => dispatchEvent(new Event("blur"))), 1);  // another window has the focus
+    await lostPen(() => {}, 0);  // its release has gone elsewhere
+    await lostPen(loseCapture, 1);
     assertMoved(await moved(() => fingers(way([0.4, 0.5], [0.5, 0.5]), way([0.6, 0.5], [0.7, 0.5]))), ["direction"]);
     const nearer = await moved(() => fingers(...pinch(0.1, 0.3)));
     assert.ok(nearer.far < -0.1, JSON.stringify(nearer));

@@ -142,6 +142,28 @@ TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
     EXPECT_EQ(keys, (Keys{{base::Keystroke::kEscape, 0, 0}}));
 }
 
+// The window has no focus, so that GLFW does not release its buttons when it is hidden.
+TEST_F(Pointer, AReleaseThatTheHiddenWindowDoesNotGetComesAllTheSame) {
+    open(true);
+    screen_->focusAnotherWindow();
+    screen_->point(window_, 120, 60);
+    if (!screen_->pressForReal(1, true)) {
+        GTEST_SKIP() << "no libXtst.so.6; install Debian's libxtst6";
+    }
+    ASSERT_TRUE(comes(Kind::press));
+    for (int looks = 0; looks < 5; ++looks) {  // as a rank that shows frames
+        context_->awaitEvents(0.05);
+        const auto events = context_->takePointer();
+        seen_.insert(seen_.end(), events.begin(), events.end());
+    }
+    const auto released = [](const PointerEvent& event) { return event.kind == Kind::release; };
+    EXPECT_EQ(std::ranges::count_if(seen_, released), 0) << "the button is held";
+    screen_->hide(window_);
+    ASSERT_TRUE(screen_->pressForReal(1, false));
+    ASSERT_TRUE(comes(Kind::release));
+    EXPECT_EQ(seen_.back().at, glm::dvec2(120, 60));
+}
+
 TEST_F(Pointer, NeedsAWindow) {
     EXPECT_THROW((void)render_node::makeContext(render_node::Backend::osmesa, wall_, wall_.tiles[0], true),
                  base::InputError);

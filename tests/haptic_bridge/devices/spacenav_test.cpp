@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "haptic_bridge/devices/spacenav.hpp"
 
-#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -9,28 +8,23 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
+#include "tests/haptic_bridge/devices/spacenav_daemon.hpp"
 #include "tests/support/server_process.hpp"
 
 namespace {
 
 using haptic_bridge::SpacenavDevice;
 
-/// The fake library, and functions with which a test moves its cap.
+/// A daemon whose cap a test pushes, and the time of the hand.
 class Spacenav : public testing::Test {
 protected:
-    template <class... Words>
-    void call(const char* name, Words... words) {
-        void* handle = dlopen(library_.c_str(), RTLD_NOW | RTLD_LOCAL);
-        ASSERT_NE(handle, nullptr) << dlerror();
-        reinterpret_cast<void (*)(Words...)>(dlsym(handle, name))(words...);
-    }
-    void TearDown() override { call("fakeSpnavDaemon", 1); }
-    const std::string library_ = SANDWALL_BIN_DIR "/fake-spnav.so";
+    const test::Folder folder_;
+    test::SpacenavDaemon daemon_{folder_.file("spnav")};
 };
 
 TEST_F(Spacenav, APushIsASpeed) {
-    SpacenavDevice device(library_);
-    call("fakeSpnavPush", 175, -350, 700);  // half to the right, fully down, and farther away than the cap can go
+    SpacenavDevice device(test::kSpnavLibrary);
+    daemon_.push(175, -350, 700);  // half to the right, fully down, and farther away than the cap can go
     // Another thread polls the library. The test's time does not advance until the event has arrived.
     double x = 0, time = 0;
     ASSERT_TRUE(test::eventually([&] { return (x = device.read(time += 1e-6).x) > 0; }));
@@ -44,12 +38,12 @@ TEST_F(Spacenav, APushIsASpeed) {
     EXPECT_NEAR(to.z - from.z, -0.5 * SpacenavDevice::kClimb, 1e-9);
     EXPECT_FALSE(to.engaged);
     // A released cap stops the hand, and a clock that does not advance also stops it.
-    call("fakeSpnavPush", 0, 0, 0);
-    call("fakeSpnavButton", 0, 1);
+    daemon_.push(0, 0, 0);
+    daemon_.button(0, true);
     ASSERT_TRUE(test::eventually([&] { return device.read(time).engaged; }));
     EXPECT_DOUBLE_EQ(device.read(time += 0.05).x, to.x);
-    call("fakeSpnavButton", 0, 0);
-    call("fakeSpnavButton", 1, 1);
+    daemon_.button(0, false);
+    daemon_.button(1, true);
     ASSERT_TRUE(test::eventually([&] { return device.read(time).x == 0; }))
         << "the second button brings the hand back to the centre";
     EXPECT_FALSE(device.read(time).engaged);
@@ -57,8 +51,8 @@ TEST_F(Spacenav, APushIsASpeed) {
 
 // A pause is a server that was stopped, or a debugger. The hand would jump through the sand.
 TEST_F(Spacenav, APauseMovesTheHandByATenthOfASecondAtMost) {
-    SpacenavDevice device(library_);
-    call("fakeSpnavPush", 350, 350, 350);
+    SpacenavDevice device(test::kSpnavLibrary);
+    daemon_.push(350, 350, 350);
     double time = 0;
     ASSERT_TRUE(test::eventually([&] {
         const haptic_bridge::Pose pose = device.read(time += 1e-6);
@@ -76,9 +70,9 @@ TEST_F(Spacenav, APauseMovesTheHandByATenthOfASecondAtMost) {
 }
 
 TEST_F(Spacenav, TheHandStaysInReachOfTheField) {
-    SpacenavDevice device(library_);
+    SpacenavDevice device(test::kSpnavLibrary);
     const auto pushed = [&](int push, double& time) {
-        call("fakeSpnavPush", push, push, push);
+        daemon_.push(push, push, push);
         const haptic_bridge::Pose from = device.read(time);
         EXPECT_TRUE(test::eventually([&] {
             const haptic_bridge::Pose pose = device.read(time += 1e-6);
@@ -104,10 +98,18 @@ TEST_F(Spacenav, SaysWhatIsMissing) {
         }
         return std::string();
     };
+    const std::string advice = "; install Debian's libspnav0 and spacenavd, or name the file of libspnav";
     EXPECT_EQ(complaint("libnospnav.so"),
-              "--device spacenav: libnospnav.so cannot be loaded; install Debian's libspnav0 and spacenavd");
-    call("fakeSpnavDaemon", 0);
-    EXPECT_EQ(complaint(library_), "--device spacenav: no daemon answers; start spacenavd");
+              "--device spacenav:libnospnav.so: libnospnav.so: cannot open shared object file: No such file or "
+              "directory" +
+                  advice);
+    const std::string text = folder_.write("text.so", "no library\n");
+    EXPECT_EQ(complaint(text), "--device spacenav:" + text + ": " + text + ": file too short" + advice);
+    EXPECT_EQ(complaint(SANDWALL_BIN_DIR "/bad-driver.so"),
+              "--device spacenav:" SANDWALL_BIN_DIR "/bad-driver.so: " SANDWALL_BIN_DIR
+              "/bad-driver.so has no spnav_open; name the file of libspnav");
+    daemon_.end();
+    EXPECT_EQ(complaint(test::kSpnavLibrary), "--device spacenav: no daemon answers; start spacenavd");
 }
 
 TEST(RealDevice, IsADriverOrASixAxisMouseAndNothingElse) {

@@ -71,6 +71,8 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .feltTicks = 22,
                   .faultedTicks = 23,
                   .literal = true,
+                  .deviceLosses = 53,
+                  .deviceAway = true,
                   .audited = Audited::differed};
     std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{28});
     std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{43});
@@ -83,6 +85,8 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
         EXPECT_EQ(reader.get<std::uint64_t>(), number);
     }
     EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "literal guards";
+    EXPECT_EQ(reader.get<std::uint64_t>(), 53) << "losses of the device";
+    EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "it is away";
     EXPECT_EQ(reader.get<std::uint8_t>(), 2) << "the audit: differed";
     EXPECT_TRUE(reader.atEnd());
     EXPECT_EQ(decode(withoutLength(framed)), Message(report));

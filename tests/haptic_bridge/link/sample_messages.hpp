@@ -29,6 +29,8 @@ inline std::vector<Message> oneOfEach() {
     report.feltTicks = 4;
     report.faultedTicks = 2;
     report.literal = true;
+    report.deviceLosses = 3;
+    report.deviceAway = true;
     report.audited = Audited::differed;
     return {Hello{identity, Role::watch, true, true, {1, 2}},
             Welcome{identity, 60, Role::watch, {3, 4}},

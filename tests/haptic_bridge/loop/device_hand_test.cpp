@@ -123,6 +123,28 @@ TEST_F(DeviceHandTest, TheGuardsSeeHowLongAMovementWaits) {
     EXPECT_EQ(stepNs(), 1000);
 }
 
+TEST_F(DeviceHandTest, AForceThreadThatHangsLiftsTheToolUntilItGoesOn) {
+    std::int64_t now = 1000;
+    ChannelHand hand(hand_, *channel_, 60, [&now] { return now; });
+    hand.begin(sand_);
+    (void)channel_->samples.push({1000, {1, 2, 3}, true});
+    hand.drain();
+    EXPECT_TRUE(nextStep(hand).engaged);
+    now += ChannelHand::kPatienceNs;
+    hand.drain();
+    EXPECT_TRUE(nextStep(hand).engaged) << "a busy machine";
+    ++now;
+    hand.drain();
+    EXPECT_FALSE(nextStep(hand).engaged);
+    EXPECT_FALSE(nextStep(hand).engaged);
+    EXPECT_EQ(hand.dropped(), 0U);
+    (void)channel_->samples.push({now += 1000, {4, 5, 6}, true});
+    hand.drain();
+    const sand::Step back = nextStep(hand);
+    EXPECT_TRUE(back.engaged);
+    EXPECT_EQ(back.path, (std::vector<sand::ProbePoint>{{4, 5, 6}}));
+}
+
 TEST(HandTicks, CountTicksWithAForceAndTicksOfAFault) {
     const scene::Scene scene = samples::flatScene(60, 60);
     test::FakeArm::State arm;
