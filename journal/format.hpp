@@ -22,10 +22,11 @@ inline constexpr std::uint32_t kJournalVersion = 10;
 
 inline constexpr std::size_t kMostFailure = 1 << 20;  // [byte]
 
-/// The steps of one frame, as the journal holds them.
+/// The steps of one frame, as the journal holds them. A frame without steps proves sand that rests: no step follows
+/// until a hand moves or an edit comes.
 struct JournalFrame {
     std::uint64_t frame = 0;
-    std::uint64_t hashBefore = 0;  // state hash before the first of the steps
+    std::uint64_t hashBefore = 0;  // state hash before the first of the steps; without steps, after the last step
     std::vector<sand::Step> steps;
     bool doubted = false;  // only when read: the hash does not count, because it follows a JournalDoubt
     template <class Self, class Visit>

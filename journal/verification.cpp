@@ -18,8 +18,9 @@ struct Verification::Visitor {
         counts.firstFrame = counts.firstFrame == 0 ? frame.frame : counts.firstFrame;
         counts.lastFrame = std::max(counts.lastFrame, frame.frame);
         counts.end.reset();
-        if (!frame.steps.empty() && !frame.doubted) {
-            to.compare({frame.steps.front().number - 1, frame.hashBefore});
+        if (!frame.doubted) {
+            const std::uint64_t before = to.replica_.stepNumber();
+            to.compare({frame.steps.empty() ? before : frame.steps.front().number - 1, frame.hashBefore});
         }
         for (const sand::Step& step : frame.steps) {
             apply(step);

@@ -31,7 +31,12 @@ void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::Time
     addSwaps(frame, arrivals);
     addLatency(frame, steps, arrivals, clockOffset);
     const bool counts = !frame.swap.first && frame.held == haptic_bridge::Held::no;
-    slowMotion_.add(counts ? frame.swap.interval : 0, steps);
+    if (counts && frame.rests) {
+        restSeconds_ += 1e-9 * static_cast<double>(frame.swap.interval);
+        slowMotion_.addRest(frame.swap.interval);
+    } else {
+        slowMotion_.add(counts ? frame.swap.interval : 0, steps);
+    }
 }
 
 std::optional<double> Measurements::slowMotion() const {
@@ -78,31 +83,43 @@ void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridg
     }
 }
 
-void Measurements::printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand,
-                                 bool last, std::int64_t nowNs, Reader reader) {
-    if (!last && nowNs - lastProgress_ < kSecondNs) {
+bool Measurements::progressIsDue(const Progress& now, std::int64_t nowNs) const {
+    const bool changed = now.step != progress_.step || now.hand != progress_.hand;
+    return now.last || changed || static_cast<double>(nowNs - progressNs_) * 1e-9 >= now.repeat;
+}
+
+void Measurements::printProgress(const Progress& now, std::int64_t nowNs, Reader reader) {
+    if (!now.last && nowNs - countedNs_ < kSecondNs) {
         return;
     }
-    const double seconds = static_cast<double>(nowNs - lastProgress_) * 1e-9;
-    fps_ = lastProgress_ == 0 ? 0 : static_cast<double>(frame - lastProgressFrame_) / seconds;
+    const double seconds = static_cast<double>(nowNs - countedNs_) * 1e-9;
+    fps_ = countedNs_ == 0 ? 0 : static_cast<double>(now.frame - countedFrame_) / seconds;
     if (reader == Reader::digs) {
-        printFrameRate(last);
-    } else {
-        fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", frame, step, of, fps_,
-                   lastSkewUs_, hand);
+        printFrameRate(now.last);
     }
-    std::fflush(stdout);
-    host::emitEvent("progress",
-                    {{"frame", frame}, {"step", step}, {"fps", fps_}, {"skew_us", lastSkewUs_}, {"hand", hand}});
-    lastProgress_ = nowNs;
-    lastProgressFrame_ = frame;
+    countedNs_ = nowNs;
+    countedFrame_ = now.frame;
+    if (!progressIsDue(now, nowNs)) {
+        return;
+    }
+    progressNs_ = nowNs;
+    progress_ = now;
+    if (reader == Reader::operates) {
+        fmt::print("frame {}  step {}{}  {:.1f} fps  skew {:.0f} us  hashes agree  {}\n", now.frame, now.step, now.of,
+                   fps_, lastSkewUs_, now.hand);
+        std::fflush(stdout);
+    }
+    host::emitEvent(
+        "progress",
+        {{"frame", now.frame}, {"step", now.step}, {"fps", fps_}, {"skew_us", lastSkewUs_}, {"hand", now.hand}});
 }
 
 /// Leaves out the first second, which has the start, and the last frames, which are too few for a rate.
 void Measurements::printFrameRate(bool last) {
     constexpr double kNoticed = 0.1;  // share of the printed rate
-    if (!last && lastProgressFrame_ > 1 && std::abs(fps_ - printedFps_) > kNoticed * printedFps_) {
+    if (!last && countedFrame_ > 1 && std::abs(fps_ - printedFps_) > kNoticed * printedFps_) {
         fmt::print("{:.0f} pictures a second\n", fps_);
+        std::fflush(stdout);
         printedFps_ = fps_;
     }
 }
@@ -133,6 +150,7 @@ void Measurements::fill(Summary& summary) const {
     summary.hand.slowMotion = slowMotion();
     summary.pausedSeconds = pausedSeconds_;
     summary.fullDiskSeconds = fullDiskSeconds_;
+    summary.restSeconds = restSeconds_;
     summary.skewUs = skewUs_;
     summary.broadcastBytes = broadcastBytes_;
     summary.latency = latency_;

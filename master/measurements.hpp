@@ -35,6 +35,7 @@ public:
         std::int64_t broadcast = 0;  // [ns], when the frame message had been sent
         Swap swap;
         haptic_bridge::Held held = haptic_bridge::Held::no;  // why the frame took no steps
+        bool rests = false;                                  // no step was due, because sand and hand were at rest
     };
     /// Adds a frame with its steps. `arrivals` are the arrivals at the frame's barrier. `clockOffset` is server's clock
     /// − master's clock [ns].
@@ -50,10 +51,17 @@ public:
     /// Whom the lines of progress are for: an operator reads all figures each second. A person at a desktop reads a
     /// line only if the number of frames per second has changed by more than a tenth.
     enum class Reader : std::uint8_t { operates, digs };
+    /// A line of progress.
+    struct Progress {
+        std::uint64_t frame = 0, step = 0;
+        std::string of{};    // behind the step, such as "/240"
+        std::string hand{};  // StepSource::hand()
+        bool last = false;   // the session ends with this frame
+        double repeat = 1;   // [s], after which a line with the same step and hand is printed again
+    };
     /// Prints the line of progress and emits the event `progress`, at most once per second. The last frame always has
     /// an event, and a line for an operator.
-    void printProgress(std::uint64_t frame, std::uint64_t step, const std::string& of, const char* hand, bool last,
-                       std::int64_t nowNs, Reader reader = Reader::operates);
+    void printProgress(const Progress& now, std::int64_t nowNs, Reader reader = Reader::operates);
 
     [[nodiscard]] lockstep::RankStatistics& ranks() { return ranks_; }
     /// Returns the figures that the wall shows as statistics. They cover the frames before the present one.
@@ -69,6 +77,7 @@ public:
     void fill(Summary& summary) const;
 
 private:
+    [[nodiscard]] bool progressIsDue(const Progress& now, std::int64_t nowNs) const;
     void printFrameRate(bool last);
     void addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals);
     void addLatency(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
@@ -83,12 +92,14 @@ private:
     SlowMotion slowMotion_;
     std::uint64_t lateFrames_ = 0, framesWithHand_ = 0;
     bool handed_ = false;  // whether the last frame had a hand
-    double pausedSeconds_ = 0, fullDiskSeconds_ = 0;
+    double pausedSeconds_ = 0, fullDiskSeconds_ = 0, restSeconds_ = 0;
     double lastFrameMs_ = 0, lastSkewUs_ = 0;
-    double fps_ = 0;                 // over about the last second
-    std::int64_t lastProgress_ = 0;  // [ns]
-    std::uint64_t lastProgressFrame_ = 0;
-    double printedFps_ = 0;  // in the last line for a person who digs
+    double fps_ = 0;              // over about the last second
+    std::int64_t countedNs_ = 0;  // [ns], when frames were last counted for fps_
+    std::uint64_t countedFrame_ = 0;
+    std::int64_t progressNs_ = 0;  // [ns], of the last event
+    Progress progress_;            // of the last event
+    double printedFps_ = 0;        // in the last line for a person who digs
 };
 
 }  // namespace master

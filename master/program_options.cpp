@@ -79,7 +79,15 @@ void describeResume(host::CommandLine& line, ProgramOptions& options) {
     const host::Option resume = line.flag("--resume", options.resume, "continue the session in --out, if there is one");
     resume.excludes(line.named("--replay"));
     Failure& failure = options.session.record.failure;
-    line.option("--failed-at", failure.noticed, "Unix time at which the failure of the session was noticed")
+    const host::Option at = line.option("--failed-at", failure.noticed,
+                                        "time at which the failure was noticed, by the steady clock of --failed-on");
+    at.metavar("SECONDS").notNegative().needs(resume);
+    line.option("--failed-on", failure.machine,
+                "machine of that clock: NAME/BOOT_ID; on another one, --failed-before counts")
+        .metavar("MACHINE")
+        .needs(at);
+    line.option("--failed-before", failure.before, "time from the failure to the start of this job")
+        .metavar("SECONDS")
         .notNegative()
         .needs(resume);
     line.choice("--journal", options.session.record.journal.policy,

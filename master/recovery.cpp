@@ -4,26 +4,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <utility>
 
 #include "base/byte_stream.hpp"
+#include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "host/regular_file.hpp"
+#include "lockstep/cluster.hpp"
 
 namespace master {
 namespace {
 
 using nlohmann::ordered_json;
 
-double unixTime() { return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count(); }
-
-const double kStarted = unixTime();
+const std::int64_t kStartedNs = host::monotonicNs();
 
 std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / kRecoveriesFile; }
 
@@ -86,10 +85,14 @@ Lines linesOf(const std::filesystem::path& folder) {
 
 }  // namespace
 
+double Failure::secondsAgo(std::int64_t nowNs, std::int64_t startedNs, const std::string& here) const {
+    const double now = static_cast<double>(nowNs) * 1e-9;
+    return std::max(0.0, machine == here ? now - noticed : before + now - static_cast<double>(startedNs) * 1e-9);
+}
+
 void reportRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
     const Failure& failure = recovery.failure;
-    // At least 0, because somebody may have set the clock back meanwhile.
-    const double seconds = std::max(0.0, unixTime() - (failure.noticed > 0 ? failure.noticed : kStarted));
+    const double seconds = failure.secondsAgo(host::monotonicNs(), kStartedNs, lockstep::machineId());
     host::printLine("first frame {:.2f} s after {}: step {}, frame {}", seconds, failure.what, recovery.step,
                     recovery.frame);
     Line fields{.failure = failure.what,

@@ -16,7 +16,15 @@ struct Failure {
     std::string what = "the start";  // for people
     std::optional<int> rank;         // rank that failed; nullopt if no rank failed
     std::string how;                 // for programs: "SIGKILL", "status 3", "hung", "broken" or "disk"
-    double noticed = 0;              // Unix time [s] at which the failure was noticed; 0: when this process started
+    double noticed = 0;              // [s], when the failure was noticed, by the steady clock of `machine`
+    std::string machine{};           // lockstep::machineId() of the launcher; empty if the failure was not noticed
+    double before = 0;               // [s], from the failure to the start of this job, on any machine
+
+    /// Returns how long ago the failure was noticed [s], at least 0. Without a failure, that is the start of this
+    /// process. `nowNs` and `startedNs`, when this process started, are of the steady clock of the machine `here` [ns].
+    /// The clock of another machine says nothing here. Then the time between the start of the job and that of this
+    /// process is left out.
+    [[nodiscard]] double secondsAgo(std::int64_t nowNs, std::int64_t startedNs, const std::string& here) const;
 };
 
 /// Return of a session to work: the first frame that it shows after a failure.

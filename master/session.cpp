@@ -133,10 +133,17 @@ void Session::startDrills() {
 
 /// The render ranks draw meanwhile. They swap only after the master has come to the barrier.
 void Session::keep(const lockstep::FrameMessage& frame) {
-    if (!frame.steps.empty()) {
-        const lockstep::Busy busy(barrier_, "the disk of its journal");
-        record_.keep({frame.frame, sand_.hash(), frame.steps}, desk_.edits().materialsOf(frame.steps));
+    if (frame.steps.empty() && !beginsRest()) {
+        return;
     }
+    const lockstep::Busy busy(barrier_, "the disk of its journal");
+    record_.keep({frame.frame, sand_.hash(), frame.steps}, desk_.edits().materialsOf(frame.steps));
+    keptHashOf_ = sand_.replica().stepNumber();
+}
+
+/// The hash after the last step comes with the next one otherwise, which may be made hours later.
+bool Session::beginsRest() const {
+    return steps_->rests() && !record_.full() && keptHashOf_ != sand_.replica().stepNumber();
 }
 
 /// A haptic server could send such steps in every frame. So the line is printed for the first one, and then whenever
@@ -189,7 +196,8 @@ bool Session::showFrame(bool& more) {
     }
     const Swap swap = clock_.swapped(monotonicNs());
     const haptic_bridge::Held held = heldBy();
-    measure_.add({frame.frame, bytes, broadcast, swap, held}, steps, barrier_.arrivals(), steps_->clockOffsetNs());
+    measure_.add({frame.frame, bytes, broadcast, swap, held, steps_->rests()}, steps, barrier_.arrivals(),
+                 steps_->clockOffsetNs());
     desk_.answer(steps);
     if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
         desk_.takeCapture(frame.frame, barrier_);

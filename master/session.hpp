@@ -58,6 +58,8 @@ private:
     [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
     void startDrills();
     void keep(const lockstep::FrameMessage& frame);
+    /// Returns whether the journal lacks the hash after the last step, and no step is due.
+    [[nodiscard]] bool beginsRest() const;
     /// Returns whether the session shows no steps after the present one.
     [[nodiscard]] bool ends() const;
     /// Returns whether the session takes no steps, because it is paused, the disk is full, or the journal is replayed.
@@ -82,6 +84,8 @@ private:
     [[nodiscard]] Incidents incidents() const;  // since the session began, across restarts
     [[nodiscard]] nlohmann::json status() const;
     void printProgress(bool last);
+    /// Returns the time after which a line of progress that has not changed is printed again [s].
+    [[nodiscard]] double secondsToRepeat() const;
     [[nodiscard]] int writeResults(bool agreed);
     [[nodiscard]] Summary finish(bool agreed);
     [[nodiscard]] Summary summary();  // collective, because each rank sends a report
@@ -94,6 +98,7 @@ private:
     const std::vector<lockstep::RankHost> hosts_;  // by rank
     lockstep::FrameBarrier barrier_;
     std::uint64_t frame_ = 0;
+    std::optional<std::uint64_t> keptHashOf_;  // last step after which the journal has the hash
     FrameClock clock_;
     MasterSand sand_;
     std::unique_ptr<StepSource> steps_;

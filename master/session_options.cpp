@@ -40,8 +40,11 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
         return std::make_unique<RecordedSteps>(options.recording, options.steps);
     }
     const ResumedSession* resumed = options.record.resumed.get();
-    auto steps = std::make_unique<LiveSteps>(options.server, scene, options.pace,
-                                             resumed != nullptr ? resumed->epoch : 0, options.security);
+    // A session of so many steps must not wait for a hand.
+    const AtRest atRest = options.steps == kNoLimit ? AtRest::makesNone : AtRest::makesSteps;
+    auto steps =
+        std::make_unique<LiveSteps>(options.server, scene, options.pace, resumed != nullptr ? resumed->epoch : 0,
+                                    options.security, haptic_bridge::LinkClock(), atRest);
     if (options.desk.force) {
         steps->shareForce(*options.desk.force);
     }

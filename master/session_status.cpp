@@ -42,7 +42,8 @@ nlohmann::json Session::status() const {
                           {"edits", sand_.edits()},
                           {"can_undo", sand.canUndo()},
                           {"sweeps_owed", sweepsOwed()},
-                          {"settling", sand.settling()}};
+                          {"settling", sand.settling()},
+                          {"resting", steps_->rests()}};
     const Incidents all = incidents();
     host::JsonWriter writer(status);
     Incidents::counters(all, writer);
@@ -51,9 +52,21 @@ nlohmann::json Session::status() const {
     return status;
 }
 
+/// A wall that nobody touches must not fill its log. The launcher takes a haptic server for hung that has had no link
+/// for 10 s, as far as it knows from the events.
+double Session::secondsToRepeat() const {
+    constexpr double kRarely = 60, kOften = 5, kAlways = 1;
+    return !options_.server ? kRarely : steps_->rests() ? kOften : kAlways;
+}
+
 void Session::printProgress(bool last) {
-    const std::string of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps);
-    measure_.printProgress(frame_, sand_.replica().stepNumber(), of, steps_->hand(), last, host::monotonicNs(),
+    measure_.printProgress({.frame = frame_,
+                            .step = sand_.replica().stepNumber(),
+                            .of = options_.steps == kNoLimit ? "" : fmt::format("/{}", options_.steps),
+                            .hand = steps_->hand(),
+                            .last = last,
+                            .repeat = secondsToRepeat()},
+                           host::monotonicNs(),
                            options_.pointer ? Measurements::Reader::digs : Measurements::Reader::operates);
 }
 

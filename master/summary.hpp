@@ -56,6 +56,7 @@ struct Summary {
     double refreshHz = 0;                                                // frames per second that were asked for
     double seconds = 0;                                                  // from the first swap to the last
     double pausedSeconds = 0, fullDiskSeconds = 0;  // of frames without steps because of a pause, or of a full disk
+    double restSeconds = 0;                         // of frames without steps because sand and hand were at rest
     lockstep::Statistics frameMs;                   // from swap to swap
     std::uint64_t lateFrames = 0;                   // frames that took more than 1.5 periods
     lockstep::Statistics skewUs;                    // spread of the swap times of one frame
@@ -167,6 +168,7 @@ struct Summary {
         visit("late_frames", it.lateFrames);
         visit("held_seconds/pause", it.pausedSeconds);
         visit("held_seconds/disk", it.fullDiskSeconds);
+        visit("held_seconds/rest", it.restSeconds);
         visit("skew_us", Spread{it.skewUs});
         Latency::fields(it.latency, visit);
         visit("haptic_period_us/p50", it.period(&haptic_bridge::Report::hapticPeriodUsP50));

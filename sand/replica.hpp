@@ -162,6 +162,9 @@ public:
     /// Returns whether sweeps have found all sand at rest. The next sweeps then visit no block of a height field and no
     /// edge of a TIN. Returns false before the first sweep, even if the sand is at rest.
     [[nodiscard]] bool settled() const { return surface_->settled(); }
+    /// Returns whether the last step has changed nothing but its number, and the next one would not either, unless it
+    /// moves the tool or has an edit. Only steps without a path, a heading or an edit may be left out then.
+    [[nodiscard]] bool atRest() const { return surface_->atRest() && !owed_.any() && lastWork_ == StepWork{}; }
     /// Returns whether a settle continues in the next step.
     [[nodiscard]] bool settling() const { return owed_.untilRest(); }
     /// Returns whether `step` has a settle that lets the sand settle by sweeps.

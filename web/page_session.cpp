@@ -73,10 +73,10 @@ void PageSession::note(journal::JournalRecord& record) {
 }
 
 void PageSession::noteSteps(const journal::JournalFrame& frame) {
+    hashes_ += frame.doubted ? 0 : 1;
     if (frame.steps.empty()) {
         return;
     }
-    hashes_ += frame.doubted ? 0 : 1;
     frames_.push_back({frame.steps.front().number, records_.size() - 1});
     for (const sand::Step& step : frame.steps) {
         if (step.engaged && !engaged_) {

@@ -39,6 +39,10 @@ public:
 
     /// Returns whether samples wait for the next step.
     [[nodiscard]] bool waits() const { return path_.waits(); }
+    /// Returns whether the next step would move the tool.
+    [[nodiscard]] bool moves() const { return present_ && (liftFirst_ || path_.moves()); }
+    /// Forgets the samples that wait, because the sand rests and no step takes them. Only while moves() is false.
+    void forgetRest() { path_.forgetRest(); }
 
     /// Returns the number of samples that were dropped while the hand was present (PathBuilder::dropped()).
     [[nodiscard]] virtual std::uint64_t dropped() const { return path_.dropped(); }

@@ -62,6 +62,12 @@ std::optional<std::int64_t> PathBuilder::engagedSinceNs() const {
     return first == waiting_.end() ? std::nullopt : std::optional(first->readNs);
 }
 
+bool PathBuilder::moves() const {
+    return std::any_of(waiting_.begin(), waiting_.end(), [this](const HandSample& sample) {
+        return sample.engaged != engaged_ || sample.probe != last_ || sample.heading;
+    });
+}
+
 std::int64_t PathBuilder::take(sand::Step& step, std::int64_t mostSubsteps) {
     step.engaged = engaged_;
     if (waiting_.empty()) {

@@ -51,6 +51,11 @@ public:
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const;
     /// Returns whether samples wait.
     [[nodiscard]] bool waits() const { return !waiting_.empty(); }
+    /// Returns whether a waiting sample moves the tool: displaces it, turns it, or changes whether it is engaged.
+    [[nodiscard]] bool moves() const;
+    /// Forgets the waiting samples of a hand that does not move. They do not count as dropped, because a step would
+    /// have nothing of them.
+    void forgetRest() { waiting_.clear(); }
     /// Forgets all waiting samples. The hand now hovers at `probe`.
     void restart(sand::ProbePoint probe);
     /// Drops all waiting samples and counts them.

@@ -200,6 +200,7 @@ void JournalKeeper::note(const journal::JournalRecord& record) {
     try {
         if (writer_) {
             (void)writer_->keep(record);
+            writer_->writeIfRoom();
         }
     } catch (const base::InputError& error) {
         giveUp(error.what());
@@ -217,16 +218,7 @@ void JournalKeeper::checked(const journal::JournalChecked& checked) {
     lastCheckpoint_ -= options_.checkpointSeconds;
 }
 
-void JournalKeeper::force(const journal::JournalForce& force) {
-    note(force);
-    try {
-        if (writer_) {
-            writer_->writeIfRoom();
-        }
-    } catch (const base::InputError& error) {
-        giveUp(error.what());
-    }
-}
+void JournalKeeper::force(const journal::JournalForce& force) { note(force); }
 
 void JournalKeeper::endCheckpoint(bool wait) {
     if (!checkpoint_.valid() || (!wait && checkpoint_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)) {

@@ -62,7 +62,14 @@ public:
     }
 
     void operator()(const journal::JournalFrame& frame) {
-        if (frame.steps.empty() || frame.steps.back().number <= replica_.stepNumber()) {
+        if (frame.steps.empty()) {
+            if (!frame.doubted) {
+                requireHash(replica_, {read_, frame.hashBefore}, journal_);
+            }
+            return;
+        }
+        read_ = frame.steps.back().number;
+        if (read_ <= replica_.stepNumber()) {
             return;
         }
         const std::uint64_t next = frame.steps.front().number;
@@ -81,7 +88,7 @@ public:
                 }
             }
         }
-        beyond_ = frame.steps.back().number > step_;
+        beyond_ = read_ > step_;
     }
     void operator()(const journal::JournalEnd& end) { requireHash(replica_, end, journal_); }
     void operator()(const journal::JournalDoubt& doubt) {
@@ -107,7 +114,8 @@ private:
     sand::Replica& replica_;
     std::optional<Outvoted>& outvoted_;
     const Restoring& how_;
-    bool beyond_ = false;  // a record behind the step has been read, with the hash after it
+    std::uint64_t read_ = 0;  // last step of the records so far, which the replica may have had already
+    bool beyond_ = false;     // a record behind the step has been read, with the hash after it
 };
 
 /// Collects from the records everything of a session that needs no sand.

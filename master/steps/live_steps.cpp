@@ -40,11 +40,12 @@ constexpr const char* kOtherSand = "the hand felt other sand than the wall has s
 }  // namespace
 
 LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
-                     std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock)
+                     std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock,
+                     AtRest atRest)
     : now_(clock ? std::move(clock) : host::monotonicNs),
       link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.sweepRange()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
-      own_(scene, pace),
+      own_(scene, pace, atRest),
       budget_(pace, 1'000'000'000 / scene.rules.stepsPerSecond),
       pace_(pace),
       source_(link_.hasServer() ? Source::starting : Source::own),
@@ -198,7 +199,7 @@ std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_
 
 std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
     // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
-    const std::size_t due = std::min(own_.due(now_()), most);
+    const std::size_t due = std::min(own_.due(now_(), replica, edits_.any()), most);
     std::vector<TimedStep> steps;
     FrameWork taken(replica);
     // What is owed after an edit, or while sweeps are owed, is known only when the step has been applied.

@@ -25,8 +25,8 @@ namespace master {
 /// slides continues to slide. The tool of the master's steps is where a server without sand reports it, or it hovers.
 /// Each change begins a new epoch. Main thread only.
 ///
-/// There are two times without steps: at the start, at most kStartWait, and while a server takes over, at most
-/// kGrantWait.
+/// There are three times without steps: at the start, at most kStartWait; while a server takes over, at most
+/// kGrantWait; and while the master numbers the steps and nothing moves (OwnSteps::rests()).
 class LiveSteps : public StepSource, public StepRequests {
 public:
     /// Time at the start for which the master waits for a haptic server before it numbers the steps itself [s].
@@ -38,7 +38,8 @@ public:
     /// `epoch` is the last epoch of a resumed session; new epochs have higher numbers. All timeouts use `clock`, also
     /// those of the link.
     LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
-              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {});
+              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {},
+              AtRest atRest = AtRest::makesSteps);
 
     [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& replica, std::uint64_t stateHash,
                                                              std::size_t most) override;
@@ -68,6 +69,7 @@ public:
     [[nodiscard]] bool linked() const override { return source_ == Source::server; }
     [[nodiscard]] bool streaming() const override { return source_ == Source::own && own_.streaming(); }
     [[nodiscard]] bool handed() const override { return linked() || streaming() || own_.pointerMoved(); }
+    [[nodiscard]] bool rests() const override { return source_ == Source::own && own_.rests(); }
     [[nodiscard]] std::string lastRefusal() const override { return link_.lastRefusal(); }
     [[nodiscard]] const char* hand() const override;
     [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }

@@ -7,11 +7,32 @@
 
 namespace master {
 
-std::size_t OwnSteps::due(std::int64_t nowNs) {
+bool OwnSteps::wouldChange(const sand::Replica& sand, bool edited) {
+    // Without a hand, the next step lifts a tool that is still in the sand.
+    return edited || !sand.atRest() || (hand().present() ? hand().moves() : sand.engaged());
+}
+
+void OwnSteps::followRest(std::int64_t nowNs, bool changes) {
+    if (changes) {
+        movedNs_ = nowNs;
+    }
+    rests_ = atRest_ == AtRest::makesNone && static_cast<double>(nowNs - movedNs_) * 1e-9 >= kRestAfter;
+    if (rests_) {
+        hand().forgetRest();  // otherwise the path after the rest would begin with samples that are as old
+    }
+}
+
+std::size_t OwnSteps::due(std::int64_t nowNs, const sand::Replica& sand, bool edited) {
     if (pace_ == haptic_bridge::Pace::fast) {
         return 1;
     }
-    owed_ += static_cast<double>(nowNs - lastNs_) * 1e-9 * stepsPerSecond_;
+    const bool rested = rests_;
+    followRest(nowNs, wouldChange(sand, edited));
+    if (rests_) {
+        return 0;
+    }
+    // A rest is no time of steps. The step that ends it does not wait for its period.
+    owed_ = rested ? 1 : owed_ + static_cast<double>(nowNs - lastNs_) * 1e-9 * stepsPerSecond_;
     lastNs_ = nowNs;
     // A pointer is read once per frame. Rounding gives each frame its step, although frames are never quite punctual.
     const double due = std::floor(owed_ + (pointer_ ? 0.5 : 0));
@@ -20,10 +41,9 @@ std::size_t OwnSteps::due(std::int64_t nowNs) {
 }
 
 void OwnSteps::fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps, std::int64_t nowNs) {
-    haptic_bridge::Hand& hand = pointer_ ? static_cast<haptic_bridge::Hand&>(*pointer_) : positions_;
-    const std::int64_t readNs = hand.fill(own.step, mostSubsteps);
+    const std::int64_t readNs = hand().fill(own.step, mostSubsteps);
     // A hand of which no sample waits is where the tool is. A pointer at rest sends none.
-    own.handNs = hand.waits() ? readNs : nowNs;
+    own.handNs = hand().waits() ? readNs : nowNs;
     if (pointer_) {
         own.serverTimeNs = readNs;
         own.receivedNs = pointedNs_;

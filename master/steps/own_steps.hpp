@@ -16,22 +16,33 @@
 
 namespace master {
 
+/// What a session does while sand and hand are at rest. It makes steps if its steps are counted.
+enum class AtRest : std::uint8_t { makesSteps, makesNone };
+
 /// The steps that the master numbers itself: how many are due, and the path of their hand.
 ///
 /// The hand is the pointer of the ranks' windows, or that of a server without sand that streams positions. Without a
 /// hand the tool hovers. Used by one thread. The scene must outlive this object.
 class OwnSteps {
 public:
-    OwnSteps(const scene::Scene& scene, haptic_bridge::Pace pace)
-        : stepsPerSecond_(scene.rules.stepsPerSecond), pace_(pace), positions_(scene) {}
+    /// Time for which sand and hand have been at rest when the last step is made [s].
+    static constexpr double kRestAfter = 1;
+
+    /// Under the fast pace, `atRest` has no effect: each frame has a step.
+    OwnSteps(const scene::Scene& scene, haptic_bridge::Pace pace, AtRest atRest)
+        : stepsPerSecond_(scene.rules.stepsPerSecond), pace_(pace), atRest_(atRest), positions_(scene) {}
 
     /// Call it when the master begins to number the steps.
     void begin(std::int64_t nowNs) {
         owed_ = 0;
-        lastNs_ = nowNs;
+        lastNs_ = movedNs_ = nowNs;
+        rests_ = false;
     }
-    /// Returns how many steps are due since the last call. The caller makes them, or leaves them out.
-    [[nodiscard]] std::size_t due(std::int64_t nowNs);
+    /// Returns how many steps are due since the last call. The caller makes them, or leaves them out. `edited` is
+    /// whether an edit waits. After a rest, the first movement of the hand and the first edit are due at once.
+    [[nodiscard]] std::size_t due(std::int64_t nowNs, const sand::Replica& sand, bool edited);
+    /// Returns whether no step is due, because sand and hand are at rest.
+    [[nodiscard]] bool rests() const { return rests_; }
     /// Fills in the hand's path since the step before, and when it was read. The path has at most `mostSubsteps`
     /// sub-steps, or one point. `nowNs` is the present time on the host's clock [ns].
     void fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps, std::int64_t nowNs);
@@ -51,13 +62,23 @@ public:
     [[nodiscard]] bool pointerMoved() const { return pointer_ && pointer_->pointed(); }
 
 private:
+    [[nodiscard]] haptic_bridge::Hand& hand() {
+        return pointer_ ? static_cast<haptic_bridge::Hand&>(*pointer_) : positions_;
+    }
+    /// Returns whether a step that is made now would change more than its number.
+    [[nodiscard]] bool wouldChange(const sand::Replica& sand, bool edited);
+    void followRest(std::int64_t nowNs, bool changes);
+
     int stepsPerSecond_;
     haptic_bridge::Pace pace_;
+    AtRest atRest_;
     PositionSource positions_;
     std::optional<haptic_bridge::PointerHand> pointer_;  // nullopt before pointed()
     std::int64_t pointedNs_ = 0;                         // [ns], when the last reports arrived
     double owed_ = 0;                                    // [step]
-    std::int64_t lastNs_ = 0;
+    std::int64_t lastNs_ = 0;                            // [ns], of the last call of due()
+    std::int64_t movedNs_ = 0;                           // [ns], when a step would last have changed something
+    bool rests_ = false;
 };
 
 }  // namespace master

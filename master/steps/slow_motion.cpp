@@ -29,6 +29,14 @@ void SlowMotion::add(std::int64_t passedNs, const std::vector<haptic_bridge::Tim
     }
 }
 
+void SlowMotion::addRest(std::int64_t passedNs) {
+    if (engaged_) {
+        passedNs_ += passedNs;
+        takenNs_ += passedNs;
+        readNs_ += passedNs;
+    }
+}
+
 std::optional<double> SlowMotion::factor() const {
     if (passedNs_ < kLeastNs) {
         return std::nullopt;

@@ -22,6 +22,9 @@ public:
 
     /// Adds the steps of a frame. `passedNs` is the time since the frame before [ns]; 0 if the session was paused.
     void add(std::int64_t passedNs, const std::vector<haptic_bridge::TimedStep>& steps);
+    /// Adds a frame without steps in which sand and hand were at rest. `passedNs` is the time since the frame before
+    /// [ns]. The hand takes as long, as in steps without a path.
+    void addRest(std::int64_t passedNs);
 
     /// Returns the factor; nullopt if the tool of a hand was in the sand for less than kLeastNs.
     [[nodiscard]] std::optional<double> factor() const;

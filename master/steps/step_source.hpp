@@ -84,6 +84,8 @@ public:
     [[nodiscard]] virtual bool streaming() const { return false; }
     /// Returns whether a hand moves the tool: one that is linked or streams, or a pointer that has moved or touched.
     [[nodiscard]] virtual bool handed() const { return false; }
+    /// Returns whether next() has returned no step because sand and hand are at rest.
+    [[nodiscard]] virtual bool rests() const { return false; }
     /// Returns why the last attempt to link has failed, as haptic_bridge::Client::lastFailure() does.
     [[nodiscard]] virtual std::string lastRefusal() const { return {}; }
     /// Returns the state of the hand, such as "hand linked", as the event `progress` reports it (docs/events.md).

@@ -14,6 +14,7 @@ namespace master {
 class WaitingEdits {
 public:
     void add(sand::Edit edit) { edits_.push_back(std::move(edit)); }
+    [[nodiscard]] bool any() const { return !edits_.empty(); }
     /// Returns the oldest edit; no edit if none waits.
     [[nodiscard]] sand::Edit next() const { return edits_.empty() ? sand::Edit() : edits_.front(); }
     /// Removes the edits whose numbers are in `steps`.

@@ -129,6 +129,9 @@ public:
     [[nodiscard]] virtual std::int64_t volume() const = 0;
     /// Returns whether sweeps have found all sand at rest. Returns false before the first sweep.
     [[nodiscard]] virtual bool settled() const = 0;
+    /// Returns whether further sweeps change nothing. All sand is at rest, and a TIN has no vertex left that it could
+    /// remove. Programs that number steps ask it; no step depends on it.
+    [[nodiscard]] virtual bool atRest() const { return settled(); }
     /// Returns the age of the inertia that sand carries from step to step [sweep]; 0 for a TIN, which carries none.
     [[nodiscard]] virtual int age() const = 0;
 

@@ -57,6 +57,7 @@ public:
     [[nodiscard]] std::int64_t outflow() const override { return state_.outflow; }
     [[nodiscard]] std::int64_t volume() const override { return static_cast<std::int64_t>(layer_.volume()); }
     [[nodiscard]] bool settled() const override { return erosion_.settled(); }
+    [[nodiscard]] bool atRest() const override { return settled() && (detail_.removals == 0 || coarsening_.done()); }
     [[nodiscard]] int age() const override { return 0; }
 
     [[nodiscard]] std::uint64_t hash() override { return hash_.update(state_); }

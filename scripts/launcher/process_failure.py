@@ -7,6 +7,7 @@ import time
 
 import checked_json
 import events
+import reachable
 import session_folder
 
 
@@ -35,7 +36,8 @@ class Failure:
     rank: int = None  # the haptic server and mpirun have None
     how: str = ""  # for programs: SIGKILL, "status 3", "hung", "broken" or "disk"
     host_is_lost: bool = False  # the host must not draw any more
-    when: float = dataclasses.field(default_factory=time.time)
+    when: float = dataclasses.field(default_factory=time.time)  # time of day, to be printed
+    noticed: float = dataclasses.field(default_factory=time.monotonic)
     frame: int = None  # the last frame that was reported as shown
     step: int = None
     last_lines: list = dataclasses.field(default_factory=list)
@@ -44,10 +46,11 @@ class Failure:
         return f"frame {self.frame}, step {self.step}" if self.frame is not None else "no frame yet"
 
     def words(self):
-        """Returns the options that give this failure to the master that continues the session."""
+        """Returns the options that give this failure to the master that continues the session and starts now."""
         rank = [] if self.rank is None else ["--failed-rank", str(self.rank)]
         # With an equals sign, because the text comes from another program and could begin with hyphens.
-        return ["--failed-at", f"{self.when:.3f}", f"--failure={self.text}", *rank, "--failed-how", self.how]
+        return ["--failed-at", f"{self.noticed:.3f}", f"--failed-on={reachable.identity_here()}",
+                "--failed-before", f"{time.monotonic() - self.noticed:.3f}", f"--failure={self.text}", *rank, "--failed-how", self.how]
 
 
 def taken(path):

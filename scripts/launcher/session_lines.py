@@ -174,6 +174,7 @@ def steps(summary, _):
     words = f"{summary['steps']} {SESSION}, {summary['steps'] - summary['steps_before']} {START}"
     words += f"; {counted(edits, 'edit')} of an operator {SESSION}" if edits else ""
     words += f"; paused for {summary['held_seconds']['pause']:.1f} s {START}" if summary["held_seconds"]["pause"] else ""
+    words += f"; at rest for {summary['held_seconds']['rest']:.1f} s {START}" if summary["held_seconds"]["rest"] else ""
     return (NOTE, f"{left_out} of {words} left out") if left_out else (GOOD, words)
 
 

@@ -73,8 +73,8 @@ RULES = (
          ("hand.asked", "hand.slow_motion", "sweeps_owed", "pace"), lines.motion),
     Rule("refusals", "connections of the haptic link that either side refused", "none", "any", "", "security.md",
          ("hand.asked", "haptic.refused_by_server", "haptic.refused"), lines.refusals),
-    Rule("steps", "steps of the sand, edits of an operator, and pauses", "none left out", "steps that all ranks left out", "", "journal.md",
-         ("steps", "steps_before", "edits", "steps_left_out", "held_seconds.pause"), lines.steps),
+    Rule("steps", "steps of the sand, edits of an operator, pauses and rests", "none left out", "steps that all ranks left out", "", "journal.md",
+         ("steps", "steps_before", "edits", "steps_left_out", "held_seconds.pause", "held_seconds.rest"), lines.steps),
     Rule("press", "steps whose sand no cell could take, so that the tool passed through it, and the largest radius with which the first "
          "of these presses fits; left out if there was none", "", "any", "", "limits.md", ("steps_unplaced", "refused_press"), lines.press),
     Rule("sand", "whether all replicas had the same sand, and until which frame that was compared", "no difference, and all compared in the last frame",

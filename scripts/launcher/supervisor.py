@@ -174,12 +174,12 @@ class Supervisor:
             if not self.may_go_on(failure, showed_a_frame=log.frame is not None):
                 return FAILED
             self.mark_restart(failure)
+            if not self.ready_again(failure):
+                return FAILED
             # A journal that was there before belongs to another session, which must not be continued.
             ours = self.resume or self.journal_identity() not in (None, before)
             words = ["--resume", *failure.words()] if ours else []
             words += self.force_words()
-            if not self.ready_again(failure):
-                return FAILED
 
     def note_last_failure(self, status, log):
         """Writes down the failure of a job that is not started again. A job that the user has killed has not failed."""

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
+#include <variant>
+#include <vector>
 
 #include "haptic_bridge/link/protocol.hpp"
+#include "journal/reader.hpp"
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
@@ -82,6 +87,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
     EXPECT_NEAR(ask("status")["tool_radius"].get<double>(), 0.05, 1e-3);
     rlimit none{1, 1};
     ASSERT_EQ(prlimit(masterOf(*session), RLIMIT_FSIZE, &none, nullptr), 0);
+    (void)answer("settle");  // sand that rests writes nothing; the session ends before it answers
     EXPECT_EQ(session->wait(kLong), 1) << session->output();
     EXPECT_FALSE(session->waitForEvent("failure", {{"failure", {{"what", "disk"}}}}).is_null()) << session->output();
 
@@ -133,6 +139,86 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
                                     "height = 0.2\n[material]\n[tool]\nradius = 0.04\n");
     expectOneLine(runToEnd({"--wall", wall(1, 2), "--scene", other, "--out", out(), "--resume", "--restarts", "0"}),
                   "other.toml: ");
+}
+
+/// Walls that nobody touches. The master numbers the steps, and makes none while nothing moves.
+class Rest : public SessionTest {
+protected:
+    /// Awaits the rest and returns the status that reports it.
+    [[nodiscard]] nlohmann::json awaitRest() const {
+        return awaitStatus([](const nlohmann::json& now) { return now.value("resting", false); });
+    }
+    [[nodiscard]] std::string journal() const { return out() + "/session.journal"; }
+    [[nodiscard]] std::vector<journal::JournalRecord> records() const {
+        journal::JournalReader reader = master::openJournal(journal());
+        std::vector<journal::JournalRecord> all;
+        while (auto record = reader.next()) {
+            all.push_back(std::move(*record));
+        }
+        return all;
+    }
+    /// Sets the time of day of the master an hour ahead (tests/support/other_clock.cpp).
+    void setDateOfMasterAhead() {
+        environment_ = {"LD_PRELOAD=" + support::linkTo("other-clock.so", folder_), "SANDWALL_CLOCK_RANK=0",
+                        "SANDWALL_DATE_AHEAD=3600"};
+    }
+};
+
+// The sand has rested for a second before frame 120 at 60 Hz. Frames may be later, but never earlier. A bit of a render
+// rank flips in frame 120, and the audit finds it in one of the next frames, without a step.
+TEST_F(Rest, AddsOneRecordToTheJournalAndHealsAFlippedBitWithoutAStep) {
+    const Ended ended = runToEnd({"--wall", wall(1, 2, "mono"), "--scene", scene(), "--frames", "240", "--no-pictures",
+                                  "--out", out(), "--inject", "diverge:rank=1,frame=120,bit=12"});
+    ASSERT_EQ(ended.status, 0) << ended.output;
+    EXPECT_TRUE(ended.has("healed", {{"rank", 1}})) << ended.output;
+    const nlohmann::json told = summary();
+    EXPECT_EQ(told["divergences"], 1);
+    EXPECT_EQ(told["healed"], 1);
+    EXPECT_EQ(told["frames"], 240);
+    EXPECT_GT(told["held_seconds"]["rest"], 0);
+    EXPECT_EQ(told["state_hash"], replayedHash());
+    EXPECT_EQ(support::runProgram("sandwall-replay", journal() + " --verify").status, 0);
+    const std::vector<journal::JournalRecord> all = records();
+    const auto rest = std::find_if(all.begin(), all.end(), [](const journal::JournalRecord& record) {
+        const auto* frame = std::get_if<journal::JournalFrame>(&record);
+        return frame != nullptr && frame->steps.empty();
+    });
+    ASSERT_NE(rest, all.end());
+    const auto& begun = std::get<journal::JournalFrame>(*rest);
+    EXPECT_LT(begun.frame, 120U);
+    EXPECT_EQ(fmt::format("{:016x}", begun.hashBefore), told["state_hash"]) << "of the sand that rested to the end";
+    ASSERT_EQ(all.end() - rest, 4) << "the doubt about the majority, its check and the end follow";
+    EXPECT_TRUE(std::holds_alternative<journal::JournalDoubt>(rest[1]));
+    EXPECT_TRUE(std::holds_alternative<journal::JournalChecked>(rest[2]));
+    EXPECT_EQ(std::get<journal::JournalEnd>(rest[3]).step, told["steps"]);
+}
+
+// The recovery takes seconds, and not the hour by which the master's time of day differs from the launcher's.
+TEST_F(Rest, EndsWithNothingButAHandAnEditOrARestartWhichLosesNothing) {
+    setDateOfMasterAhead();
+    const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--out", out(), "--no-pictures",
+                                "--restarts", "100000", "--restart-window", "0.001"});
+    expectFrames(*session);
+    const nlohmann::json rested = awaitRest();
+    const std::uintmax_t bytes = std::filesystem::file_size(journal());
+    const nlohmann::json later =
+        awaitStatus([&](const nlohmann::json& now) { return now.value("frame", 0) > rested.value("frame", 0) + 60; });
+    EXPECT_EQ(later["step"], rested["step"]);
+    EXPECT_EQ(later["state_hash"], rested["state_hash"]);
+    EXPECT_EQ(std::filesystem::file_size(journal()), bytes);
+    kill(support::findProgram(session->family(), "sandwall-master").value(), SIGKILL);
+    const nlohmann::json recovered = session->waitForEvent("recovered")["recovery"];
+    ASSERT_FALSE(recovered.is_null()) << session->output();
+    EXPECT_EQ(recovered["checkpoint_step"].get<int>() + recovered["replayed_steps"].get<int>(), rested["step"])
+        << "the first frame has a further step";
+    EXPECT_GT(recovered["seconds_to_next_frame"], 0);
+    EXPECT_LT(recovered["seconds_to_next_frame"], 3600);
+    const nlohmann::json again = awaitRest();
+    EXPECT_EQ(ask("settle")["step"], again.value("step", 0) + 1) << "the edit is in the next step";
+    ask("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_EQ(summary()["edits"], 1);
+    EXPECT_EQ(summary()["state_hash"], replayedHash());
 }
 
 }  // namespace

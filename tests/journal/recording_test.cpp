@@ -59,6 +59,21 @@ TEST(Recording, KnowsTheHashesThatTheSessionWrote) {
     }
 }
 
+// The session has rested for an hour after step 6. A film has no frames of that hour.
+TEST(Recording, LeavesOutTheTimeInWhichNothingMoved) {
+    journal::Journal journal = sessionOf(12);
+    journal.frames.insert(journal.frames.begin() + 2, journal::JournalFrame{7, 106, {}});
+    for (std::size_t frame = 3; frame < journal.frames.size(); ++frame) {
+        journal.frames[frame].frame += 216'000;
+    }
+    const journal::Recording recording(std::move(journal), "FILE", 30);
+    EXPECT_EQ(recording.frames(), 6U);
+    EXPECT_EQ(recording.hashAfter(6), 106U);
+    for (std::uint64_t frame = 1; frame <= 6; ++frame) {
+        EXPECT_EQ(recording.stepsOf(frame).size(), 2U) << frame;
+    }
+}
+
 // 60 steps per second in films of 30 frames per second: frame n shows the steps up to 2n. Materials precede the frame
 // of steps 4 to 6 (twice) and that of steps 10 to 12.
 TEST(Recording, EachFrameHasTheHumidityOfItsSteps) {

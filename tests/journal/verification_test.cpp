@@ -98,6 +98,25 @@ TEST_F(Verified, HashesOfADoubtedMajorityDoNotCount) {
     EXPECT_EQ(counts.differing, 0U);
 }
 
+// The session rests after step 2, and is killed after step 4, while it rests again.
+TEST_F(Verified, AFrameWithoutStepsProvesTheSandAfterTheLastStep) {
+    const auto rest = [this](std::uint64_t number, std::uint64_t error) {
+        journal_.add(journal::JournalFrame{number, sand_.stateHash() ^ error, {}});
+    };
+    journal_.add(frame(1));
+    rest(2, 0);
+    journal_.add(frame(7200));
+    rest(7201, 4);
+    const Counts counts = verify();
+    EXPECT_EQ(counts.hashes, 4U);
+    EXPECT_EQ(counts.differing, 1U);
+    ASSERT_TRUE(counts.firstDifference);
+    EXPECT_EQ(counts.firstDifference->recorded.step, 4U);
+    EXPECT_EQ(counts.firstDifference->replayed, sand_.stateHash());
+    EXPECT_EQ(counts.lastFrame, 7201U);
+    EXPECT_EQ(steps_.size(), 4U);
+}
+
 TEST_F(Verified, AMissingStepIsRefused) {
     journal_.add(frame(1));
     (void)frame(2);

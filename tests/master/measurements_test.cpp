@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace {
@@ -27,10 +28,12 @@ public:
             arrivals[rank].arrived = now_ - 3 * kMs;
             arrivals[rank].lastSwap = lastSwap_ == 0 ? 0 : lastSwap_ + static_cast<std::int64_t>(rank) * 100'000;
         }
-        measurements_.add({frame_, 80, now_ - 5 * kMs, clock_.swapped(now_), held_}, steps, arrivals, clockOffset);
+        measurements_.add({frame_, 80, now_ - 5 * kMs, clock_.swapped(now_), held_, rests_}, steps, arrivals,
+                          clockOffset);
         lastSwap_ = now_;
     }
     void hold(haptic_bridge::Held held) { held_ = held; }
+    void rest(bool rests) { rests_ = rests; }
     [[nodiscard]] std::int64_t now() const { return now_; }
     [[nodiscard]] master::Summary summary() const {
         master::Summary summary;
@@ -43,6 +46,7 @@ private:
     master::FrameClock clock_{100};
     std::uint64_t frame_ = 0;
     haptic_bridge::Held held_ = haptic_bridge::Held::no;
+    bool rests_ = false;
     std::int64_t now_ = 50'000 * kMs, lastSwap_ = 0;
 };
 
@@ -86,6 +90,23 @@ TEST(Measurements, CountTheTimeThatAPauseOrAFullDiskHasHeld) {
     EXPECT_NEAR(wall.summary().fullDiskSeconds, 0.75, 1e-9);
 }
 
+TEST(Measurements, CountTheTimeWithoutStepsBecauseNothingMovesAndNoPauseTwice) {
+    using haptic_bridge::Held;
+    Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
+    Wall wall(measurements);
+    wall.show(250 * kMs);
+    wall.rest(true);
+    for (const Held held : {Held::no, Held::no, Held::no, Held::pause}) {
+        wall.hold(held);
+        wall.show(250 * kMs);
+    }
+    wall.rest(false);
+    wall.hold(Held::no);
+    wall.show(250 * kMs);
+    EXPECT_NEAR(wall.summary().restSeconds, 0.75, 1e-9);
+    EXPECT_NEAR(wall.summary().pausedSeconds, 0.25, 1e-9);
+}
+
 TEST(Measurements, OfAFastSessionKnowNoLateFrame) {
     Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::fast, 60);
     Wall wall(measurements);
@@ -117,15 +138,54 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
 TEST(Measurements, SayHowManyFramesASecondHas) {
     Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     constexpr std::int64_t kStart = 1'000'000 * kMs;
-    measurements.printProgress(1, 1, "", "no hand", false, kStart);
-    measurements.printProgress(31, 31, "", "no hand", false, kStart + 500 * kMs);
+    measurements.printProgress({.frame = 1, .step = 1}, kStart);
+    measurements.printProgress({.frame = 31, .step = 31}, kStart + 500 * kMs);
     nlohmann::json status;
     measurements.describe(status, {});
     EXPECT_EQ(status["fps"], 0) << "less than a second has passed";
-    measurements.printProgress(91, 91, "", "no hand", false, kStart + 1500 * kMs);
+    measurements.printProgress({.frame = 91, .step = 91}, kStart + 1500 * kMs);
     measurements.describe(status, {});
     EXPECT_NEAR(status["fps"].get<double>(), 60, 1e-9);
     EXPECT_EQ(status["slowest"], nullptr);
+}
+
+/// A wall of 60 Hz that prints its lines of progress.
+class Lines {
+public:
+    /// Shows frames for so many seconds, whose steps stay at `step`. Returns how many lines they print.
+    std::ptrdiff_t showAt(std::uint64_t step, int seconds, const char* hand = "no hand") {
+        testing::internal::CaptureStdout();
+        for (int i = 0; i < 60 * seconds; ++i) {
+            nowNs_ += 1'000'000'000 / 60 + 1;
+            measurements_.printProgress({.frame = ++frame_, .step = step, .hand = hand, .repeat = 60}, nowNs_);
+        }
+        const std::string printed = testing::internal::GetCapturedStdout();
+        return std::count(printed.begin(), printed.end(), '\n');
+    }
+    [[nodiscard]] double framesPerSecond() const {
+        nlohmann::json status;
+        measurements_.describe(status, {});
+        return status["fps"];
+    }
+
+private:
+    Measurements measurements_{3, 0, 1.0 / 60, haptic_bridge::Pace::realtime, 60};
+    std::uint64_t frame_ = 0;
+    std::int64_t nowNs_ = 1'000'000 * kMs;
+};
+
+// The log of a wall that nobody touches must not grow by a line each second.
+TEST(Measurements, PrintALineAMinuteWhileNeitherStepNorHandChanges) {
+    Lines lines;
+    std::ptrdiff_t moving = 0;
+    for (std::uint64_t step = 60; step <= 600; step += 60) {
+        moving += lines.showAt(step, 1);
+    }
+    EXPECT_EQ(moving, 10) << "a line a second";
+    EXPECT_EQ(lines.showAt(600, 600), 10) << "ten minutes";
+    EXPECT_NEAR(lines.framesPerSecond(), 60, 0.1) << "the rate is counted each second";
+    EXPECT_EQ(lines.showAt(601, 2), 1) << "a step";
+    EXPECT_EQ(lines.showAt(601, 2, "hand points"), 1) << "another hand";
 }
 
 // Frames per second: 30 in the second of the start, which is left out, then 60, 62, 40, 40 and 5 in the end.
@@ -135,7 +195,8 @@ TEST(Measurements, TellAPersonWhoDigsOnlyOfARateThatHasChanged) {
     std::uint64_t frame = 1;
     std::int64_t now = 1'000'000 * kMs;
     const auto print = [&](bool last) {
-        measurements.printProgress(frame, frame, "", "hand points", last, now, Measurements::Reader::digs);
+        measurements.printProgress({.frame = frame, .step = frame, .hand = "hand points", .last = last}, now,
+                                   Measurements::Reader::digs);
     };
     print(false);
     for (const std::uint64_t rate : {30U, 60U, 62U, 40U, 40U}) {

@@ -82,7 +82,7 @@ master::Summary wholeSummary() {
 
 TEST_F(SchemaFiles, OfTheSummaryHasTheKeysThatItsTypesList) {
     master::Summary summary = wholeSummary();
-    master::reportRecovery({.failure = {"rank 1 died", 1, "SIGKILL", 0}}, folder_);
+    master::reportRecovery({.failure = {.what = "rank 1 died", .rank = 1, .how = "SIGKILL"}}, folder_);
     for (const std::string& recovery : master::recoveriesOf(folder_)) {
         Json line = Json::parse(recovery);
         line["seconds_to_link"] = 1;  // only the launcher writes it

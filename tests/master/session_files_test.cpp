@@ -63,13 +63,14 @@ TEST_F(Recoveries, ALineThatACrashHasTornIsEndedBeforeTheNext) {
         return all;
     };
     for (const std::uint64_t step : {7U, 8U}) {
-        master::reportRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = step}, folder_);
+        master::reportRecovery({.failure = {.what = "rank 2 died", .rank = 2, .how = "SIGKILL"}, .step = step},
+                               folder_);
     }
     const std::vector<std::string> whole = lines();
     ASSERT_EQ(whole.size(), 2U) << "a whole line needs no end";
     const std::string torn = whole[1].substr(0, whole[1].size() / 2);
     std::ofstream(file) << whole[0] << "\n" << torn;
-    master::reportRecovery({.failure = {"rank 3 died", 3, "SIGKILL", 0}, .step = 9}, folder_);
+    master::reportRecovery({.failure = {.what = "rank 3 died", .rank = 3, .how = "SIGKILL"}, .step = 9}, folder_);
     const std::vector<std::string> after = lines();
     ASSERT_EQ(after.size(), 3U);
     EXPECT_EQ(after[0], whole[0]);
@@ -79,8 +80,24 @@ TEST_F(Recoveries, ALineThatACrashHasTornIsEndedBeforeTheNext) {
     EXPECT_EQ(master::RecoveryCount(folder_).count(), 2U);
 }
 
+// The steady clock of a machine counts from its start. `startedNs` is when the master started.
+TEST_F(Recoveries, CountBySteadyClocksFromTheFailure) {
+    constexpr std::int64_t kStarted = 5'000'000'000, kNow = 6'500'000'000;  // [ns]
+    master::Failure failure;
+    EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "here/1"), 1.5) << "without a failure, since the start";
+    failure.noticed = 3;
+    failure.machine = "here/1";
+    failure.before = 0.25;
+    EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "here/1"), 3.5);
+    EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "there/1"), 1.75) << "another machine has another clock";
+    EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "here/2"), 1.75) << "it has started again";
+    failure.noticed = 1.8e9;  // Unix time, as of a supervisor of an earlier release
+    EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "here/1"), 0);
+}
+
 TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
-    master::reportRecovery({.failure = {"rank 2 died", 2, "SIGKILL", 0}, .step = 7, .frame = 8}, folder_);
+    master::reportRecovery({.failure = {.what = "rank 2 died", .rank = 2, .how = "SIGKILL"}, .step = 7, .frame = 8},
+                           folder_);
     std::string good;
     std::getline(std::ifstream(folder_ / "recoveries.jsonl"), good);
     const auto with = [&good](const std::string& key, const std::string& value) {

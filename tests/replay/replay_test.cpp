@@ -77,6 +77,26 @@ TEST_F(Replay, SaysWhereASessionDiffers) {
     EXPECT_NE(ran.output.find("before frame 10, after step 18: the session had "), std::string::npos) << ran.output;
 }
 
+TEST_F(Replay, ComparesTheHashOfSandThatRests) {
+    for (const std::uint64_t error : {0U, 8U}) {
+        std::filesystem::remove(journal());
+        const scene::Scene scene = samples::flatScene(40, 30);
+        sand::Replica replica(scene);
+        {
+            std::mt19937 random(53);
+            master::JournalWriter writer(journal(), scene, "test");
+            const sand::Step step = samples::randomStep(1, scene.rules, random);
+            writer.append({1, replica.stateHash(), {step}});
+            replica.apply(step);
+            writer.append({2, replica.stateHash() ^ error, {}});
+        }
+        const support::Ran ran = replay("");
+        EXPECT_EQ(ran.status, error == 0 ? 0 : 1) << ran.output;
+        EXPECT_EQ(ran.output.find("before frame 2, after step 1: ") == std::string::npos, error == 0) << ran.output;
+        EXPECT_EQ(replay("--verify").status, error == 0 ? 0 : 1);
+    }
+}
+
 TEST_F(Replay, VerifiesAllThatAJournalSays) {
     const sand::Replica replica = record();
     const std::uint64_t session = master::openJournal(journal()).header().session;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "host/worker_pool.hpp"
@@ -97,6 +98,39 @@ TEST(Owed, ASweepThatMovesNoSandEndsWhatIsOwed) {
     EXPECT_GT(parts, 3);
     EXPECT_LT(parts, 1000);
     EXPECT_TRUE(sand.settled());
+}
+
+TEST(AtRest, ASandWhoseNextStepChangesItsNumberAlone) {
+    Replica sand(towerScene(3));
+    EXPECT_FALSE(sand.atRest()) << "no sweep has looked";
+    const auto bring = [&sand](const Step& step) {
+        int steps = 0;
+        for (bool moves = true; moves && steps < 4000; ++steps) {
+            sand.apply(next(sand, std::min(5, sand.mostSweeps(step)), step));
+            moves = !sand.atRest();
+            EXPECT_FALSE(!moves && sand.owed().any());
+        }
+        EXPECT_TRUE(sand.atRest());
+        return steps;
+    };
+    for (const bool engaged : {false, true}) {
+        if (engaged) {
+            sand.apply(next(sand, 0, {.engaged = true, .path = {borders::probeAt(20, 24, 2)}}));
+            EXPECT_FALSE(sand.atRest()) << "it has pressed";
+        }
+        EXPECT_GE(bring({.engaged = engaged}), engaged ? 1 : 3);
+        const auto before = stateOf(sand);
+        for (int i = 0; i < 100; ++i) {
+            sand.apply(next(sand, 1, {.engaged = engaged}));
+            ASSERT_TRUE(sand.atRest());
+        }
+        EXPECT_EQ(stateOf(sand), before);
+    }
+    sand.apply(next(sand, 1, {.edit = Edit::tuned(sand.rules().tuning)}));
+    EXPECT_FALSE(sand.atRest()) << "all sand is looked at again";
+    Replica joined(towerScene(3));
+    joined.decodeState(sand.encodeState());
+    EXPECT_FALSE(joined.atRest());
 }
 
 TEST(Owed, AMovementOfTheToolIsLeftOutUntilAllIsPaid) {

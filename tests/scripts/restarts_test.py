@@ -16,21 +16,25 @@ from supervisor_fixture import HOST, Supervised
 import events
 import job_log
 import open_mpi
+import reachable
 import supervisor
 
 
 class Restarts(Supervised):
     def test_a_rank_that_dies_is_named_and_the_session_goes_on(self):
         self.tries("progress 7 6; complain 2 'last words'; dies 2 host 11", "progress 9 8; exit 0")
-        before = time.time()
+        before = time.monotonic()
         status, printed, error = self.ended(["-", "-"])
         self.assertEqual((status, printed), (0, "a line of progress\n" * 2))
         self.assertEqual(error, f"last words\nsandwall: rank 2 on {HOST} was killed by SIGSEGV; "
                          "starting again (1 of --restarts 3 in --restart-window 60)\n")
         first, second = self.commands()
         self.assertNotIn("--resume", first)
-        found = re.search(rf" --resume --failed-at (\S+) --failure=rank 2 on {HOST} was killed by SIGSEGV --failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
-        self.assertTrue(before <= float(found[1]) <= time.time(), second)
+        found = re.search(rf" --resume --failed-at (\S+) --failed-on=(\S+) --failed-before (\S+) --failure=rank 2 on {HOST} was killed by SIGSEGV "
+                          "--failed-rank 2 --failed-how SIGSEGV : -n 2 ", second)
+        self.assertTrue(before - 0.001 <= float(found[1]) <= time.monotonic(), second)
+        self.assertEqual(found[2], reachable.identity_here(), "the machine of this clock")
+        self.assertGreaterEqual(float(found[3]), 0)
 
     def test_the_master_is_called_so(self):
         self.tries("progress 7 6; dies 0 host 9", "exit 0")

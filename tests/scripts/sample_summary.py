@@ -26,7 +26,7 @@ SUMMARY = {
     "server_divergences": 0, "unhealed": 0, "steps_left_out": 0, "steps_unplaced": 0, "volume_initial": 900, "volume_final": 890, "edits": 0, "volume_outflow": 10,
     "compared": {"at_end": True, "server_at_end": True, "last_whole": 600, "frames_since": 0, "first_difference": None},
     "seconds": 9.99, "fps": 59.96, "frame_ms": {**SPREAD, "count": 590, "mean": 16.7}, "late_frames": 3,
-    "held_seconds": {"pause": 0.0, "disk": 0.0}, "skew_us": {"p50": 200.0, "p99": 900.0, "max": 2000.0},
+    "held_seconds": {"pause": 0.0, "disk": 0.0, "rest": 0.0}, "skew_us": {"p50": 200.0, "p99": 900.0, "max": 2000.0},
     "latency_ms": DISTRIBUTION, "latency_legs_ms": {leg: DISTRIBUTION for leg in ("to_master", "queued", "drawn", "swapped")},
     "haptic_period_us": {"p50": 1000.0, "p99": 1010.0, "max": 1100.0}, "slowest": None, "broadcast_bytes": SPREAD,
     "hand": {"asked": "server", "links": 1, "frames_with_hand": 598, "linked_at_end": True, "slow_motion": 1.02, "last_refusal": None},

@@ -319,6 +319,9 @@ class Sand(Lines):
     def test_a_majority_that_was_outvoted_is_noted(self):
         self.only("sand", NOTE, "outvoted a majority 3 times", outvoted=3)
 
+    def test_a_rest_explains_why_there_are_few_steps(self):
+        self.check("steps", GOOD, "; at rest for 598.2 s since the last start", held_seconds__rest=598.2)
+
     def test_steps_left_out_are_noted(self):
         self.only("steps", NOTE, "70 of 590 in the session", steps_left_out=70)
 
@@ -338,7 +341,7 @@ class Disks(Lines):
     def test_a_full_disk_is_the_cause_and_a_required_journal_is_bad(self):
         fields = {"steps": 0, "journal": {**SUMMARY["journal"], "state": "no_room", "whole": False, "checkpoints": 0,
                                           "full_disk": {"times": 1, "seconds": 3.9}},
-                  "held_seconds": {"pause": 0.0, "disk": 3.9}, "haptic__steps_withheld": 240,
+                  "held_seconds": {"pause": 0.0, "disk": 3.9, "rest": 0.0}, "haptic__steps_withheld": 240,
                   "haptic__steps_withheld_by": {"wall": 0, "disk": 240, "pause": 0, "start": 0}}
         self.check("journal", BAD, "no room (required), not whole", **fields)
         self.check("disk", NOTE, "waited 1 time for room", "3.9 s", **fields)

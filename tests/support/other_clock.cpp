@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets the monotonic clock of one rank ahead, as on another machine (LD_PRELOAD). SANDWALL_CLOCK_RANK is the rank,
-// SANDWALL_CLOCK_AHEAD the difference [s].
+// Sets the clocks of one rank ahead, as on another machine (LD_PRELOAD). SANDWALL_CLOCK_RANK is the rank.
+// SANDWALL_CLOCK_AHEAD is the difference of the monotonic clock, and SANDWALL_DATE_AHEAD that of the time of day [s].
 #include <dlfcn.h>
 #include <pthread.h>
 #include <sys/syscall.h>
@@ -13,10 +13,19 @@
 
 namespace {
 
-/// Returns by how much the clock of this process is ahead [s].
+/// Returns by how much a clock of this process is ahead, as `variable` says [s].
+time_t secondsIn(const char* variable) {
+    const char* const seconds = std::getenv(variable);
+    return seconds != nullptr && preloaded::isRankOf("SANDWALL_CLOCK_RANK") ? std::atol(seconds) : 0;
+}
+
 time_t ahead() {
-    static const time_t seconds =
-        preloaded::isRankOf("SANDWALL_CLOCK_RANK") ? std::atol(std::getenv("SANDWALL_CLOCK_AHEAD")) : 0;
+    static const time_t seconds = secondsIn("SANDWALL_CLOCK_AHEAD");
+    return seconds;
+}
+
+time_t dateAhead() {
+    static const time_t seconds = secondsIn("SANDWALL_DATE_AHEAD");
     return seconds;
 }
 
@@ -26,7 +35,7 @@ extern "C" {
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
     const auto result = static_cast<int>(syscall(SYS_clock_gettime, clock, time));
-    time->tv_sec += clock == CLOCK_MONOTONIC ? ahead() : 0;
+    time->tv_sec += clock == CLOCK_MONOTONIC ? ahead() : clock == CLOCK_REALTIME ? dateAhead() : 0;
     return result;
 }
 

@@ -63,6 +63,21 @@ TEST_F(OpenedSession, ComputesEveryStepOnceAndComparesEveryHash) {
     EXPECT_EQ(session.replica().stateHash(), hashes_.back());
 }
 
+TEST_F(OpenedSession, ComparesTheHashesOfSandThatRested) {
+    const sand::Step step = samples::randomStep(1, scene_.rules, random_);
+    journal_.add(journal::JournalFrame{1, sand_.stateHash(), {step}});
+    sand_.apply(step);
+    journal_.add(journal::JournalFrame{2, sand_.stateHash(), {}});
+    journal_.add(journal::JournalFrame{900, sand_.stateHash() + 1, {}});
+    web::PageSession session = open();
+    EXPECT_EQ(session.lastStep(), 1U);
+    EXPECT_EQ(session.hashes(), 3U);
+    while (session.advance()) {
+    }
+    EXPECT_EQ(session.matches(), 2U);
+    EXPECT_EQ(session.mismatches(), 1U);
+}
+
 TEST_F(OpenedSession, GoesOnFromAnyKeptStateAndCountsEachHashOnce) {
     write();
     web::PageSession session = open();

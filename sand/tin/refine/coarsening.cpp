@@ -60,6 +60,15 @@ bool takeOut(VertexSand& layer, const DetailRules& rules, Vertex vertex, Link& l
            layer.remove(vertex);
 }
 
+/// Returns the number of vertices that may be removed, with those that the mesh no longer has.
+std::int64_t candidatesIn(const VertexSand& layer, const DetailRules& rules) {
+    const auto count = static_cast<std::int64_t>(layer.triangles().triangleAt.size());
+    return std::max<std::int64_t>(count - rules.firstToGo, 0);
+}
+
+/// Returns how many vertices a step may examine.
+std::int64_t mostLooks(const DetailRules& rules) { return std::int64_t{rules.removals} * kLooksPerRemoval; }
+
 /// Examines the vertices for which `maySkip` is false. Calls `looked` with each vertex, whether it was removed, and
 /// its neighbours.
 template <class MaySkip, class Looked>
@@ -69,8 +78,7 @@ int coarsenBut(VertexSand& layer, const DetailRules& rules, Vertex& next, const 
         return 0;
     }
     const auto count = static_cast<Vertex>(layer.triangles().triangleAt.size());
-    const std::int64_t looks =
-        std::clamp<std::int64_t>(count - rules.firstToGo, 0, std::int64_t{rules.removals} * kLooksPerRemoval);
+    const std::int64_t looks = std::min(candidatesIn(layer, rules), mostLooks(rules));
     Link link;
     int removed = 0;
     for (std::int64_t look = 0; look < looks && removed < rules.removals; ++look, ++next) {
@@ -105,8 +113,11 @@ int Coarsening::step(VertexSand& layer, const DetailRules& rules, Vertex& next, 
             known_[index(other)] &= static_cast<std::uint8_t>(~kNoneFailed);
         }
     };
-    return coarsenBut(
+    const int removed = coarsenBut(
         layer, rules, next, keepOut, [this](Vertex vertex) { return (known_[index(vertex)] & kFailed) != 0; }, looked);
+    looked_ = removed > 0 ? 0 : looked_ + mostLooks(rules);
+    done_ = looked_ >= candidatesIn(layer, rules);
+    return removed;
 }
 
 void Coarsening::lookAgain(const Triangle& triangle) {
@@ -118,6 +129,8 @@ void Coarsening::lookAgain(const Triangle& triangle) {
 }
 
 void Coarsening::touch(const Triangles& mesh, std::span<const Vertex> vertices) {
+    looked_ = 0;
+    done_ = false;
     known_.resize(std::max(known_.size(), mesh.triangleAt.size()), 0);
     for (const Vertex vertex : vertices) {
         // A vertex that is removed and comes back has only new triangles.

@@ -34,9 +34,15 @@ public:
     void touch(const Triangles& mesh, std::span<const Vertex> vertices);
     /// Call this after the mesh or heights have changed, also for the removals of step().
     void touch(const Triangles& mesh, const Mesh::Change& change);
-    void forget() { known_.clear(); }
+    void forget() {
+        known_.clear();
+        looked_ = 0;
+        done_ = false;
+    }
     /// Does the work of one call of coarsen(). Returns the number of removed vertices.
     int step(VertexSand& layer, const DetailRules& rules, Vertex& next, const Box& keepOut);
+    /// Returns whether step() has examined every vertex since the last change, and could remove none.
+    [[nodiscard]] bool done() const { return done_; }
 
 private:
     /// Makes step() examine the corners of a triangle again.
@@ -48,6 +54,8 @@ private:
     static constexpr std::uint8_t kFailed = 1;  // removal failed, and nothing around the vertex has changed since
     static constexpr std::uint8_t kNoneFailed = 2;
     std::vector<std::uint8_t> known_;
+    std::int64_t looked_ = 0;  // vertices that step() has examined since the last change
+    bool done_ = false;
 };
 
 }  // namespace sand::tin

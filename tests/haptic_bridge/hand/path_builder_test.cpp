@@ -31,6 +31,51 @@ TEST(PathBuilder, GivesEverySampleInOrder) {
     EXPECT_EQ(step.path.back().x, 17);
 }
 
+TEST(PathBuilder, KnowsWhetherTheSamplesThatWaitMoveTheTool) {
+    PathBuilder builder(kStepsPerSecond);
+    EXPECT_FALSE(builder.moves());
+    builder.add(at(7, false));
+    EXPECT_TRUE(builder.moves());
+    (void)take(builder);
+    for (int i = 0; i < 3; ++i) {
+        builder.add(at(7, false));
+    }
+    EXPECT_FALSE(builder.moves()) << "it hovers at the same place";
+    builder.add(at(8, false));
+    builder.add(at(7, false));
+    EXPECT_TRUE(builder.moves()) << "it was elsewhere meanwhile";
+    (void)take(builder);
+    builder.add(at(7));
+    EXPECT_TRUE(builder.moves()) << "it presses where it hovered";
+    (void)take(builder);
+    builder.add(at(7));
+    EXPECT_FALSE(builder.moves());
+    HandSample turned = at(7);
+    turned.heading = sand::Heading{};
+    builder.add(turned);
+    EXPECT_TRUE(builder.moves());
+    (void)take(builder);
+    builder.add(at(7, false));
+    EXPECT_TRUE(builder.moves()) << "it lifts the tool";
+}
+
+TEST(PathBuilder, ForgetsTheSamplesOfARestAndCountsNone) {
+    PathBuilder builder(kStepsPerSecond);
+    builder.add(at(7));
+    (void)take(builder);
+    for (int i = 0; i < 10; ++i) {
+        builder.add(at(7));
+    }
+    builder.forgetRest();
+    EXPECT_FALSE(builder.waits());
+    EXPECT_EQ(builder.dropped(), 0U);
+    builder.add(at(9));
+    const sand::Step step = take(builder);
+    EXPECT_TRUE(step.engaged);
+    ASSERT_EQ(step.path.size(), 1U);
+    EXPECT_EQ(step.path[0].x, 9);
+}
+
 TEST(PathBuilder, EndsAPathBehindTheSubstepsThatFit) {
     PathBuilder builder(kStepsPerSecond);
     for (int cell = 1; cell <= 9; ++cell) {

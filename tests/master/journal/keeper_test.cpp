@@ -125,6 +125,25 @@ TEST_F(Keeper, TheShareOfTheForceIsOnDiskBeforeAnyFurtherStep) {
     EXPECT_EQ(master::readSession(journal(), "")->forceShare, 0) << "as a kill at this moment would leave it";
 }
 
+// A wall that rests has no further step for hours.
+TEST_F(Keeper, ADecisionOfAMajorityIsOnDiskBeforeAnyFurtherStep) {
+    begin({});
+    ASSERT_TRUE(showFrame());
+    const auto recordsOnDisk = [this] {
+        journal::JournalReader reader = master::openJournal(journal());
+        int records = 0;
+        while (reader.next()) {
+            ++records;
+        }
+        return records;
+    };
+    ASSERT_EQ(recordsOnDisk(), 1);
+    keeper_->doubt({frame_, {1, replica_.stateHash()}});
+    EXPECT_EQ(recordsOnDisk(), 2);
+    keeper_->checked({frame_, {1, replica_.stateHash()}, false});
+    EXPECT_EQ(recordsOnDisk(), 3);
+}
+
 TEST_F(Keeper, NoPipeInTheFolderStopsASessionOrItsResume) {
     begin({.checkpointSeconds = 1e-9});
     while (master::checkpointsOf(journal()).empty()) {

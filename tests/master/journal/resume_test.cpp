@@ -168,6 +168,29 @@ TEST_F(Resume, ChecksTheHashesOnTheWay) {
         << refusal(journal());
 }
 
+// A session was killed while nothing moved. Its last record is a frame without steps.
+TEST_F(Resume, ContinuesSandThatRestsAndChecksItsHash) {
+    const auto rest = [this](std::uint64_t hash) {
+        master::JournalWriter writer(master::readSession(journal(), "")->place, "test");
+        writer.append({++frame_, hash, {}});
+    };
+    rest(hashes_[40]);
+    const auto session = master::readSession(journal(), "");
+    EXPECT_EQ(session->step, 40U);
+    EXPECT_EQ(session->frame, 21U) << "frames continue after the one in which the rest began";
+    EXPECT_EQ(session->hash, hashes_[40]);
+    {
+        master::JournalWriter writer(session->place, "test");
+        hashes_.pop_back();  // record() adds it again
+        record(writer, 1);
+        hashes_.push_back(replica_.stateHash());
+    }
+    expectSand(40, 40);
+    expectSand(42, 40);
+    rest(replica_.stateHash() ^ 1);
+    EXPECT_NE(refusal(journal()).find("after step 42 the session had "), std::string::npos) << refusal(journal());
+}
+
 // The first new edit gets a higher number than all edits that are in a step. The torn step was never shown.
 TEST_F(Resume, KnowsTheHighestNumberOfAnEditInAllEpochs) {
     const auto append = [this](std::uint64_t number, std::uint32_t epoch) {

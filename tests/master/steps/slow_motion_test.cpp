@@ -58,6 +58,19 @@ TEST(SlowMotion, TakesAHandAtRestForNoneThatWaits) {
     EXPECT_DOUBLE_EQ(motion.factor().value(), 1);
 }
 
+/// The master makes no steps while a tool that is held in the sand rests. A minute later the hand moves it again.
+TEST(SlowMotion, OfAToolThatKeepsUpIsOneAlsoAfterARest) {
+    SlowMotion motion(60);
+    motion.add(kFrame, {stepAt(1000 * kMs, true)});
+    for (std::int64_t frame = 1; frame <= 3600; ++frame) {
+        motion.addRest(kFrame);
+    }
+    motion.add(kFrame, {stepAt(1000 * kMs + 3601 * kFrame, true)});
+    EXPECT_DOUBLE_EQ(motion.factor().value(), 1);
+    motion.add(3600 * kFrame, {stepAt(1000 * kMs + 7201 * kFrame, true)});
+    EXPECT_GT(motion.factor().value(), 1) << "of a longer time without steps, movement was dropped";
+}
+
 TEST(SlowMotion, NeedsHalfASecondOfAHandInTheSand) {
     SlowMotion motion(60);
     for (std::int64_t frame = 0; frame < 100; ++frame) {

@@ -198,6 +198,33 @@ TEST(TinDetail, CoarseningThatRemembersLeavesWhatOneThatLooksAgainLeaves) {
     EXPECT_GT(removed, 100);
 }
 
+// 400 vertices, of which a step removes at most 40 and looks at no more than 640.
+TEST(TinDetail, CoarseningIsDoneWhenItHasLookedAtAllVerticesAndFoundNone) {
+    VertexSand layer = levelLayer(20, 20, 256);
+    const DetailRules rules = rulesOf(256, 1, 40);
+    sand::tin::Coarsening coarsening;
+    Vertex next = 0;
+    EXPECT_FALSE(coarsening.done()) << "it has not looked";
+    int steps = 0, last = 0;
+    do {
+        last = coarsening.step(layer, rules, next, kNowhere);
+        EXPECT_TRUE(last == 0 || !coarsening.done()) << "step " << steps;
+        if (last > 0) {
+            coarsening.touch(layer.triangles(), layer.takeChange());
+        }
+    } while (++steps < 100 && !coarsening.done());
+    EXPECT_GE(steps, 11) << "ten that remove all, and one that finds none";
+    Vertex other = 0;
+    EXPECT_EQ(sand::tin::coarsen(layer, rules, other, kNowhere), 0);
+    const std::vector<Vertex> corner{0};
+    coarsening.touch(layer.triangles(), corner);
+    EXPECT_FALSE(coarsening.done()) << "a height has changed";
+    EXPECT_EQ(coarsening.step(layer, rules, next, kNowhere), 0);
+    EXPECT_TRUE(coarsening.done());
+    coarsening.forget();
+    EXPECT_FALSE(coarsening.done());
+}
+
 TEST(TinDetail, WithoutAnErrorNothingGoes) {
     VertexSand layer = levelLayer(10, 10, 256);
     const base::Bytes before = bytesOf(layer);

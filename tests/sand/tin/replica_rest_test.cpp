@@ -87,6 +87,32 @@ TEST_F(TinReplica, WhatCouldNotBeRemovedCoarsensAgainOnceSandHasSlid) {
     EXPECT_LT(verticesOf(replica), rested) << "flat sand needs fewer vertices";
 }
 
+TEST_F(TinReplica, AtRestNoStepChangesItsMesh) {
+    Replica replica(scene());
+    EXPECT_FALSE(replica.atRest()) << "no sweep has looked";
+    std::uint64_t number = 0;
+    const auto hover = [&] { replica.apply({.epoch = 1, .number = ++number, .engaged = false, .path = {}}); };
+    replica.apply({.epoch = 1, .number = ++number, .engaged = true, .path = {{8000, 8000, 2300}, {8600, 8000, 2300}}});
+    EXPECT_FALSE(replica.atRest());
+    while (number < 4000 && !replica.atRest()) {
+        hover();
+    }
+    ASSERT_TRUE(replica.atRest());
+    const int vertices = verticesOf(replica);
+    (void)replica.takeChange();
+    for (int i = 0; i < 500; ++i) {
+        hover();
+        ASSERT_TRUE(replica.atRest()) << number;
+    }
+    EXPECT_EQ(verticesOf(replica), vertices);
+    const sand::SurfaceChange change = replica.takeChange();
+    const auto& parts = std::get<sand::TinChange>(change.parts);
+    EXPECT_TRUE(parts.triangles.empty() && parts.vertices.empty());
+    Replica joined(scene());
+    joined.decodeState(replica.encodeState());
+    EXPECT_FALSE(joined.atRest()) << "it has not looked at any vertex";
+}
+
 TEST_F(TinReplica, EveryStepIsAFunctionOfTheStateWhileAToolSettlesOnSlopes) {
     const scene::Scene start = scene();
     Replica replica(start), fresh(start);
