@@ -23,6 +23,7 @@
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
 #include "walls/desk_windows.hpp"
+#include "walls/wall_units.hpp"
 
 namespace master {
 namespace {
@@ -119,6 +120,9 @@ std::string sceneName(const ProgramOptions& options) {
 
 walls::Wall loadWall(const ProgramOptions& options) {
     walls::Wall wall = walls::loadWallAs(options.wall, options.stereo);
+    for (const std::string& warning : walls::unitWarnings(wall)) {
+        host::printLine("{}: warning: {}", options.wall, warning);
+    }
     return options.desk.empty()
                ? wall
                : walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
