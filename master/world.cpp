@@ -120,9 +120,6 @@ std::string sceneName(const ProgramOptions& options) {
 
 walls::Wall loadWall(const ProgramOptions& options) {
     walls::Wall wall = walls::loadWallAs(options.wall, options.stereo);
-    for (const std::string& warning : walls::unitWarnings(wall)) {
-        host::printLine("{}: warning: {}", options.wall, warning);
-    }
     return options.desk.empty()
                ? wall
                : walls::placedOnDesk(wall, walls::DeskArea::parse(options.desk, "--desk"), options.wall);
@@ -224,6 +221,9 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
                      session.record.resumed ? session.record.resumed->state : base::Bytes()};
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
+    }
+    for (const std::string& warning : walls::unitWarnings(world.wall)) {
+        host::printLine("{}: warning: {}", options.wall, warning);
     }
     return world;
 }

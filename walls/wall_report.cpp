@@ -74,6 +74,9 @@ std::string stageLines(const Wall& wall) {
     for (const std::string& warning : unitWarnings(wall)) {
         lines += fmt::format("warning: {}\n", warning);
     }
+    if (const auto warning = stageWarning(wall)) {
+        lines += fmt::format("warning: {}\n", *warning);
+    }
     return lines;
 }
 

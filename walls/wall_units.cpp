@@ -18,8 +18,8 @@ double pixelSide(const Tile& tile) {
     return std::min(tile.screen.width() / tile.pixels.x, tile.screen.height() / tile.pixels.y);
 }
 
-/// Returns the least distance of a point from the eye, measured along the normal of a tile in front of which the point
-/// is not [m]. Infinite if there is no such tile.
+/// Returns the least distance of a point from the eye along the normal of a tile [m]. Tiles that have the point behind
+/// the eye do not count. Infinite if none is left.
 double leastDepth(const Wall& wall, glm::dvec3 point) {
     double least = HUGE_VAL;
     for (const Tile& tile : wall.tiles) {
@@ -55,9 +55,8 @@ std::vector<std::string> unitWarnings(const Wall& wall) {
         lines.push_back(fmt::format("a pixel of tile '{}' is {:.0f} mm wide, and more than {:.0f} mm is unusual; {}",
                                     largest->name, side * 1000, kMaxPixel * 1000, kAdvice));
     }
-    const std::array<glm::dvec3, 4> corners = stageCorners(wall.stage);
     double nearest = leastDepth(wall, wall.stage.centre);
-    for (const glm::dvec3 corner : corners) {
+    for (const glm::dvec3 corner : stageCorners(wall.stage)) {
         nearest = std::min(nearest, leastDepth(wall, corner));
     }
     if (nearest > wall.clip.far && nearest < HUGE_VAL) {
@@ -66,10 +65,15 @@ std::vector<std::string> unitWarnings(const Wall& wall) {
                         "drawn; {}, or move [stage] or far of [clip]",
                         nearest, wall.clip.far, kAdvice));
     }
-    if (std::ranges::all_of(corners, [&](glm::dvec3 corner) { return tilesShowing(wall, corner).empty(); })) {
-        lines.push_back(fmt::format("no tile shows a corner of the sand; {}, or move centre of [stage]", kAdvice));
-    }
     return lines;
+}
+
+std::optional<std::string> stageWarning(const Wall& wall) {
+    const std::array<glm::dvec3, 4> corners = stageCorners(wall.stage);
+    if (std::ranges::all_of(corners, [&](glm::dvec3 corner) { return tilesShowing(wall, corner).empty(); })) {
+        return fmt::format("no tile shows a corner of the sand; {}, or move centre of [stage]", kAdvice);
+    }
+    return std::nullopt;
 }
 
 }  // namespace walls

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,9 @@ inline constexpr double kMaxPixel = 0.02;  // [m], side of a pixel; those of LED
 [[nodiscard]] std::vector<std::string> tilesShowing(const Wall& wall, glm::dvec3 point /* [m] */);
 
 /// Returns one line for each sign that the lengths of a wall are in another unit than metres: a pixel above kMaxPixel,
-/// a stage beyond the far clipping plane of every tile, and sand of which no tile shows a corner.
-///
-/// Such a wall can be drawn, and all its tiles usually have one colour. Pure.
+/// and a stage beyond the far clipping plane of every tile. Such a wall can be drawn, and usually has one colour.
 [[nodiscard]] std::vector<std::string> unitWarnings(const Wall& wall);
+/// Returns a line if no tile shows a corner of the sand. That may be meant on a wall that shows the middle of the sand.
+[[nodiscard]] std::optional<std::string> stageWarning(const Wall& wall);
 
 }  // namespace walls

@@ -22,11 +22,18 @@ std::string deskIn(double scale) {
         0.46 * scale);
 }
 
-std::vector<std::string> warningsOf(const std::string& text) { return unitWarnings(parseWall(text, "desk.toml")); }
+std::vector<std::string> warningsOf(const Wall& wall) {
+    std::vector<std::string> lines = unitWarnings(wall);
+    if (const auto line = stageWarning(wall)) {
+        lines.push_back(*line);
+    }
+    return lines;
+}
+std::vector<std::string> warningsOf(const std::string& text) { return warningsOf(parseWall(text, "desk.toml")); }
 
 TEST(WallUnits, WarnOfNoSampleAndOfNoWallInMetres) {
     for (const std::string& name : configNames()) {
-        EXPECT_TRUE(unitWarnings(config(name)).empty()) << name << ": " << unitWarnings(config(name)).front();
+        EXPECT_TRUE(warningsOf(config(name)).empty()) << name << ": " << warningsOf(config(name)).front();
     }
     EXPECT_TRUE(warningsOf(deskIn(1)).empty());
 }
@@ -66,8 +73,8 @@ TEST(WallUnits, TakeAPixelOfTwentyMillimetresForALedWall) {
 TEST(WallUnits, WarnOfAStageThatIsMovedAway) {
     Wall wall = parseWall(deskIn(1), "desk.toml");
     wall.stage.centre.x = 5;
-    ASSERT_EQ(unitWarnings(wall).size(), 1U);
-    EXPECT_EQ(unitWarnings(wall)[0].find("no tile shows a corner of the sand"), 0U);
+    ASSERT_EQ(warningsOf(wall).size(), 1U);
+    EXPECT_EQ(warningsOf(wall)[0].find("no tile shows a corner of the sand"), 0U);
     wall.stage.centre = {0, 0, -200};
     ASSERT_FALSE(unitWarnings(wall).empty());
     EXPECT_NE(unitWarnings(wall)[0].find("beyond far (100 m)"), std::string::npos) << unitWarnings(wall)[0];
