@@ -186,14 +186,15 @@ private:
         return verdict == lockstep::Verdict::equal;
     }
 
-    /// Changes the stereo mode to the operator's choice, and the picture to the size of its window. The master has
-    /// checked that the outputs can show the mode.
+    /// Changes the stereo mode and the order of the eyes to the operator's choice, and the picture to the size of its
+    /// window. The master has checked that the outputs can show the mode.
     void changeWall(const lockstep::ViewState& view) {
         const auto stereo = static_cast<walls::Stereo>(view.stereo);
         const glm::ivec2 window(view.window[0], view.window[1]);
-        if (stereo != shown_.stereo || window != window_) {
+        if (stereo != shown_.stereo || window != window_ || view.swapEyes != shown_.swapEyes) {
             window_ = window;
-            shown_ = walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window);
+            shown_ = walls::withSwappedEyes(walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window),
+                                            view.swapEyes);
             painter_->showAs(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster_.rank() - 1)));
         }
     }

@@ -85,7 +85,9 @@ std::string stageLines(const Wall& wall) {
 std::string describe(const Wall& wall) {
     const Canvas canvas = wallCanvas(wall);
     const std::size_t outputs = wall.tiles.front().outputs.size() * wall.tiles.size();
-    const std::string mode = wall.stereo == Stereo::mono ? "mono" : fmt::format("{} stereo", stereoName(wall.stereo));
+    const std::string mode = wall.stereo == Stereo::mono ? "mono"
+                                                         : fmt::format("{} stereo{}", stereoName(wall.stereo),
+                                                                       wall.swapEyes ? " with swapped eyes" : "");
     std::string text =
         fmt::format("{}: {} render rank{}, {}, {} output{}, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
                     wall.ranks() == 1 ? "" : "s", mode, outputs, outputs == 1 ? "" : "s", canvas.width, canvas.height);

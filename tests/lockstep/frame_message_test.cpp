@@ -41,6 +41,7 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
                              .pattern = 8,
                              .layers = lockstep::Overlays(9),
                              .stereo = 10,
+                             .swapEyes = true,
                              .humidity = 0.25,
                              .window = {27, 28}};
     for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
