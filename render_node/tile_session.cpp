@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -104,17 +105,21 @@ public:
                 barrier.garble();
             }
             const glm::ivec2 window = context_->followedWindow();
-            const lockstep::Arrival mine{frame.frame,
-                                         arrived - clockAhead,
-                                         lastSwap,
-                                         drawn - start,
-                                         hash,
-                                         viewProof_.hash(frame.view),
-                                         nextKey(),
-                                         cost_.dragNs,
-                                         cost_.sweepNs,
-                                         cost_.hashNs,
-                                         {window.x, window.y}};
+            lockstep::Arrival mine{frame.frame,
+                                   arrived - clockAhead,
+                                   lastSwap,
+                                   drawn - start,
+                                   hash,
+                                   viewProof_.hash(frame.view),
+                                   nextKey(),
+                                   cost_.dragNs,
+                                   cost_.sweepNs,
+                                   cost_.hashNs,
+                                   {window.x, window.y}};
+            const std::vector<base::MonitorState> monitors = context_->monitorStates();
+            for (std::size_t i = 0; i < std::min(monitors.size(), mine.monitors.size()); ++i) {
+                mine.monitors.at(i) = static_cast<std::uint8_t>(monitors[i]);
+            }
             if (!agree(barrier, mine, frame, figures)) {
                 (void)lockstep::gatherReports(barrier, report());
                 return;

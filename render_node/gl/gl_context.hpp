@@ -84,6 +84,8 @@ public:
     virtual void awaitEvents(double /* seconds */) {}
     /// Returns the present size of the window that the picture follows [pixel], or 0 × 0 without such a window.
     [[nodiscard]] virtual glm::ivec2 followedWindow() const { return {}; }
+    /// Returns the states of the monitors that the outputs name, in the order of tile.outputs. Empty without windows.
+    [[nodiscard]] virtual std::vector<base::MonitorState> monitorStates() const { return {}; }
     /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     /// Returns how hardware locks the swaps of the windows:
