@@ -79,10 +79,13 @@ TomlTable TomlTable::parse(std::string_view text, const std::string& name) {
 
 bool TomlTable::has(std::string_view key) const { return node_->table->contains(key); }
 
-void TomlTable::fail(std::string_view key, const std::string& message) const {
+long TomlTable::line(std::string_view key) const {
     const toml::node* value = node_->table->get(key);
-    const long line = value != nullptr ? lineOf(*value) : lineOf(*node_->table);
-    throw base::InputError(node_->document->path.string(), std::max(line, 1L), message);
+    return std::max(value != nullptr ? lineOf(*value) : lineOf(*node_->table), 1L);
+}
+
+void TomlTable::fail(std::string_view key, const std::string& message) const {
+    throw base::InputError(node_->document->path.string(), line(key), message);
 }
 
 double TomlTable::number(std::string_view key, Range range) const {
@@ -139,7 +142,9 @@ bool TomlTable::flagOr(std::string_view key, bool fallback) const {
         return fallback;
     }
     if (!value->is_boolean()) {
-        fail(key, fmt::format("{} must be true or false", key));
+        const std::optional<std::string> text = value->value<std::string>();
+        fail(key, fmt::format("{} must be true or false, without quotation marks{}", key,
+                              text ? fmt::format(", got \"{}\"", *text) : ""));
     }
     return value->value<bool>().value_or(fallback);
 }

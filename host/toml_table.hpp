@@ -74,7 +74,9 @@ public:
     void only(std::initializer_list<std::string_view> keys) const;
     /// Throws for the first key in the file that was not read.
     void finish() const;
-    /// Throws with the file and the line of `key`, or the line of the table if the key is absent.
+    /// Returns the line of `key`, or the line of the table if the key is absent. Counts from 1.
+    [[nodiscard]] long line(std::string_view key) const;
+    /// Throws with the file and the line() of `key`.
     [[noreturn]] void fail(std::string_view key, const std::string& message) const;
     /// Returns the folder of the file, to which paths in the file are relative.
     [[nodiscard]] std::filesystem::path folder() const;

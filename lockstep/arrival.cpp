@@ -8,6 +8,8 @@
 #include <cstring>
 #include <random>
 
+#include "base/monitor_state.hpp"
+
 namespace lockstep {
 
 Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length, std::uint64_t frame,
@@ -25,6 +27,11 @@ Arrival readArrival(std::span<const std::uint8_t, kArrivalRoom> room, int length
     std::memcpy(&arrival, room.data(), sizeof arrival);
     if (arrival.frame != frame) {
         throw base::FormatError(fmt::format("of frame {}", arrival.frame));
+    }
+    for (const std::uint8_t state : arrival.monitors) {
+        if (base::nameOf(static_cast<base::MonitorState>(state)).empty()) {
+            throw base::FormatError(fmt::format("with a monitor in state {}", state));
+        }
     }
     if (pointer != nullptr) {
         haptic_bridge::PointerReport report;

@@ -26,6 +26,9 @@ struct Arrival {
     std::int64_t dragged = 0, swept = 0, hashed = 0;
     // [pixel], present size of the window that the picture follows (walls::followsWindow); 0 without one
     std::array<std::int32_t, 2> window{};
+    // base::MonitorState of each output of the rank's tile, of which there are at most two. The others are 0, and fill
+    // the message without a gap.
+    std::array<std::uint8_t, 8> monitors{};
 };
 
 /// Size of the master's receive buffer for each rank's message at the barrier [byte]. It is longer than an arrival, so

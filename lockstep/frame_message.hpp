@@ -27,6 +27,7 @@ struct ViewState {
     std::uint8_t pattern = 0;  // lockstep::Pattern that is shown instead of the sand; 0: the sand
     Overlays layers{};         // overlays that are shown with the sand
     std::uint8_t stereo = 0;   // walls::Stereo, which an operator may change
+    bool swapEyes = false;     // walls::Wall::swapEyes, which an operator may change
     double humidity = 0;       // scene::Material::humidity, 0 to 1; wet sand is drawn darker
     // [pixel] of the window that the picture follows; 0: the size in the wall file (walls::shownInWindow)
     std::array<std::int32_t, 2> window{};
@@ -40,6 +41,7 @@ struct ViewState {
         visit("pattern", it.pattern);
         visit("layers", it.layers);
         visit("stereo", it.stereo);
+        visit("swap_eyes", it.swapEyes);
         visit("humidity", base::limited(it.humidity, 0, 1));
         visit("window", it.window);
     }

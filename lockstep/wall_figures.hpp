@@ -34,6 +34,7 @@ struct WallFigures {
     std::uint64_t unplaced = 0;        // steps whose sand no cell could take
     std::int32_t sweepsOwed = 0;       // that the tool waits for
     std::optional<double> slowMotion;  // time of the hand that has passed, divided by that which is in steps
+    std::vector<std::uint32_t> dark;   // ranks with an output that no monitor shows
     std::vector<std::uint32_t> swaps;  // [us] after a frame's first swap, by rank from 1; empty if unknown
 
     template <class Self, class Visit>
@@ -46,6 +47,7 @@ struct WallFigures {
         visit("steps_unplaced", base::varint(it.unplaced));
         visit("sweeps_owed", base::varint(it.sweepsOwed));
         visit("slow_motion", it.slowMotion);
+        visit("dark", base::upTo(it.dark, kMostRanks));
         visit("swaps_us", base::upTo(it.swaps, kMostRanks));
     }
     friend bool operator==(const WallFigures&, const WallFigures&) = default;

@@ -133,6 +133,7 @@ lockstep::WallFigures Measurements::figures(const Incidents& incidents, std::int
             .unplaced = incidents.stepsUnplaced,
             .sweepsOwed = sweepsOwed,
             .slowMotion = slowMotion(),
+            .dark = {},
             .swaps = ranks_.lastSwapsUs()};
 }
 

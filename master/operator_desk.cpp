@@ -142,7 +142,10 @@ bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
             shareForce(command.number);
             return true;
         case Verb::stereo:
-            changeStereo(command.stereo);
+            showWall(command.stereo, window_, shown_.swapEyes);
+            return true;
+        case Verb::swapEyes:
+            swapEyes(command.on);
             return true;
         case Verb::stop:
             input_.stop();
@@ -194,7 +197,15 @@ void OperatorDesk::shareForce(double share) {
     session_.keepForce(share);
 }
 
-void OperatorDesk::changeStereo(walls::Stereo stereo) { showWall(stereo, window_); }
+void OperatorDesk::swapEyes(bool swapEyes) {
+    if (walls::eyesOf(shown_.stereo).size() < 2) {
+        throw base::InputError(
+            fmt::format("swap-eyes: the wall shows one eye ({}), so there is nothing to swap; choose a mode with two "
+                        "eyes first, such as stereo anaglyph",
+                        walls::stereoName(shown_.stereo)));
+    }
+    showWall(shown_.stereo, window_, swapEyes);
+}
 
 void OperatorDesk::followWindow(const std::vector<lockstep::Arrival>& arrivals) {
     if (film_ || !walls::followsWindow(wall_) || arrivals.size() < 2) {
@@ -202,15 +213,16 @@ void OperatorDesk::followWindow(const std::vector<lockstep::Arrival>& arrivals) 
     }
     const glm::ivec2 window(arrivals[1].window[0], arrivals[1].window[1]);
     if (window != glm::ivec2(0) && window != window_) {
-        showWall(shown_.stereo, window);
+        showWall(shown_.stereo, window, shown_.swapEyes);
     }
 }
 
-void OperatorDesk::showWall(walls::Stereo stereo, glm::ivec2 window) {
-    shown_ = walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window);
+void OperatorDesk::showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes) {
+    shown_ = walls::withSwappedEyes(walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window), swapEyes);
     window_ = window;
     views_.show(stereo);
     views_.show(window);
+    views_.swapEyes(swapEyes);
 }
 
 void OperatorDesk::save(const std::string& name, const Asker& asker) {
@@ -322,6 +334,7 @@ std::string OperatorDesk::status() const {
     status["paused"] = paused_;
     status["pattern"] = std::string(lockstep::patternName(views_.pattern()));
     status["stereo"] = std::string(walls::stereoName(shown_.stereo));
+    status["swap_eyes"] = shown_.swapEyes;
     status["eye_separation"] = views_.eyeSeparation();
     status["material"] = materialNow(material_);
     status["force_share"] = force_ ? Json(*force_) : Json();

@@ -95,8 +95,8 @@ private:
     void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
     void askMaterial(const scene::Material& material, const Asker& asker);
     void shareForce(double share);
-    void changeStereo(walls::Stereo stereo);
-    void showWall(walls::Stereo stereo, glm::ivec2 window);
+    void swapEyes(bool swapEyes);
+    void showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes);
     void save(const std::string& name, const Asker& asker);
     void load(const std::string& name, const Asker& asker);
     void finishJobs(bool wait);

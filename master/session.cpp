@@ -53,6 +53,7 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
              [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace,
                scene.rules.stepsPerSecond),
+      dark_(wall, labels_.names),
       check_(wall, labels_, options_.out,
              {barrier_,
               counted_,
@@ -111,6 +112,7 @@ lockstep::FrameMessage Session::compose(const Steps& steps) {
     frame.steps = untimed(steps);
     if (frame.view.layers.shows(lockstep::Overlay::statistics)) {
         frame.figures = measure_.figures(incidents(), sweepsOwed());
+        frame.figures->dark = dark_.ranks();
     }
     const std::uint64_t shownThen = sand_.replica().stepNumber() + steps.size();
     // The ranks may still have to take the journal's sand, so the last frame comes after the replay.
@@ -198,6 +200,7 @@ bool Session::showFrame(bool& more) {
     const haptic_bridge::Held held = heldBy();
     measure_.add({frame.frame, bytes, broadcast, swap, held, steps_->rests()}, steps, barrier_.arrivals(),
                  steps_->clockOffsetNs());
+    dark_.add(barrier_.arrivals(), swap.timeNs);
     desk_.answer(steps);
     if (frame.capture && !frame.stop && !film_) {  // a film takes its own pictures
         desk_.takeCapture(frame.frame, barrier_);

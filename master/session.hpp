@@ -12,6 +12,7 @@
 #include "master/frame_clock.hpp"
 #include "master/master_sand.hpp"
 #include "master/measurements.hpp"
+#include "master/operator/dark_outputs.hpp"
 #include "master/operator_desk.hpp"
 #include "master/pictures/film.hpp"
 #include "master/rank_labels.hpp"
@@ -106,6 +107,7 @@ private:
     Incidents counted_;  // since the session began; incidents() adds what the link, the disk and check_ have counted
     OperatorDesk desk_;
     Measurements measure_;
+    DarkOutputs dark_;
     SandCheck check_;
     std::optional<Film> film_;
 };

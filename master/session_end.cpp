@@ -94,6 +94,7 @@ Summary Session::summary() {
     summary.volumeOutflow = sand.outflow();
     summary.seconds = clock_.seconds();
     measure_.fill(summary);
+    summary.dark = dark_.history();
     summary.haptic = steps_->report();
     const haptic_bridge::LinkCounters link = steps_->counters();
     summary.handOvers = {link.catchUps, link.snapshots};

@@ -47,6 +47,7 @@ nlohmann::json Session::status() const {
     const Incidents all = incidents();
     host::JsonWriter writer(status);
     Incidents::counters(all, writer);
+    status["dark"] = dark_.names();
     measure_.describe(status, labels_.names);
     record_.describe(status);
     return status;

@@ -13,6 +13,7 @@
 #include "lockstep/session_message.hpp"
 #include "lockstep/statistics.hpp"
 #include "master/incidents.hpp"
+#include "master/operator/dark_outputs.hpp"
 #include "master/summary_parts.hpp"
 #include "scene/model/raster_statement.hpp"
 #include "tracking/head_tracker.hpp"
@@ -128,6 +129,7 @@ struct Summary {
             visit("full_disk/seconds", it.stoppedSeconds);
         }
     } journal;
+    std::vector<DarkOutput> dark;        // outputs that no monitor showed for some time
     std::vector<host::Json> recoveries;  // of the session, each an object
 
     /// Returns whether no sand was lost or made since the scene's start.
@@ -194,6 +196,7 @@ struct Summary {
         visit("master_memory_bytes", it.masterResidentBytes);
         visit("journal", it.journal);
         visit("journal/full_disk/times", it.incidents.stops);
+        visit("dark", it.dark);
         visit("recoveries", it.recoveries);
         visit("per_rank", it.rankParts());
     }

@@ -23,6 +23,7 @@
 #include "master/start_up.hpp"
 #include "scene/load/scene_file.hpp"
 #include "walls/desk_windows.hpp"
+#include "walls/wall_units.hpp"
 
 namespace master {
 namespace {
@@ -220,6 +221,9 @@ World loadWorld(const lockstep::Cluster& cluster, ProgramOptions& options) {
                      session.record.resumed ? session.record.resumed->state : base::Bytes()};
     for (const Drill& drill : session.drills) {
         world.message.faults.push_back(drill.fault);
+    }
+    for (const std::string& warning : walls::unitWarnings(world.wall)) {
+        host::printLine("{}: warning: {}", options.wall, warning);
     }
     return world;
 }

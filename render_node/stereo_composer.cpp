@@ -28,10 +28,11 @@ void bindTexture(GLenum unit, GLuint texture) {
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-/// Returns the index of the eye that an output shows. Returns 0 for a packed picture, which shows both eyes.
-std::size_t eyeIndex(Stereo stereo, const walls::Output& output) {
+/// Returns the index of an eye among those that a mode draws. Returns 0 if the mode does not draw it, as when a mode of
+/// one eye is shown on the outputs of two.
+std::size_t eyeIndex(Stereo stereo, walls::Eye eye) {
     const auto eyes = walls::eyesOf(stereo);
-    const auto found = std::find(eyes.begin(), eyes.end(), output.eyes.at(0));
+    const auto found = std::find(eyes.begin(), eyes.end(), eye);
     return found == eyes.end() ? 0 : static_cast<std::size_t>(found - eyes.begin());
 }
 
@@ -51,7 +52,7 @@ StereoComposer::Light::Light(Stereo stereo)
 
 StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_(stereo) {
     for (const walls::Output& output : tile.outputs) {
-        eyeOfOutput_.push_back(eyeIndex(stereo, output));
+        eyesOfOutput_.push_back({eyeIndex(stereo, output.eyes.at(0)), eyeIndex(stereo, output.eyes.back())});
     }
     if (!walls::packsEyes(stereo)) {
         return;
@@ -96,9 +97,10 @@ PixelRect StereoComposer::copyBeside(std::span<const EyeTarget> eyes, const Pixe
         glBlitFramebuffer(x0, y0, x1, y1, to.x0, to.y0, to.x1, to.y1, GL_COLOR_BUFFER_BIT, GL_NEAREST);
         return to;
     };
-    const PixelRect left = copy(eyes[0], 0, beside ? 0 : eyes[0].height());  // GL counts rows from the bottom
-    const PixelRect right = copy(eyes[1], beside ? eyes[0].width() : 0, 0);
-    return around(left, right);
+    const auto& [first, second] = eyesOfOutput_.front();
+    const PixelRect before = copy(eyes[first], 0, beside ? 0 : eyes[0].height());  // GL counts rows from the bottom
+    const PixelRect behind = copy(eyes[second], beside ? eyes[0].width() : 0, 0);
+    return around(before, behind);
 }
 
 void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const {
@@ -108,7 +110,8 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect&
     program_->use();
     program_->set("uLeft", 0);
     program_->set("uRight", 1);
-    bindTexture(1, eyes[1].colour());
+    const auto& [first, second] = eyesOfOutput_.front();
+    bindTexture(1, eyes[second].colour());
     if (light_) {
         program_->set("uLights", light_->lights);
         program_->set("uFirst", light_->first);
@@ -119,7 +122,7 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect&
         program_->set("uOddColumns", stereo_ == Stereo::checkerboard ? 1 : 0);
         program_->set("uChannels", stereo_ == Stereo::anaglyphColour ? 1 : 0);
     }
-    bindTexture(0, eyes[0].colour());  // last, because unit 0 must stay active
+    bindTexture(0, eyes[first].colour());  // last, because unit 0 must stay active
     glBindVertexArray(array_->id());
     glEnable(GL_SCISSOR_TEST);
     glScissor(changed.x0, changed.y0, changed.x1 - changed.x0, changed.y1 - changed.y0);
@@ -130,13 +133,13 @@ void StereoComposer::drawMixed(std::span<const EyeTarget> eyes, const PixelRect&
 
 std::vector<OutputPicture> StereoComposer::shown(std::span<const EyeTarget> eyes) const {
     std::vector<OutputPicture> pictures;
-    for (const std::size_t eye : eyeOfOutput_) {
+    for (const auto& [first, second] : eyesOfOutput_) {
         if (packed_) {
             pictures.push_back({&*packed_, nullptr});
         } else if (stereo_ == Stereo::active) {
-            pictures.push_back({&eyes[0], &eyes[1]});
+            pictures.push_back({&eyes[first], &eyes[second]});
         } else {
-            pictures.push_back({&eyes[eye], nullptr});
+            pictures.push_back({&eyes[first], nullptr});
         }
     }
     return pictures;

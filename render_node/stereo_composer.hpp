@@ -27,7 +27,9 @@ public:
     /// Composes the output. Must be called after a pixel of an eye has changed. Does not wait for GL. If the mode shows
     /// the eyes' own targets, it does nothing.
     ///
-    /// @param eyes  Pictures in the order of walls::eyesOf(), each of tile.pixels.
+    /// @param eyes  Pictures in the order of walls::eyesOf(), each of tile.pixels. The output shows them in the order
+    /// of
+    ///              its own eyes, which is another one if the wall swaps eyes.
     void compose(std::span<const EyeTarget> eyes);
     /// Composes the pixels in `changed`. The eyes must not have changed elsewhere. Returns the pixels of the outputs
     /// that this may have changed.
@@ -53,7 +55,11 @@ private:
     void drawMixed(std::span<const EyeTarget> eyes, const PixelRect& changed) const;
 
     walls::Stereo stereo_;
-    std::vector<std::size_t> eyeOfOutput_;  // index of the eye, for each output
+    /// Indices of the eyes that an output shows. Both are the same if it shows one eye.
+    struct Eyes {
+        std::size_t first = 0, second = 0;
+    };
+    std::vector<Eyes> eyesOfOutput_;
     std::optional<EyeTarget> packed_;
     std::optional<GlProgram> program_;
     // Needed because a core profile draws only with a vertex array, even an empty one.

@@ -101,7 +101,7 @@ void TilePainter::paint(sand::Replica& replica, const lockstep::ViewState& view,
         force_.emplace(forceConstants_);
     }
     scenePainter_.setForce(force_ ? force_->arrow(replica) : std::nullopt);
-    const std::size_t shownEye = frame % targets_.size();
+    const std::size_t shownEye = (frame + (wall_->swapEyes ? 1 : 0)) % targets_.size();
     const EyeRange range = oneEye ? EyeRange{shownEye, shownEye + 1} : EyeRange{0, targets_.size()};
     const auto pattern = static_cast<lockstep::Pattern>(view.pattern);
     if (!view.layers.shows(lockstep::Overlay::statistics)) {

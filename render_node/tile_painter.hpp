@@ -61,7 +61,8 @@ public:
     ///
     /// @param replica  Replica whose sand is drawn. Its list of changes is taken.
     /// @param view     Eyes and overlays of this frame. If it has a test pattern, the pattern is drawn instead.
-    /// @param oneEye   With two eyes, draws only the eye of this frame: the left one in even frames.
+    /// @param oneEye   With two eyes, draws only the eye of this frame: the left one in even frames, or in odd frames
+    ///                 if the wall swaps eyes.
     /// @param figures  Figures that are shown over the sand if the view has Overlay::statistics.
     /// @param answers  Answers of this frame, of which the tile shows its own (answerFor()).
     void paint(sand::Replica& replica, const lockstep::ViewState& view, std::uint64_t frame, bool oneEye = false,

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -105,17 +106,21 @@ public:
                 barrier.garble();
             }
             const glm::ivec2 window = context_->followedWindow();
-            const lockstep::Arrival mine{frame.frame,
-                                         arrived - clockAhead,
-                                         lastSwap,
-                                         drawn - start,
-                                         hash,
-                                         viewProof_.hash(frame.view),
-                                         nextKey(),
-                                         cost_.dragNs,
-                                         cost_.sweepNs,
-                                         cost_.hashNs,
-                                         {window.x, window.y}};
+            lockstep::Arrival mine{frame.frame,
+                                   arrived - clockAhead,
+                                   lastSwap,
+                                   drawn - start,
+                                   hash,
+                                   viewProof_.hash(frame.view),
+                                   nextKey(),
+                                   cost_.dragNs,
+                                   cost_.sweepNs,
+                                   cost_.hashNs,
+                                   {window.x, window.y}};
+            const std::vector<base::MonitorState> monitors = context_->monitorStates();
+            for (std::size_t i = 0; i < std::min(monitors.size(), mine.monitors.size()); ++i) {
+                mine.monitors.at(i) = static_cast<std::uint8_t>(monitors[i]);
+            }
             if (!agree(barrier, mine, frame, figures)) {
                 (void)lockstep::gatherReports(barrier, report());
                 return;
@@ -187,14 +192,15 @@ private:
         return verdict == lockstep::Verdict::equal;
     }
 
-    /// Changes the stereo mode to the operator's choice, and the picture to the size of its window. The master has
-    /// checked that the outputs can show the mode.
+    /// Changes the stereo mode and the order of the eyes to the operator's choice, and the picture to the size of its
+    /// window. The master has checked that the outputs can show the mode.
     void changeWall(const lockstep::ViewState& view) {
         const auto stereo = static_cast<walls::Stereo>(view.stereo);
         const glm::ivec2 window(view.window[0], view.window[1]);
-        if (stereo != shown_.stereo || window != window_) {
+        if (stereo != shown_.stereo || window != window_ || view.swapEyes != shown_.swapEyes) {
             window_ = window;
-            shown_ = walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window);
+            shown_ = walls::withSwappedEyes(walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window),
+                                            view.swapEyes);
             painter_->showAs(shown_, shown_.tiles.at(static_cast<std::size_t>(cluster_.rank() - 1)));
         }
     }

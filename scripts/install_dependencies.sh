@@ -45,11 +45,12 @@ add_node() {
 
 # The tests also build with clang, to prove that the state hash does not depend on the compiler. They validate the files and
 # events of sessions against the schemas. They make and check a Debian package, and move pointer and windows with xdotool and
-# openbox. The report draws its curves with matplotlib. A bar separates packages that replace each other: the script installs
-# the first that this Debian has.
+# openbox. They switch the monitors of Xorg's dummy driver. The report draws its curves with matplotlib. A bar separates
+# packages that replace each other: the script installs the first that this Debian has.
 for option in "$@"; do
     case "$option" in
-        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool) ;;
+        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool \
+            xserver-xorg-core xserver-xorg-video-dummy) ;;
         --with-web) tools+=(emscripten); add_node ;;                      # the web page; docs/web.md
         --with-browsers) tools+=(chromium firefox-esr xauth) ;;         # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;

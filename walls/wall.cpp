@@ -6,10 +6,25 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "base/input_error.hpp"
 
 namespace walls {
+namespace {
+
+/// Exchanges the eyes of a tile with one output for both eyes, or with one output for each.
+void exchangeEyes(std::vector<Output>& outputs) {
+    for (Output& output : outputs) {
+        std::ranges::reverse(output.eyes);
+    }
+    if (outputs.size() == 2) {
+        std::swap(outputs[0].eyes, outputs[1].eyes);
+    }
+}
+
+}  // namespace
+
 const std::vector<std::string>& stereoNames() {
     static const std::vector<std::string> kNames = [] {
         std::vector<std::string> names;
@@ -59,12 +74,16 @@ glm::ivec2 outputPixels(Stereo stereo, glm::ivec2 eyePixels) {
     }
 }
 
-std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName) {
-    if (stereo == Stereo::passive) {
-        return {{tileName + "_left", {Eye::left}, {}, {}}, {tileName + "_right", {Eye::right}, {}, {}}};
-    }
+std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName, bool swapEyes) {
     const std::span<const Eye> eyes = eyesOf(stereo);
-    return {{tileName, {eyes.begin(), eyes.end()}, {}, {}}};
+    std::vector<Output> outputs{{tileName, {eyes.begin(), eyes.end()}, {}, {}}};
+    if (stereo == Stereo::passive) {
+        outputs = {{tileName + "_left", {Eye::left}, {}, {}}, {tileName + "_right", {Eye::right}, {}, {}}};
+    }
+    if (swapEyes) {
+        exchangeEyes(outputs);
+    }
+    return outputs;
 }
 
 std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo) {
@@ -95,9 +114,19 @@ bool isStretched(Stereo stereo, const Tile& tile) {
            (stereo == Stereo::topBottom && shape < std::sqrt(0.5));
 }
 
+Wall withSwappedEyes(Wall wall, bool swapEyes) {
+    if (wall.swapEyes != swapEyes) {
+        for (Tile& tile : wall.tiles) {
+            exchangeEyes(tile.outputs);
+        }
+        wall.swapEyes = swapEyes;
+    }
+    return wall;
+}
+
 Wall shownIn(Wall wall, Stereo stereo) {
     for (Tile& tile : wall.tiles) {
-        std::vector<Output> outputs = outputsOf(stereo, tile.name);
+        std::vector<Output> outputs = outputsOf(stereo, tile.name, wall.swapEyes);
         for (std::size_t i = 0; i < std::min(outputs.size(), tile.outputs.size()); ++i) {
             outputs[i].monitor = tile.outputs[i].monitor;
             outputs[i].window = tile.outputs[i].window;

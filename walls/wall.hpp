@@ -105,7 +105,7 @@ struct Screen {
 /// One projector or monitor of a tile, connected to one plug of the graphics card.
 struct Output {
     std::string name;                  // tile's name; for `passive` with "_left" or "_right"
-    std::vector<Eye> eyes;             // eyes that it shows
+    std::vector<Eye> eyes;             // eyes that it shows, in the order in which the mode packs them
     std::string monitor;               // monitor for a full screen, named as xrandr lists it; empty: a window
     std::optional<glm::ivec2> window;  // [pixel], place of the window's top left corner; nullopt: the system chooses
 
@@ -240,6 +240,7 @@ struct Wall {
     std::string name;
     Viewer viewer;
     Stereo stereo = Stereo::mono;
+    bool swapEyes = false;  // the outputs show the right eye where the mode has the left one, and the other way round
     double refreshHz = 60;  // frames per second; each frame shows one eye if the eyes are shown in turn
     std::string tracking;   // source of the head's pose (docs/head_tracking.md); empty: the viewer does not move
     Clip clip;
@@ -257,10 +258,11 @@ struct Wall {
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
-        visit("encoding", base::constant(std::uint8_t{3}, "encoding 3, the only one that this program knows"));
+        visit("encoding", base::constant(std::uint8_t{4}, "encoding 4, the only one that this program knows"));
         visit("name", base::text(it.name, kLongestWord));
         visit("viewer", it.viewer);
         visit("stereo", it.stereo);
+        visit("swap_eyes", it.swapEyes);
         visit("refresh_hz", it.refreshHz);
         visit("tracking", base::text(it.tracking, kLongestWord));
         visit("clip", it.clip);
@@ -274,8 +276,8 @@ struct Wall {
     friend bool operator==(const Wall&, const Wall&) = default;
 };
 
-/// Returns the outputs of a tile with this name.
-[[nodiscard]] std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName);
+/// Returns the outputs of a tile with this name. `swapEyes` is Wall::swapEyes.
+[[nodiscard]] std::vector<Output> outputsOf(Stereo stereo, const std::string& tileName, bool swapEyes = false);
 /// Returns the tiles of a grid, row by row from the top left. Their ranks count from 1.
 [[nodiscard]] std::vector<Tile> tilesOf(const Grid& grid, Stereo stereo);
 
@@ -285,8 +287,12 @@ struct Wall {
 /// It is also so if the eyes are one above the other, and the pixels are closer to twice as high as wide.
 [[nodiscard]] bool isStretched(Stereo stereo, const Tile& tile);
 
-/// Returns the wall in another stereo mode. Eyes and outputs are those of the new mode. An output keeps its
-/// monitor or window if the new mode still has that output.
+/// Returns the wall with `swapEyes`. All of its outputs show the eyes accordingly; a wall that draws one eye shows the
+/// same picture as before. The pictures of the eyes themselves do not change.
+[[nodiscard]] Wall withSwappedEyes(Wall wall, bool swapEyes);
+
+/// Returns the wall in another stereo mode. Eyes and outputs are those of the new mode, swapped if the wall swaps eyes.
+/// An output keeps its monitor or window if the new mode still has that output.
 ///
 /// If the display stretches the halves of a frame, the frame keeps its size, and the eyes' pictures get the size that
 /// fits it. So mono fills the screen of a 3D television.

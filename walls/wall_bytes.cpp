@@ -15,9 +15,10 @@ std::string pixelRefusal(glm::ivec2 pixels) {
     return possible ? "" : fmt::format("a tile of {}x{} pixels", pixels.x, pixels.y);
 }
 
-/// Returns why the outputs and their eyes are not those of the stereo mode, or an empty text. A rank draws by them.
-std::string outputRefusal(const Tile& tile, Stereo stereo) {
-    const std::vector<Output> expected = outputsOf(stereo, tile.name);
+/// Returns why the outputs and their eyes are not those of the wall's stereo mode, or an empty text. A rank draws by
+/// them.
+std::string outputRefusal(const Wall& wall, const Tile& tile) {
+    const std::vector<Output> expected = outputsOf(wall.stereo, tile.name, wall.swapEyes);
     if (tile.outputs.size() != expected.size()) {
         return "has outputs of another stereo";
     }
@@ -96,7 +97,7 @@ std::string Wall::refusal() const {
     std::set<std::string> names;
     for (const Tile& tile : tiles) {
         std::string fault = placeRefusal(*this, tile);
-        fault = fault.empty() ? outputRefusal(tile, stereo) : fault;
+        fault = fault.empty() ? outputRefusal(*this, tile) : fault;
         fault = tile.rank == static_cast<int>(names.size()) + 1 ? fault : "is out of order";
         fault = names.insert(tile.name).second ? fault : "has the name of another";
         if (!fault.empty()) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "base/input_error.hpp"
 #include "walls/wall_check.hpp"
 
@@ -24,13 +26,21 @@ Viewer readViewer(const TomlTable& table) {
     return viewer;
 }
 
-Stereo readStereo(const TomlTable& file) {
+/// Reads [stereo]. Returns the mode, and whether the eyes are swapped.
+std::pair<Stereo, bool> readStereo(const TomlTable& file) {
     const std::optional<TomlTable> table = file.table("stereo");
     if (!table) {
-        return Stereo::mono;
+        return {Stereo::mono, false};
     }
-    table->only({"mode"});
-    return table->valueOr("mode", Stereo::mono);
+    table->only({"mode", "swap_eyes"});
+    const Stereo stereo = table->valueOr("mode", Stereo::mono);
+    const bool swapEyes = table->flagOr("swap_eyes", false);
+    if (swapEyes && eyesOf(stereo).size() < 2) {
+        table->fail("swap_eyes", fmt::format("swap_eyes needs a mode with two eyes, and {} draws one: choose another "
+                                             "mode, or leave swap_eyes out",
+                                             stereoName(stereo)));
+    }
+    return {stereo, swapEyes};
 }
 
 std::string readTracking(const TomlTable& file) {
@@ -112,7 +122,8 @@ Wall readWall(const TomlTable& file, const std::string& fallbackName) {
     wall.refreshHz = file.numberOr("refresh", wall.refreshHz, {kMinRefresh, kMaxRefresh});
     const TomlTable viewer = file.requiredTable("viewer");
     wall.viewer = readViewer(viewer);
-    wall.stereo = readStereo(file);
+    const auto [stereo, swapEyes] = readStereo(file);
+    wall.stereo = stereo;
     wall.tracking = readTracking(file);
     wall.clip = readClip(file);
     wall.stage = readStage(file.requiredTable("stage"));
@@ -121,7 +132,7 @@ Wall readWall(const TomlTable& file, const std::string& fallbackName) {
         viewer.fail("right", *fault);
     }
     readPlaces(file, wall.stereo, wall.tiles);
-    return wall;
+    return withSwappedEyes(std::move(wall), swapEyes);
 }
 
 std::string fallbackName(const std::filesystem::path& file) {

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
+#include <utility>
 
 #include "walls/wall_check.hpp"
 #include "walls/wall_file.hpp"
+#include "walls/x_screen.hpp"
 
 namespace walls::wall_file {
 namespace {
@@ -21,14 +22,20 @@ struct Targets {
     std::vector<glm::ivec2> windows;
 };
 
-/// Monitors and window areas that are already in use, by host, display and name or pixels.
+/// Monitors and window areas that are already in use, by X screen (xScreenOf()) and by name or pixels.
 struct Taken {
-    std::set<std::string> tiles;
-    std::map<std::tuple<std::string, std::string, std::string>, std::string> monitors;  // -> output
+    struct Owner {
+        std::string output;
+        long line = 0;  // of the file, that gives the output its monitor or window
+        Place place;
+    };
     struct Window {
-        std::string host, display, output;
+        std::string screen;
+        Owner owner;
         glm::ivec2 low, high;
     };
+    std::set<std::string> tiles;
+    std::map<std::pair<std::string, std::string>, Owner> monitors;  // by X screen and name
     std::vector<Window> windows;
 };
 
@@ -122,32 +129,42 @@ void checkCount(const TomlTable& table, const char* key, std::size_t count, cons
     }
 }
 
-/// Claims the output's monitor or window area. `where` is the host. If a table names no host, `where` is different for
-/// each of its tiles, because each may be on another machine.
-void claim(const TomlTable& table, const Tile& tile, const Output& output, glm::ivec2 size, const std::string& where,
+/// Returns that two places with different words are one display, or an empty text if their words are the same.
+std::string oneDisplay(const Place& place, const Place& other) {
+    const auto words = [](const Place& of) {
+        return of.host.empty() || of.display.empty() ? of.host + of.display : of.host + " " + of.display;
+    };
+    return words(place) == words(other) ? ""
+                                        : fmt::format(" ('{}' and '{}' are one display)", words(other), words(place));
+}
+
+/// Claims the output's monitor or window area. `host` is the host of the tile. If a table names no host, `host` is
+/// different for each of its tiles, because each may be on another machine.
+void claim(const TomlTable& table, const Tile& tile, const Output& output, glm::ivec2 size, const std::string& host,
            Taken& taken) {
-    const std::string& display = tile.place.display;
+    const std::string screen = xScreenOf(tile.place, host);
     if (!output.monitor.empty()) {
-        const auto [other, fresh] = taken.monitors.try_emplace({where, display, output.monitor}, output.name);
-        if (!fresh) {
+        const Taken::Owner owner{output.name, table.line("monitors"), tile.place};
+        const auto [entry, fresh] = taken.monitors.try_emplace({screen, output.monitor}, owner);
+        if (const Taken::Owner& other = entry->second; !fresh) {
             table.fail("monitors",
-                       fmt::format("monitor '{}' would show output '{}' of tile '{}' and '{}' at once: name "
-                                   "another monitor, or the host of each",
-                                   output.monitor, output.name, tile.name, other->second));
+                       fmt::format("monitor '{}' would show output '{}' of tile '{}' and '{}' of line {} at once{}: "
+                                   "name another monitor, or the host of each",
+                                   output.monitor, output.name, tile.name, other.output, other.line,
+                                   oneDisplay(tile.place, other.place)));
         }
     }
     if (output.window) {
         const glm::ivec2 low = *output.window, high = low + size;
-        for (const Taken::Window& other : taken.windows) {
-            if (other.host == where && other.display == display && glm::all(glm::lessThan(low, other.high)) &&
-                glm::all(glm::lessThan(other.low, high))) {
-                table.fail("windows",
-                           fmt::format("the window of output '{}' of tile '{}' ({}x{} pixels) would lie over "
-                                       "that of '{}': move one",
-                                       output.name, tile.name, size.x, size.y, other.output));
+        for (const auto& [itsScreen, other, itsLow, itsHigh] : taken.windows) {
+            if (itsScreen == screen && glm::all(glm::lessThan(low, itsHigh)) && glm::all(glm::lessThan(itsLow, high))) {
+                table.fail("windows", fmt::format("the window of output '{}' of tile '{}' ({}x{} pixels) would lie "
+                                                  "over that of '{}' of line {}{}: move one",
+                                                  output.name, tile.name, size.x, size.y, other.output, other.line,
+                                                  oneDisplay(tile.place, other.place)));
             }
         }
-        taken.windows.push_back({where, display, output.name, low, high});
+        taken.windows.push_back({screen, {output.name, table.line("windows"), tile.place}, low, high});
     }
 }
 

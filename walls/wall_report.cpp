@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -12,6 +11,7 @@
 #include "walls/stereo_change.hpp"
 #include "walls/wall_checklist.hpp"
 #include "walls/wall_map.hpp"
+#include "walls/wall_units.hpp"
 
 namespace walls {
 namespace {
@@ -61,22 +61,21 @@ std::string tileLine(const Wall& wall, const Tile& tile) {
 
 /// Returns lines with the corners of the sand, taken as a square field, and the tiles that show each corner.
 std::string stageLines(const Wall& wall) {
-    const glm::dmat4 toRoom = stageToRoom(wall.stage, 1, 1, 0);
     std::string lines =
         fmt::format("sand: {:.3f} m wide, centre {}, tilted {} degrees, turned {}; corners if square:\n",
                     wall.stage.width, point(wall.stage.centre), wall.stage.tiltDegrees, wall.stage.turnDegrees);
     constexpr std::array<const char*, 4> kCorners{"south-west", "south-east", "north-west", "north-east"};
+    const std::array<glm::dvec3, 4> corners = stageCorners(wall.stage);
     for (std::size_t i = 0; i < kCorners.size(); ++i) {
-        const glm::dvec4 corner = toRoom * glm::dvec4(i % 2 == 1 ? 1.0 : 0.0, i >= 2 ? 1.0 : 0.0, 0, 1);
-        std::string seen;
-        for (const Tile& tile : wall.tiles) {
-            const glm::dvec4 c = viewOf(wall, tile, Eye::middle).viewProjection * corner;
-            if (c.w > 0 && std::max({std::abs(c.x), std::abs(c.y), std::abs(c.z)}) <= c.w) {
-                seen += (seen.empty() ? "" : ", ") + tile.name;
-            }
-        }
-        lines +=
-            fmt::format("  {} {}  on {}\n", kCorners.at(i), point(glm::dvec3(corner)), seen.empty() ? "no tile" : seen);
+        const std::vector<std::string> seen = tilesShowing(wall, corners.at(i));
+        lines += fmt::format("  {} {}  on {}\n", kCorners.at(i), point(corners.at(i)),
+                             seen.empty() ? "no tile" : fmt::format("{}", fmt::join(seen, ", ")));
+    }
+    for (const std::string& warning : unitWarnings(wall)) {
+        lines += fmt::format("warning: {}\n", warning);
+    }
+    if (const auto warning = stageWarning(wall)) {
+        lines += fmt::format("warning: {}\n", *warning);
     }
     return lines;
 }
@@ -86,7 +85,9 @@ std::string stageLines(const Wall& wall) {
 std::string describe(const Wall& wall) {
     const Canvas canvas = wallCanvas(wall);
     const std::size_t outputs = wall.tiles.front().outputs.size() * wall.tiles.size();
-    const std::string mode = wall.stereo == Stereo::mono ? "mono" : fmt::format("{} stereo", stereoName(wall.stereo));
+    const std::string mode = wall.stereo == Stereo::mono ? "mono"
+                                                         : fmt::format("{} stereo{}", stereoName(wall.stereo),
+                                                                       wall.swapEyes ? " with swapped eyes" : "");
     std::string text =
         fmt::format("{}: {} render rank{}, {}, {} output{}, whole picture {}x{} pixels\n", wall.name, wall.ranks(),
                     wall.ranks() == 1 ? "" : "s", mode, outputs, outputs == 1 ? "" : "s", canvas.width, canvas.height);

@@ -23,7 +23,7 @@ struct VerbName {
     Verb verb;
 };
 
-constexpr std::array<VerbName, 18> kVerbs{
+constexpr std::array<VerbName, 19> kVerbs{
     {{"status", "", Verb::status},
      {"pause", "", Verb::pause},
      {"resume", "", Verb::resume},
@@ -35,6 +35,7 @@ constexpr std::array<VerbName, 18> kVerbs{
      {"hide", "LAYER", Verb::hide},
      {"eye-separation", "METRES", Verb::eyeSeparation},
      {"stereo", "MODE", Verb::stereo},
+     {"swap-eyes", "on|off", Verb::swapEyes},
      {"tool", "[SHAPE] [radius=R] [width=W] [heading=DEG] [foot=left|right]", Verb::tool},
      {"material", "KEY VALUE", Verb::material},
      {"save", "NAME", Verb::save},
@@ -144,6 +145,12 @@ void parseArgument(std::string_view argument, Command& command) {
             break;
         case Verb::stereo:
             command.stereo = walls::stereoNamed(std::string(argument.substr(0, 80)));
+            break;
+        case Verb::swapEyes:
+            if (argument != "on" && argument != "off") {
+                throw base::InputError(fmt::format("swap-eyes needs on or off, got '{}'", argument.substr(0, 80)));
+            }
+            command.on = argument == "on";
             break;
         case Verb::show:
         case Verb::hide:

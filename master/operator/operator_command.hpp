@@ -27,6 +27,7 @@ enum class Verb : std::uint8_t {
     hide,
     eyeSeparation,
     stereo,
+    swapEyes,
     tool,
     material,
     save,
@@ -45,6 +46,7 @@ struct Command {
     scene::ToolChange tool{};                    // for Verb::tool
     std::string word{};      // name of the number for Verb::material, of the file for Verb::save and Verb::load
     walls::Stereo stereo{};  // for Verb::stereo
+    bool on = false;         // for Verb::swapEyes
 };
 
 /// Returns the commands with their arguments, such as "show LAYER".

@@ -15,6 +15,7 @@ ViewSource::ViewSource(const walls::Wall& wall, const scene::Scene& scene, const
              scene.referenceHeight() * scene.terrain.unit()},
       unit_(scene.terrain.unit()) {
     show(wall.stereo);
+    swapEyes(wall.swapEyes);
     if (walls::isDesktop(wall) && !viewer_.tracked()) {
         desk_.emplace(wall, field_);
     }

@@ -29,6 +29,7 @@ public:
     void show(lockstep::Pattern pattern) { state_.pattern = static_cast<std::uint8_t>(pattern); }
     [[nodiscard]] lockstep::Pattern pattern() const { return static_cast<lockstep::Pattern>(state_.pattern); }
     void show(walls::Stereo stereo) { state_.stereo = static_cast<std::uint8_t>(stereo); }
+    void swapEyes(bool swapEyes) { state_.swapEyes = swapEyes; }
     /// Sets the size of the window that the picture follows [pixel].
     void show(glm::ivec2 window) { state_.window = {window.x, window.y}; }
     void show(lockstep::Overlays layers) { state_.layers = layers; }

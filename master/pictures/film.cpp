@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -56,7 +57,8 @@ void Film::take(lockstep::FrameBarrier& barrier) {
     if (eye_ == FilmEye::anaglyph) {
         pictures::writePng(file, pictures::packStereo(walls::Stereo::anaglyphColour, eyes[0], eyes[1]));
     } else if (!eye_ && walls::packsEyes(wall_.stereo)) {
-        pictures::writePng(file, pictures::packStereo(wall_.stereo, eyes[0], eyes[1]));
+        const auto& [first, second] = std::tie(eyes[wall_.swapEyes ? 1 : 0], eyes[wall_.swapEyes ? 0 : 1]);
+        pictures::writePng(file, pictures::packStereo(wall_.stereo, first, second));
     } else {
         pictures::writePng(file, eyes[eye_ == FilmEye::right ? 1 : 0]);
     }

@@ -9,6 +9,7 @@
 
 #include "base/input_error.hpp"
 #include "render_node/gl/compiler_memory.hpp"
+#include "render_node/gl/gl_environment.hpp"
 #include "render_node/gl/gl_module.hpp"
 #include "render_node/gl/window_context.hpp"
 #include "walls/window_size.hpp"
@@ -38,12 +39,19 @@ private:
 };
 
 std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& request) {
-    std::unique_ptr<GlPlatform> platform = loadPlatform(backend, request);
+    if (const std::string fault = environmentFault(backend); !fault.empty()) {
+        throw base::InputError(fault);
+    }
     std::unique_ptr<GlContext> context;
-    if (request.windows.empty()) {
-        context = std::make_unique<OffscreenContext>(backend, std::move(platform));
-    } else {
-        context = makeWindowContext(std::move(platform), request.windows);
+    try {
+        std::unique_ptr<GlPlatform> platform = loadPlatform(backend, request);
+        if (request.windows.empty()) {
+            context = std::make_unique<OffscreenContext>(backend, std::move(platform));
+        } else {
+            context = makeWindowContext(std::move(platform), request.windows);
+        }
+    } catch (const base::InputError& error) {
+        throw base::InputError(error.what() + environmentHint());
     }
     giveBackCompilerMemory();  // memory from starting the driver
     return context;

@@ -37,9 +37,10 @@ extern const Backend kInMemory;
 [[nodiscard]] Backend backendFor(Backend backend, const walls::Tile& tile);
 
 /// Pictures that one output shows in a frame. There are two if one window shows the eyes in turn, and otherwise one.
+/// "Left" and "right" are those of the display. If the wall swaps eyes, the display's left is the right eye's picture.
 struct OutputPicture {
-    const EyeTarget* picture = nullptr;  // the only picture, or the left eye's
-    const EyeTarget* right = nullptr;    // the right eye's picture; null unless the stereo mode is active
+    const EyeTarget* picture = nullptr;  // the only picture, or the left one
+    const EyeTarget* right = nullptr;    // the right picture; null unless the stereo mode is active
 };
 
 /// OpenGL 3.3 core context and, if the backend has windows, the windows of the tile.
@@ -83,6 +84,8 @@ public:
     virtual void awaitEvents(double /* seconds */) {}
     /// Returns the present size of the window that the picture follows [pixel], or 0 × 0 without such a window.
     [[nodiscard]] virtual glm::ivec2 followedWindow() const { return {}; }
+    /// Returns the states of the monitors that the outputs name, in the order of tile.outputs. Empty without windows.
+    [[nodiscard]] virtual std::vector<base::MonitorState> monitorStates() const { return {}; }
     /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
     /// Returns how hardware locks the swaps of the windows:

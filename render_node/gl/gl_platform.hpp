@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/keystroke.hpp"
+#include "base/monitor_state.hpp"
 #include "render_node/gl/pixel_rect.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "walls/wall.hpp"
@@ -85,9 +86,13 @@ public:
     [[nodiscard]] virtual glm::ivec2 size(std::size_t /* window */) const { return {}; }
     /// Says that a window has another size since the last swap(). For some frames keepsPicture() is then false.
     virtual void resized(std::size_t /* window */) {}
-    /// Processes the events of the window system. Throws std::runtime_error, which names the output, if a window is
-    /// lost.
+    /// Processes the events of the window system, and puts each window of a named monitor where that monitor is. Throws
+    /// std::runtime_error, which names the output, if a window is lost.
     virtual void check() {}
+    /// Returns the state of the monitor that a window's output names, as of the last check().
+    [[nodiscard]] virtual base::MonitorState monitorState(std::size_t /* window */) const {
+        return base::MonitorState::on;
+    }
     /// Returns whether the back buffer of a window keeps its picture when the window is swapped. Then only pixels that
     /// change must be drawn into it.
     [[nodiscard]] virtual bool keepsPicture(std::size_t /* window */) const { return false; }
@@ -108,7 +113,7 @@ public:
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform6(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform6";
+extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform7";
 
 }  // namespace render_node

@@ -17,6 +17,7 @@
 #include "render_node/gl/button_watch.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/gl/glfw_window.hpp"
+#include "render_node/gl/monitor_follower.hpp"
 #include "render_node/gl/part_copy.hpp"
 #include "render_node/gl/swap_sync.hpp"
 #include "render_node/gl/x_watch.hpp"
@@ -46,6 +47,7 @@ public:
             window.sendInputTo(input_, ids.size() - 1, request.pointer);
         }
         watch_.watch(ids);
+        followMonitors();
         makeCurrent(0);
         if (!request.windows.empty()) {
             lockSwaps(drawables);
@@ -65,6 +67,9 @@ public:
                                      watch_.name() + " is gone");
         }
         glfwPollEvents();
+        if (follower_) {
+            follower_->follow();
+        }
         for (const GlfwWindow& window : windows_) {
             if (glfwWindowShouldClose(window.handle()) != 0 && (mayClose_ || !window.isPlaced())) {
                 glfwSetWindowShouldClose(window.handle(), GLFW_FALSE);
@@ -76,6 +81,9 @@ public:
         }
     }
 
+    [[nodiscard]] base::MonitorState monitorState(std::size_t window) const override {
+        return follower_ ? follower_->state(window) : base::MonitorState::on;
+    }
     [[nodiscard]] glm::ivec2 size(std::size_t window) const override { return windows_.at(window).pixels(); }
     // Mesa's software renderer gives a back buffer its new size only after a swap. Until then a copy of a part beyond
     // the former size is refused by the X server (MIT-SHM, BadValue), which would end the rank.
@@ -130,6 +138,16 @@ public:
     [[nodiscard]] int framesToIgnore() const override { return group_ ? group_->framesToIgnore() : 0; }
 
 private:
+    void followMonitors() {
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            if (!windows_[i].wanted().output.monitor.empty()) {
+                if (!follower_) {
+                    follower_.emplace(watch_.name());
+                }
+                follower_->add(windows_[i].handle(), windows_[i].wanted(), windows_[i].refreshRate(), i);
+            }
+        }
+    }
     void lockSwaps(const std::vector<GlxDrawable>& drawables) {
         const GlxLoader loader{[](const char* name) { return glfwExtensionSupported(name) != 0; },
                                [](const char* name) { return glfwGetProcAddress(name); }, glfwGetX11Display(),
@@ -165,6 +183,7 @@ private:
     XWatch watch_;
     GlfwLibrary library_;
     std::vector<GlfwWindow> windows_;
+    std::optional<MonitorFollower> follower_;  // nullopt if no output names a monitor
     std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
     ButtonWatch buttons_;
     bool eyesInTurn_;
@@ -179,6 +198,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform6(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

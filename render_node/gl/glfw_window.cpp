@@ -9,12 +9,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "base/input_error.hpp"
 #include "base/not_yet_error.hpp"
 #include "host/clock.hpp"
+#include "render_node/gl/glfw_monitors.hpp"
 #include "render_node/gl/screen_cover.hpp"
 #include "render_node/gl/window_icon.hpp"
 
@@ -28,24 +28,9 @@ std::string lastComplaint;  // global, because GLFW passes no user data to its e
 std::string sizeText(glm::ivec2 size) { return fmt::format("{} x {}", size.x, size.y); }
 std::string placeText(glm::ivec2 place) { return fmt::format("({}, {})", place.x, place.y); }
 
-std::span<GLFWmonitor*> monitors() {
-    int count = 0;
-    GLFWmonitor** first = glfwGetMonitors(&count);
-    return {first, static_cast<std::size_t>(count)};
-}
-
-/// Returns the area of a monitor's picture on the X screen.
-ScreenRect areaOf(GLFWmonitor* monitor) {
-    ScreenRect area;
-    glfwGetMonitorPos(monitor, &area.low.x, &area.low.y);
-    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
-    area.high = area.low + (mode == nullptr ? glm::ivec2(0) : glm::ivec2(mode->width, mode->height));
-    return area;
-}
-
 std::vector<ScreenRect> lightedAreas() {
     std::vector<ScreenRect> areas;
-    for (GLFWmonitor* monitor : monitors()) {
+    for (GLFWmonitor* monitor : glfwMonitors()) {
         areas.push_back(areaOf(monitor));
     }
     if (areas.empty()) {  // no cable is plugged in, or the server has no monitors
@@ -57,7 +42,7 @@ std::vector<ScreenRect> lightedAreas() {
 
 GLFWmonitor* monitorNamed(const WindowRequest& wanted, const std::string& display) {
     std::string there;
-    for (GLFWmonitor* monitor : monitors()) {
+    for (GLFWmonitor* monitor : glfwMonitors()) {
         const ScreenRect area = areaOf(monitor);
         const std::string name = glfwGetMonitorName(monitor);
         if (name == wanted.output.monitor) {
@@ -70,12 +55,8 @@ GLFWmonitor* monitorNamed(const WindowRequest& wanted, const std::string& displa
 }
 
 void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {
-    int count = 0;
-    const GLFWvidmode* modes = glfwGetVideoModes(monitor, &count);
-    for (const GLFWvidmode& mode : std::span(modes, static_cast<std::size_t>(count))) {
-        if (glm::ivec2(mode.width, mode.height) == wanted.pixels) {
-            return;
-        }
+    if (hasMode(monitor, wanted.pixels)) {
+        return;
     }
     const ScreenRect area = areaOf(monitor);
     throw InputError("output " + wanted.output.name + ": monitor " + wanted.output.monitor + " shows " +
@@ -84,7 +65,7 @@ void requireMode(GLFWmonitor* monitor, const WindowRequest& wanted) {
 }
 
 /// Returns the refresh rate for full screen: the requested rate, or the current one if none is requested.
-int refreshRate(GLFWmonitor* monitor, const WindowRequest& wanted, double refreshHz) {
+int refreshRateOf(GLFWmonitor* monitor, const WindowRequest& wanted, double refreshHz) {
     const GLFWvidmode* now = glfwGetVideoMode(monitor);
     if (refreshHz > 0) {
         return static_cast<int>(std::lround(refreshHz));
@@ -130,7 +111,7 @@ GLFWmonitor* monitorOf(GLFWwindow* window) {
     glfwGetWindowPos(window, &low.x, &low.y);
     glfwGetWindowSize(window, &size.x, &size.y);
     const glm::ivec2 middle = low + size / 2;
-    for (GLFWmonitor* monitor : monitors()) {
+    for (GLFWmonitor* monitor : glfwMonitors()) {
         const ScreenRect area = areaOf(monitor);
         if (glm::all(glm::greaterThanEqual(middle, area.low)) && glm::all(glm::lessThan(middle, area.high))) {
             return monitor;
@@ -178,7 +159,8 @@ GlfwWindow::GlfwWindow(const GlfwLibrary& library, const std::string& display, c
     if (!wanted.output.monitor.empty()) {
         monitor = monitorNamed(wanted, display);
         requireMode(monitor, wanted);
-        glfwWindowHint(GLFW_REFRESH_RATE, refreshRate(monitor, wanted, refreshHz_));
+        refreshRate_ = refreshRateOf(monitor, wanted, refreshHz_);
+        glfwWindowHint(GLFW_REFRESH_RATE, refreshRate_);
     }
     if (request.eyesInTurn) {
         glfwWindowHint(GLFW_STEREO, GLFW_TRUE);

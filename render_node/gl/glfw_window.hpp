@@ -51,6 +51,9 @@ public:
 
     [[nodiscard]] GLFWwindow* handle() const { return window_.get(); }
     [[nodiscard]] const std::string& name() const { return wanted_.output.name; }
+    [[nodiscard]] const WindowRequest& wanted() const { return wanted_; }
+    /// Returns the refresh rate of a full screen [Hz], or GLFW_DONT_CARE.
+    [[nodiscard]] int refreshRate() const { return refreshRate_; }
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
     /// Returns whether the wall file gives the window a place.
     [[nodiscard]] bool isPlaced() const { return walls::isPlaced(wanted_.output); }
@@ -74,6 +77,7 @@ private:
 
     WindowRequest wanted_;
     double refreshHz_ = 0;  // 0: any rate
+    int refreshRate_ = -1;  // [Hz], of a full screen
     bool quadBuffers_ = false;
     struct Listener {
         std::shared_ptr<WindowInput> input;

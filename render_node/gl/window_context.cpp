@@ -109,6 +109,13 @@ public:
     [[nodiscard]] std::vector<PointerEvent> takePointer() override { return platform_->takePointer(); }
     void awaitEvents(double seconds) override { platform_->awaitEvents(seconds); }
     [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
+    [[nodiscard]] std::vector<base::MonitorState> monitorStates() const override {
+        std::vector<base::MonitorState> states;
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            states.push_back(platform_->monitorState(i));
+        }
+        return states;
+    }
     [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
     [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }
     [[nodiscard]] std::optional<ScreenRect> workArea() const override { return platform_->workArea(); }

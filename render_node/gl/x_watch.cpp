@@ -17,6 +17,7 @@ namespace {
 // These variables are global, because Xlib passes no user data to its handlers.
 std::string lastWords;
 std::string refusal;
+int monitorRequests = 0;  // number of RandR's requests; 0: the server has none
 
 int endWithoutServer(Display* /* display */) {
     (void)!write(STDERR_FILENO, lastWords.data(), lastWords.size());
@@ -24,8 +25,9 @@ int endWithoutServer(Display* /* display */) {
     _exit(1);
 }
 
+/// GLFW sets a mode back on a monitor that has gone meanwhile. Such a refusal harms no window.
 int noteRefusal(Display* display, XErrorEvent* error) {
-    if (refusal.empty()) {
+    if (refusal.empty() && error->request_code != monitorRequests) {
         std::array<char, 128> text{};
         XGetErrorText(display, error->error_code, text.data(), static_cast<int>(text.size()));
         refusal = std::string(text.data()) + ", request " + std::to_string(error->request_code) + "." +
@@ -64,6 +66,8 @@ XWatch::XWatch(const std::string& display, const std::string& processName, bool 
         throw base::NotYetError("--gl glfw: cannot open X display " + name_ +
                                 "; is its server running, and may this user use it (docs/backends.md)?");
     }
+    int firstEvent = 0, firstError = 0;
+    (void)XQueryExtension(display_, "RANDR", &monitorRequests, &firstEvent, &firstError);
     std::array<char, 256> host{};
     (void)gethostname(host.data(), host.size() - 1);
     lastWords = processName + " on " + host.data() + ": the X server of " + name_ + " is gone\n";

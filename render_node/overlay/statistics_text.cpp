@@ -57,11 +57,19 @@ std::string TileStatistics::nameOf(int rank) const {
                                                  : fmt::format("RANK {} {}", rank, tileNames_[index - 1]);
 }
 
+std::string TileStatistics::darkText() const {
+    const std::size_t others = wall_.dark.size() - 1;
+    return fmt::format("DARK: {}{}", nameOf(static_cast<int>(wall_.dark.front())),
+                       others == 0 ? "" : fmt::format(" AND {} MORE", others));
+}
+
 std::vector<TileStatistics::Line> TileStatistics::longLines() const {
     const double mean = frameMs_.mean();
-    std::vector<Line> lines{
-        {fmt::format("{} ON {}", nameOf(rank_), host_)},
-        {fmt::format("{:.1f} FPS, FRAME {}", mean > 0 ? 1000 / mean : 0, frame_), Line::Kind::plain, 3}};
+    std::vector<Line> lines{{fmt::format("{} ON {}", nameOf(rank_), host_), Line::Kind::plain, 4}};
+    if (!wall_.dark.empty()) {
+        lines.push_back({darkText(), Line::Kind::bad});
+    }
+    lines.push_back({fmt::format("{:.1f} FPS, FRAME {}", mean > 0 ? 1000 / mean : 0, frame_), Line::Kind::plain, 3});
     if (wall_.divergences > 0) {
         lines.push_back(
             {fmt::format("DIFFERED IN {} FRAMES, HEALED {}", wall_.divergences, wall_.healed), Line::Kind::bad});
@@ -89,7 +97,9 @@ std::vector<TileStatistics::Line> TileStatistics::longLines() const {
 std::vector<TileStatistics::Line> TileStatistics::shortLines() const {
     const double mean = frameMs_.mean();
     std::vector<Line> lines{{fmt::format("R{} {:.1f} FPS", rank_, mean > 0 ? 1000 / mean : 0)}};
-    if (const auto& slowest = wall_.slowest) {
+    if (!wall_.dark.empty()) {
+        lines.push_back({fmt::format("DARK R{}", fmt::join(wall_.dark, " R")), Line::Kind::bad});
+    } else if (const auto& slowest = wall_.slowest) {
         lines.push_back({fmt::format("SLOWEST R{} {:.0f}%", slowest->rank, 100 * slowest->share), Line::Kind::slow});
     } else {
         lines.push_back({"SLOWEST -"});
@@ -109,7 +119,7 @@ std::vector<TileStatistics::Line> TileStatistics::shortLines() const {
 
 std::vector<TileStatistics::Line> TileStatistics::lines(std::size_t letters, std::size_t count) const {
     std::vector<Line> lines = letters < kLetters ? shortLines() : longLines();
-    for (int least = 1; lines.size() > count && least <= 3; ++least) {
+    for (int least = 1; lines.size() > count && least <= 4; ++least) {
         std::erase_if(lines, [&](const Line& line) { return line.leftOut == least; });
     }
     lines.resize(std::min(lines.size(), count));

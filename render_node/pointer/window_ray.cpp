@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "walls/x_screen.hpp"
+
 namespace render_node {
 namespace {
 
@@ -36,7 +38,7 @@ glm::dvec3 roomPoint(const walls::Wall& wall, const walls::Tile& tile, const Win
     const std::optional<glm::ivec2>& corner = tile.outputs.at(place.output).window;
     if (corner && !contains(walls::outputPixels(wall.stereo, tile.pixels), place.at)) {
         for (const walls::Tile& other : wall.tiles) {
-            const bool sameDisplay = other.place.display == tile.place.display && other.place.host == tile.place.host;
+            const bool sameDisplay = walls::xScreenOf(other.place) == walls::xScreenOf(tile.place);
             for (const walls::Output& output : other.outputs) {
                 if (sameDisplay && output.window) {
                     const glm::dvec2 there = place.at + glm::dvec2(*corner - *output.window);

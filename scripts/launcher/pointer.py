@@ -27,7 +27,7 @@ def choose_backend(args):
 def windows_of(wall, render_node, check):
     """Returns the options of `run` for the wall's windows on this desktop. Throws BadInput in one line if it cannot show them."""
     if not os.environ.get("DISPLAY") and os.environ.get("WAYLAND_DISPLAY"):
-        raise BadInput("try: no X display (DISPLAY is not set); on this Wayland desktop windows need Xwayland: install Xwayland (Debian's xwayland), and log in again")
+        raise BadInput(f"try: no X display (DISPLAY is not set); {screens.XWAYLAND}")
     if not os.environ.get("DISPLAY"):
         raise BadInput(f"try: no X display (DISPLAY is not set); {ELSEWHERE}")
     if not screens.present():

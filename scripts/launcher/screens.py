@@ -7,35 +7,46 @@ import socket
 
 MOST_OUTPUTS = 2  # [output] of a wall whose windows open by themselves
 PATIENCE_SECONDS = 2
+XWAYLAND = "on this Wayland desktop windows need Xwayland: install Xwayland (Debian's xwayland), and log in again"
 FIRST_PORT = 6000  # X display N listens at this port plus N, if it listens on TCP
 
 
 def present(name=None):
-    """Returns whether an X server accepts connections at the display `name`, by default $DISPLAY."""
-    found = re.fullmatch(r"(?:(unix)|([^:]*)):(\d{1,5})(\.\d+)?", os.environ.get("DISPLAY", "") if name is None else name)
+    """Returns whether an X server accepts connections at the display `name`, by default $DISPLAY: [PROTOCOL/][HOST]:NUMBER[.SCREEN]."""
+    found = re.fullmatch(r"(?:([^/]*)/)?([^/]*):0*(\d{1,5})(?:\.\d+)?", os.environ.get("DISPLAY", "") if name is None else name)
     if not found:
         return False
-    number, host = int(found[3]), found[2]
-    if host:
-        return answers(socket.AF_INET, (host, FIRST_PORT + number))
+    protocol, host, number = found[1], found[2].strip("[]"), int(found[3])
+    if host not in ("", "unix") and protocol not in ("unix", "local"):
+        return answers(host, FIRST_PORT + number)
     # Linux has the first address too; it needs no file, so it works where /tmp is another one than the server's.
     path = f"/tmp/.X11-unix/X{number}"
-    return answers(socket.AF_UNIX, "\0" + path) or answers(socket.AF_UNIX, path)
+    return answers("\0" + path) or answers(path)
 
 
-def answers(family, address):
-    """Returns whether a server accepts a connection at the address."""
+def answers(address, port=None):
+    """Returns whether a server accepts a connection at the path of a socket, or at a host's port."""
     try:
-        with socket.socket(family, socket.SOCK_STREAM) as peer:
-            peer.settimeout(PATIENCE_SECONDS)
-            peer.connect(address)
+        with socket.socket(socket.AF_UNIX) if port is None else socket.create_connection((address, port), PATIENCE_SECONDS) as peer:
+            if port is None:
+                peer.settimeout(PATIENCE_SECONDS)
+                peer.connect(address)
             return True
-    except (OSError, OverflowError):
+    except (OSError, OverflowError, UnicodeError):
         return False
+
+
+def missing():
+    """Returns why no window can open although the environment names a display, or "" if it names none, or if one can open."""
+    if name := os.environ.get("DISPLAY"):
+        return "" if present() else f"no X server accepts connections at DISPLAY={name}; start it, or correct or unset DISPLAY"
+    if os.environ.get("WAYLAND_DISPLAY"):
+        return f"no X display (DISPLAY is not set); {XWAYLAND}"
+    return ""
 
 
 def backend(outputs, placed):
-    """Returns (backend, line for the user or "") for a wall on this machine, where a display is present.
+    """Returns (backend, line for the user or "") for a wall on this machine, whose environment names a display.
 
     `outputs` is the number of outputs, and `placed` the number of those to which the wall file gives a place on a screen.
     """

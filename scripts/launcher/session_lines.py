@@ -301,3 +301,11 @@ def skew(summary, _):
 def slowest(summary, _):
     found = summary["slowest"]
     return None if found is None else (NOTE, f"{found['name']}, last in {100 * found['share']:.0f} % of frames {START}")
+
+
+def monitors(summary, _):
+    if not summary["dark"]:
+        return None
+    words = [f"output {one['output']} of tile {one['tile']} ({one['monitor']}) was dark {counted(one['times'], 'time')}, {one['seconds']:.1f} s"
+             + (" and at the end" if one["at_end"] else "") for one in summary["dark"]]
+    return NOTE, f"{'; '.join(words)} {START}"

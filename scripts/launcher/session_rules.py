@@ -97,6 +97,8 @@ RULES = (
          ("head_tracking",), lines.head),
     Rule("skew", "time from the first swap of a frame to its last, on a wall of several ranks", "99 % up to a period", "more", "",
          "cluster.md", ("ranks", "frames", "frames_before", "pace", "refresh_hz", "skew_us.p99"), lines.skew),
+    Rule("monitors", "outputs whose monitor was off or had another size, and for how long; left out if there was none", "", "any", "",
+         "backends.md", ("dark[].output", "dark[].tile", "dark[].monitor", "dark[].times", "dark[].seconds", "dark[].at_end"), lines.monitors),
     Rule("slowest", "the rank for which the wall waited; left out if none stands out", "", "a rank stands out", "",
          "summary.md", ("slowest.name", "slowest.share"), lines.slowest),
 )
@@ -125,6 +127,7 @@ UNREAD = {
     "haptic.ticks": "the line force counts the ticks with a hand",
     "haptic.ticks_missed": "a tick that comes too late counts as the fault missed in the line force",
     "per_rank[]": "figures of one rank, for the search after a note (docs/summary.md)",
+    "dark[].rank": "the line monitors has the output and its tile",
     "master_memory_bytes": "a figure for long tests, which has no good or bad in one session",
     "journal.parts": "the line journal says whether the parts are whole",
     "journal.checkpoint_copy_ms": "the line frames has the time lost",

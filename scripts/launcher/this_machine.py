@@ -24,7 +24,8 @@ FIELD_SIDES = (512, 1024, 2048, 4096)
 
 def check_start(host, chosen):
     """Adds whether a session shows a frame on the desktop wall. It draws in memory unless a backend was chosen."""
-    variables = {name: value for name, value in os.environ.items() if name != "DISPLAY" or chosen == "glfw"}
+    variables = {name: value for name, value in os.environ.items()
+                 if name not in ("DISPLAY", "WAYLAND_DISPLAY") or chosen == "glfw"}
     first_frame.check(host, "desktop", chosen, options=["--here"], variables=variables)
 
 
@@ -57,14 +58,16 @@ def check_memory(host, answers):
     host.add(bool(fitting), "memory", words, free_mebibytes=free, largest_side=fitting[-1] if fitting else 0)
 
 
-def check_display(host):
+def check_display(host, chosen):
+    """Adds whether windows can open. A display that is named and does not answer is needed: a session would be refused."""
     name = os.environ.get("DISPLAY", "")
-    if screens.present():
+    if missing := screens.missing():
+        host.add(False, "display", f"{missing}; --gl {layout.in_memory()} draws in memory", needed=chosen in ("auto", "glfw"), display=name or None)
+    elif name:
         host.add(True, "display", f"{name} accepts connections", display=name)
     else:
-        host.add(False, "display", f"{name} accepts no connection; start an X server, or unset DISPLAY" if name else
-                 "DISPLAY is not set: sessions draw in memory; start them in a desktop session to see windows", needed=False,
-                 display=name or None)
+        host.add(False, "display", "DISPLAY is not set: sessions draw in memory; start them in a desktop session to see windows", needed=False,
+                 display=None)
 
 
 def check_gl(host, node, chosen):
@@ -105,6 +108,6 @@ def examine(node, master, out, backend, as_json):
             check_start(host, backend)
         check_cores(host)
         check_memory(host, answers)
-        check_display(host)
+        check_display(host, backend)
         check_gl(host, node, backend)
     return examined_host.show([host], as_json)

@@ -3,6 +3,7 @@
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
 #include "tests/cluster/session_fixture.hpp"
+#include "tests/support/x_monitors.hpp"
 #include "tests/support/x_screen.hpp"
 #include "tests/support/x_server.hpp"
 
@@ -120,6 +121,61 @@ TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
     session->type("stop");
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_EQ(summary()["divergences"], 0);
+}
+
+// The window shows the right eye where the mode has the left one. The pictures of the eyes stay those of the eyes.
+TEST_F(Displays, AWindowShowsSwappedEyesAsSoonAsAnOperatorAsks) {
+    const auto session = start({"--wall", placedWall("anaglyph"), "--scene", scene(), "--out", out(), "--no-pictures"});
+    ASSERT_FALSE(session->waitForEvent("progress", [](const auto& event) { return event["frame"] > 1; }).is_null())
+        << session->output();
+    {
+        const support::XScreen screen(server_->display());
+        const std::string before = ask("capture").value("folder", "");
+        for (const std::string mode : {"anaglyph", "row_interlaced", "active"}) {
+            ask("stereo " + mode);
+            ask("swap-eyes on");
+            EXPECT_EQ(ask("status")["swap_eyes"], true);
+            const std::string folder = ask("capture").value("folder", "");
+            const pictures::Image left = tile("r1c1_left", folder), right = tile("r1c1_right", folder);
+            EXPECT_EQ(left.rgb, tile("r1c1_left", before).rgb) << mode;
+            ASSERT_FALSE(left.rgb == right.rgb);
+            const walls::Stereo stereo = walls::stereoNamed(mode);
+            EXPECT_TRUE(screen.comesToShow(walls::packsEyes(stereo) ? pictures::packStereo(stereo, right, left) : right,
+                                           10, 20))
+                << mode;
+            ask("swap-eyes off");
+        }
+    }
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    EXPECT_EQ(summary()["divergences"], 0) << "all ranks drew the same view";
+}
+
+TEST_F(Displays, ADarkTileIsNamedUntilItsMonitorIsBack) {
+    const support::XMonitors monitors(server_->display());
+    monitors.addMode("screen", {96, 72});
+    monitors.show({{"screen", {0, 0}, {96, 72}}});
+    const std::string file = wall(1, 1, "mono");
+    std::ofstream(file, std::ios::app) << "[[place]]\ntiles = [\"r1c1\"]\nmonitors = [\"screen\"]\n";
+    const auto session = start({"--wall", file, "--scene", scene(), "--out", out(), "--show", "statistics"});
+    ASSERT_FALSE(session->waitForEvent("progress", [](const auto& event) { return event["frame"] > 1; }).is_null())
+        << session->output();
+    EXPECT_EQ(ask("status")["dark"], nlohmann::json::array());
+    monitors.switchOff("screen");
+    EXPECT_FALSE(
+        session->waitForEvent("monitor", {{"state", "off"}, {"output", "r1c1"}, {"monitor", "screen"}}).is_null())
+        << session->output();
+    EXPECT_EQ(ask("status")["dark"], nlohmann::json::array({"r1c1"}));
+    monitors.show({{"screen", {200, 100}, {96, 72}}});
+    EXPECT_FALSE(session->waitForEvent("monitor", {{"state", "on"}}).is_null()) << session->output();
+    EXPECT_EQ(ask("status")["dark"], nlohmann::json::array());
+    session->type("stop");
+    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    const nlohmann::json dark = summary()["dark"];
+    ASSERT_EQ(dark.size(), 1U) << dark;
+    EXPECT_EQ(dark[0]["output"], "r1c1");
+    EXPECT_EQ(dark[0]["times"], 1);
+    EXPECT_EQ(dark[0]["at_end"], false);
 }
 
 TEST_F(Displays, ALostWindowIsNamedAndTheJobEnds) {

@@ -150,4 +150,15 @@ TEST(Arrival, OfADrillIsNoiseOfThreeKindsByTurns) {
     EXPECT_LT(lockstep::kArrivalRoom, 4000U) << "the longest noise is longer than the buffer";
 }
 
+TEST(Arrival, WithAnUnknownStateOfAMonitorIsNone) {
+    Arrival arrival{kFrame, 1, 2, 3, 4, 5, kKey};
+    arrival.monitors = {1, 2};
+    Room room{};
+    std::memcpy(room.data(), &arrival, sizeof arrival);
+    EXPECT_EQ(lockstep::readArrival(room, kLength, kFrame).monitors, arrival.monitors);
+    arrival.monitors[1] = 3;
+    std::memcpy(room.data(), &arrival, sizeof arrival);
+    EXPECT_EQ(faultOf(room, kLength), "with a monitor in state 3");
+}
+
 }  // namespace

@@ -41,6 +41,7 @@ TEST(FrameMessage, CarriesEveryFieldOfAView) {
                              .pattern = 8,
                              .layers = lockstep::Overlays(9),
                              .stereo = 10,
+                             .swapEyes = true,
                              .humidity = 0.25,
                              .window = {27, 28}};
     for (std::size_t i = 0; i < view.sceneToRoom.size(); ++i) {
@@ -63,7 +64,7 @@ TEST(FrameMessage, TellsAStopFromACapture) {
 lockstep::FrameMessage observed() {
     lockstep::FrameMessage message = digging();
     message.answers = {{0, "F1 shows all keys"}, {7, "heading 35°"}};
-    message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, 2, 3, 40, 1.25, {0, 131, 20571, 4}};
+    message.figures = {16.7, lockstep::Drag{5, 0.97, 30.1}, 99999, 1, 2, 3, 40, 1.25, {2, 7}, {0, 131, 20571, 4}};
     return message;
 }
 

@@ -194,4 +194,35 @@ TEST_F(Desk, OfAReplayHasNoControlSocket) {
     EXPECT_FALSE(std::filesystem::exists(folder_ / "control"));
 }
 
+TEST_F(Desk, SwapsTheEyesUntilTheyAreSwappedBack) {
+    using walls::Eye;
+    const auto shown = [this] { return desk_->shownWall().tiles[0].outputs[0].eyes; };
+    EXPECT_EQ(ask("status")["swap_eyes"], false);
+    EXPECT_EQ(ask("swap-eyes on")["ok"], true);
+    EXPECT_EQ(ask("status")["swap_eyes"], true);
+    EXPECT_TRUE(desk_->views().at(0).swapEyes);
+    EXPECT_EQ(shown(), (std::vector{Eye::right, Eye::left}));
+    EXPECT_EQ(ask("stereo checkerboard")["ok"], true);
+    EXPECT_EQ(shown(), (std::vector{Eye::right, Eye::left})) << "the glasses stay exchanged in another mode";
+    EXPECT_EQ(ask("stereo left")["ok"], true);
+    const json refused = ask("swap-eyes off");
+    EXPECT_EQ(
+        refused["error"],
+        "swap-eyes: the wall shows one eye (left), so there is nothing to swap; choose a mode with two eyes first, "
+        "such as stereo anaglyph");
+    EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
+    EXPECT_EQ(ask("swap-eyes off")["ok"], true);
+    EXPECT_FALSE(desk_->views().at(0).swapEyes);
+    EXPECT_EQ(shown(), (std::vector{Eye::left, Eye::right}));
+}
+
+TEST_F(Desk, SwapsTheEyesAsTheWallFileHasIt) {
+    wall_ = walls::withSwappedEyes(wall_, true);
+    open(&requests_);
+    EXPECT_TRUE(desk_->views().at(0).swapEyes);
+    EXPECT_EQ(ask("status")["swap_eyes"], true);
+    EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
+    EXPECT_TRUE(desk_->views().at(0).swapEyes);
+}
+
 }  // namespace

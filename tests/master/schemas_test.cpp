@@ -77,6 +77,7 @@ master::Summary wholeSummary() {
     summary.rankNames = {"the master", "rank 1"};
     summary.drag = lockstep::Drag{1, 1, 2};
     summary.incidents.firstDifference = 3;
+    summary.dark.resize(1);
     return summary;
 }
 

@@ -184,4 +184,19 @@ TEST_F(Composer, TakesNoDepthForWhatItPutsTogether) {
     EXPECT_EQ(bytes(Stereo::anaglyphDubois), 40 * 30 * 4);
 }
 
+// The reference packs the two pictures in the other order. The eyes' own pictures stay.
+TEST_F(Composer, PacksSwappedEyesInTheOtherOrder) {
+    setSize(33, 22);
+    for (const Stereo stereo : packedModes()) {
+        const std::vector<EyeTarget> eyes = eyesOf(stereo);
+        walls::Tile tile = tileOf(stereo, 33, 22);
+        tile.outputs = walls::outputsOf(stereo, tile.name, true);
+        StereoComposer composer(stereo, tile);
+        composer.compose(eyes);
+        EXPECT_EQ(pictureOf(*composer.shown(eyes).at(0).picture), pictures::packStereo(stereo, right_, left_))
+            << walls::stereoName(stereo);
+        EXPECT_EQ(pictureOf(eyes[0]), left_);
+    }
+}
+
 }  // namespace

@@ -238,4 +238,49 @@ TEST_F(Viewer, SeesOfEyesInTurnTheOneThatWasDrawnInThisFrame) {
     }
 }
 
+/// Returns the eye whose glass is in front of an eye, if the glasses are exchanged.
+Eye throughSwappedGlasses(Eye eye) { return eye == Eye::left ? Eye::right : Eye::left; }
+
+// The viewer's glasses are exchanged, so that each eye looks through the glass of the other. The wall swaps its eyes.
+TEST_F(Viewer, SeesThroughExchangedGlassesItsPictureOnAWallThatSwapsEyes) {
+    int compared = 0;
+    for (const std::string& name : walls::stereoNames()) {
+        const Stereo stereo = walls::stereoNamed(name);
+        if (walls::eyesOf(stereo).size() < 2) {
+            continue;
+        }
+        const walls::Wall wall = walls::withSwappedEyes(gridAndDesk(stereo), true);
+        TilePainter painter(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
+        sand::Replica replica = dug();
+        painter.paint(replica, view(), 1);
+        const Image left = expected_.at(0).at(0), right = expected_.at(0).at(1);
+        for (const Eye eye : {Eye::left, Eye::right}) {
+            const Eye glass = throughSwappedGlasses(eye);
+            const auto outputs = painter.outputs();
+            const OutputPicture& output =
+                stereo == Stereo::passive ? outputs.at(static_cast<std::size_t>(glass)) : outputs.at(0);
+            const ChannelLevels seen = seenThroughGlasses(stereo, output, glass);
+            EXPECT_LT(shareOfWrong(seen, levelsWanted(stereo, glass, right, left)), kFewWrong) << name;
+            EXPECT_GT(shareOfWrong(seen, levelsWanted(stereo, glass, left, right)), kManyWrong) << name;
+            ++compared;
+        }
+        // Pictures of an eye are those of that eye.
+        EXPECT_LT(pictures::compare(sample::pictureOf(*painter.pictures().at(0)), left, 8).badShare, kFewWrong) << name;
+    }
+    EXPECT_EQ(compared, 9 * 2) << "all modes but mono, left and right";
+}
+
+// Even frames show the right eye then.
+TEST_F(Viewer, SeesOfSwappedEyesInTurnTheOneThatWasDrawnInThisFrame) {
+    const walls::Wall wall = walls::withSwappedEyes(gridAndDesk(Stereo::active), true);
+    TilePainter inTurn(wall, wall.tiles[0], scene_, "host", sand::GridData{scene_.terrain});
+    sand::Replica replica = dug();
+    for (std::uint64_t frame = 0; frame < 4; ++frame) {
+        inTurn.paint(replica, view(), frame, true);
+        const auto copies = render_node::copiesOf(inTurn.outputs().at(0), false, frame);
+        const Image& own = expected_.at(0).at(frame % 2 == 0 ? 1 : 0);
+        EXPECT_LT(pictures::compare(sample::pictureOf(*copies.at(0).picture), own, 8).badShare, kFewWrong) << frame;
+    }
+}
+
 }  // namespace

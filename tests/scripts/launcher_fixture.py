@@ -55,7 +55,7 @@ class LauncherTest(unittest.TestCase):
             shutil.copy(options, self.folder / "bin")
         self.agent = self.script("agent", AGENT)
         self.write("scene.toml", "")
-        for variable in ("SANDWALL_EVENTS", "DISPLAY"):
+        for variable in ("SANDWALL_EVENTS", "DISPLAY", "WAYLAND_DISPLAY"):
             os.environ.pop(variable, None)
         self.environment = {**os.environ, "SANDWALL_BIN": str(self.folder / "bin"),
                             "OMPI_MCA_plm_rsh_agent": self.agent,

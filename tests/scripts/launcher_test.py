@@ -96,10 +96,19 @@ class PrintedCommands(DisplayTest):
             self.environment["MADE_UP_OUTPUTS"] = outputs
             self.assertIn("sandwall-render-node --gl auto", self.printed(hosts))
 
-    def test_a_display_that_accepts_no_connection_opens_no_windows(self):
-        for display in (":64999", "unix:64999", "no display", ":99999999", "127.0.0.1:59999"):
+    def test_a_display_that_accepts_no_connection_is_needed_only_for_windows_that_open_by_themselves(self):
+        self.environment["DISPLAY"] = ":64999"
+        for gl in ("osmesa", "egl", "glfw"):
+            self.assertIn(f"sandwall-render-node --gl {gl}", self.printed(["-"], "--gl", gl))
+        self.environment["MADE_UP_OUTPUTS"] = "2 1"
+        self.assertIn("sandwall-render-node --gl auto", self.printed(["-"]), "each rank follows the wall file")
+        self.assertIn("sandwall-render-node --gl auto", self.printed(["node1"]), "the display is that of another machine")
+
+    def test_a_display_may_be_spelt_in_every_way_that_x_knows(self):
+        number = self.display().removeprefix(":")
+        for display in (f":{number}", f":{number}.0", f"unix:{number}", f"unix/:{number}", f"local/:{number}.1", f":0{number}"):
             self.environment["DISPLAY"] = display
-            self.assertIn("sandwall-render-node --gl auto", self.printed(["-"]))
+            self.assertIn("sandwall-render-node --gl glfw", self.printed(["-"]), display)
 
     def test_a_device_needs_a_server_started_before(self):
         server, job = self.printed(["-"], "--device", "script:gis").splitlines()
@@ -180,7 +189,27 @@ class LargeWall(DisplayTest):
         self.assertEqual(self.start(["-"], "--gl", "osmesa").stderr, "")
 
 
+    def test_a_large_wall_needs_no_display_that_answers(self):
+        self.script("mpirun", "#!/bin/sh\n")
+        self.environment.update(DISPLAY=":64999", MADE_UP_OUTPUTS="24 0")
+        self.assertIn("draws the wall's 24 outputs in memory", self.start(["-"]).stderr)
+
+
 class Refusals(LauncherTest):
+    def test_a_display_that_does_not_answer_is_refused_because_nobody_would_see_the_wall(self):
+        for display in (":64999", "unix:64999", "no display", ":99999999", "127.0.0.1:59999", "[::1]:59999", "tcp/localhost:59999"):
+            self.environment["DISPLAY"] = display
+            self.assertEqual(self.refused(["-"]), f"sandwall: --gl auto: no X server accepts connections at DISPLAY={display}; start it, or "
+                             "correct or unset DISPLAY; --gl osmesa draws in memory\n")
+
+    def test_a_wayland_desktop_without_xwayland_is_refused(self):
+        self.environment["WAYLAND_DISPLAY"] = "wayland-0"
+        line = self.refused(["-"])
+        self.assertIn("--gl auto: no X display (DISPLAY is not set); on this Wayland desktop windows need Xwayland: install Xwayland", line)
+        self.assertTrue(line.endswith("; --gl osmesa draws in memory\n"), line)
+        self.script("mpirun", "#!/bin/sh\n")
+        self.assertEqual(self.start(["-"], "--gl", "osmesa").stderr, "")
+
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
         self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")
         self.assertEqual(self.refused(["-"]), "sandwall: wall.toml:3: no\n")

@@ -45,7 +45,7 @@ class Package(unittest.TestCase):
             raise AssertionError(unpacked.stderr)
         cls.prefix = cls.tree / "usr"
         # The unpacked programs must not find those of the build, or a display.
-        cls.environment = {key: value for key, value in os.environ.items() if key not in ("SANDWALL_BIN", "DISPLAY")}
+        cls.environment = {key: value for key, value in os.environ.items() if key not in ("SANDWALL_BIN", "DISPLAY", "WAYLAND_DISPLAY")}
 
     def sandwall(self, *words):
         return called(self.prefix / "bin" / "sandwall", *words, cwd=self.folder, env=self.environment)

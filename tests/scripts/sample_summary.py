@@ -38,8 +38,9 @@ SUMMARY = {
     "master_memory_bytes": 1 << 26,
     "journal": {"policy": "required", "state": "written", "whole": True, "parts": 1, "checkpoints": 1, "checkpoints_failed": 0,
                 "checkpoints_beyond": 0, "checkpoint_copy_ms": SPREAD, "full_disk": {"times": 0, "seconds": 0.0}},
-    "recoveries": [], "per_rank": [rank(1), rank(2)]}
+    "dark": [], "recoveries": [], "per_rank": [rank(1), rank(2)]}
 HEAD = {"packets": 1000, "refused": 0, "old": 0, "absent": 0, "lost": 0, "outside": 0, "strangers": 0}
+DARK = {"output": "r1c2", "tile": "r1c2", "rank": 2, "monitor": "DP-2", "times": 1, "seconds": 12.4, "at_end": False}
 RECOVERY = {"failure": "rank 2 on node01 was killed by SIGKILL", "failed_rank": 2, "failed_how": "SIGKILL", "seconds_to_next_frame": 2.5,
             "step": 300, "frame": 310, "state_hash": "0123456789abcdef", "checkpoint_step": 240, "replayed_steps": 60, "cut_bytes": 0}
 

@@ -9,7 +9,7 @@ import unittest
 import jsonschema
 
 from launcher_fixture import ROOT
-from sample_summary import HEAD, RECOVERY, REFUSALS, SUMMARY, changed, film, without_hand
+from sample_summary import DARK, HEAD, RECOVERY, REFUSALS, SUMMARY, changed, film, without_hand
 
 import session_lines
 import session_rules
@@ -231,6 +231,11 @@ class SlowWalls(Lines):
     def test_the_slowest_rank_is_noted(self):
         self.only("slowest", NOTE, "rank 2, last in 90 % of frames", slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0})
 
+    def test_each_output_that_was_dark_is_named(self):
+        self.only("monitors", NOTE, "output r1c2 of tile r1c2 (DP-2) was dark 1 time, 12.4 s since the last start", dark=[DARK])
+        self.only("monitors", NOTE, "was dark 2 times, 12.4 s and at the end; output r2c1_left of tile r2c1 (DP-1) was dark 1 time, 3.0 s since",
+                  dark=[{**DARK, "times": 2, "at_end": True}, {**DARK, "output": "r2c1_left", "tile": "r2c1", "monitor": "DP-1", "seconds": 3.0}])
+
 
 class Hands(Lines):
     def test_a_hand_that_never_came_is_bad(self):
@@ -370,7 +375,7 @@ SAMPLES = (SUMMARY, without_hand(), film(),
            changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
            changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
            changed(steps_unplaced=3, refused_press={"tool_shape": "sphere", "tool_radius": 0.6, "largest_radius": 0.5}),
-           changed(hand={**SUMMARY["hand"], "asked": "pointer"}),
+           changed(hand={**SUMMARY["hand"], "asked": "pointer"}), changed(dark=[DARK]),
            changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))
 
 

@@ -89,7 +89,8 @@ class ThisMachine(LauncherTest):
 
     def test_a_display_that_does_not_answer_is_named(self):
         self.environment["DISPLAY"] = ":64999"
-        self.assertIn(":64999 accepts no connection", self.findings(0)["display"]["message"])
+        self.assertIn("no X server accepts connections at DISPLAY=:64999", self.findings(1)["display"]["message"])
+        self.assertFalse(self.findings(0, "--gl", "osmesa")["display"]["needed"])
 
     def test_memory_decides_the_largest_field(self):
         for megabytes, side in ((256, 0), (310, 512), (460, 1024), (1100, 2048), (8192, 4096)):

@@ -4,12 +4,45 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <thread>
 
 namespace support {
 namespace {
+
+// The dummy driver shows nothing. Its monitors are switched by RandR, as those of a card.
+constexpr const char* kMonitors = R"(
+Section "ServerFlags"
+  Option "DontVTSwitch" "true"
+  Option "AllowMouseOpenFail" "true"
+  Option "AutoAddDevices" "false"
+  Option "AutoEnableDevices" "false"
+EndSection
+Section "Device"
+  Identifier "card"
+  Driver "dummy"
+  VideoRam 256000
+EndSection
+Section "Monitor"
+  Identifier "any"
+  HorizSync 5.0 - 1000.0
+  VertRefresh 5.0 - 200.0
+  Modeline "640x360" 17.75 640 656 720 800 360 363 368 374
+EndSection
+Section "Screen"
+  Identifier "all"
+  Device "card"
+  Monitor "any"
+  DefaultDepth 24
+  SubSection "Display"
+    Depth 24
+    Modes "640x360"
+    Virtual 2560 1440
+  EndSubSection
+EndSection
+)";
 
 /// Returns the display number, which Xvfb prints on a line of its own when it accepts connections. Warnings may be
 /// printed around it.
@@ -30,7 +63,25 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
     for (std::size_t i = 0; i < screens.size(); ++i) {
         command.insert(command.end(), {"-screen", std::to_string(i), screens[i]});
     }
-    process_ = std::make_unique<ChildProcess>(command, folder / "xvfb.log");
+    start(command, folder / "xvfb.log");
+}
+
+std::unique_ptr<XServer> XServer::withMonitors(const std::filesystem::path& folder) {
+    std::ofstream(folder / "xorg.conf") << kMonitors;
+    const std::string log = (folder / "xorg.log").string();
+    std::unique_ptr<XServer> server(new XServer);
+    try {
+        server->start({"/usr/bin/env", "Xorg", "-displayfd", "1", "-nolisten", "tcp", "-noreset", "-logfile", log,
+                       "-config", (folder / "xorg.conf").string()},
+                      folder / "xorg.out");
+    } catch (const std::runtime_error&) {
+        return nullptr;
+    }
+    return server;
+}
+
+void XServer::start(const std::vector<std::string>& command, const std::filesystem::path& log) {
+    process_ = std::make_unique<ChildProcess>(command, log);
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while (display_.empty()) {
         const bool ended = process_->wait(0).has_value();
@@ -38,7 +89,7 @@ XServer::XServer(const std::filesystem::path& folder, const std::vector<std::str
         if (!number.empty()) {
             display_ = ":" + number;
         } else if (ended || std::chrono::steady_clock::now() > until) {
-            throw std::runtime_error("Xvfb (Debian's package xvfb) did not start: " + process_->output());
+            throw std::runtime_error(command[0] + " (Debian's package xvfb) did not start: " + process_->output());
         } else {
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }

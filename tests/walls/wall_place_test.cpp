@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <string>
@@ -132,6 +133,49 @@ TEST(WallFile, TakesScreensThatAreSaidToOverlap) {
         "upper_left = [0.5, 0.0, 0.5]\npixels = [1024, 768]\n";
     EXPECT_NE(complaint(wallWith("mono", blend)).find("write overlaps = [\"floor\"]"), std::string::npos);
     EXPECT_EQ(complaint(wallWith("mono", blend + "overlaps = [\"floor\"]\n")), "no complaint");
+}
+
+/// Returns the error for two tiles on one monitor of these hosts and displays.
+std::string complaintAbout(const std::string& firstPlace, const std::string& secondPlace) {
+    return complaint(wallWith("mono", "[[place]]\ntiles = [\"r1c1\"]\nmonitors = [\"DP-1\"]\n" + firstPlace +
+                                          "[[place]]\ntiles = [\"r1c2\"]\nmonitors = [\"DP-1\"]\n" + secondPlace));
+}
+
+// In an X display's name, [PROTOCOL/][HOST]:NUMBER[.SCREEN], the screen is 0 by default, and "unix" is no host.
+TEST(WallPlace, TakesOneDisplayForOneHoweverItIsSpelt) {
+    for (const char* display : {":0.0", "unix:0", ":00", "unix:0.0", "unix/:0", ":0.00", "local/:0"}) {
+        const std::string line = complaintAbout("display = \":0\"\n", fmt::format("display = \"{}\"\n", display));
+        EXPECT_EQ(line, fmt::format("lab.toml:28: monitor 'DP-1' would show output 'r1c2' of tile 'r1c2' and 'r1c1' of "
+                                    "line 24 at once (':0' and '{}' are one display): name another monitor, or the "
+                                    "host of each",
+                                    display));
+    }
+    EXPECT_NE(complaintAbout("host = \"node1\"\ndisplay = \":0\"\n", "host = \"NODE1\"\ndisplay = \":0.0\"\n")
+                  .find("('node1 :0' and 'NODE1 :0.0' are one display)"),
+              std::string::npos);
+    EXPECT_NE(complaintAbout("host = \"node1\"\n", "host = \"Node1\"\n").find("are one display"), std::string::npos);
+    EXPECT_NE(complaintAbout("host = \"node1\"\ndisplay = \":0\"\n", "display = \"node1:0\"\n").find("one display"),
+              std::string::npos)
+        << "over the network";
+    const std::string windows =
+        "[[place]]\ntiles = [\"r1c1\"]\ndisplay = \":0\"\nwindows = [[0, 0]]\n"
+        "[[place]]\ntiles = [\"r1c2\"]\ndisplay = \"unix:0\"\nwindows = [[8, 0]]\n";
+    EXPECT_NE(
+        complaint(wallWith("mono", windows)).find("that of 'r1c1' of line 25 (':0' and 'unix:0' are one display)"),
+        std::string::npos);
+}
+
+TEST(WallPlace, TakesDisplaysThatOnlyLookAlikeForTwo) {
+    for (const char* display : {":0.1", ":1", ":10", "unix:0.10", "node2:0", "localhost:0"}) {
+        EXPECT_EQ(complaintAbout("display = \":0\"\n", fmt::format("display = \"{}\"\n", display)), "no complaint")
+            << display;
+    }
+    EXPECT_EQ(complaintAbout("host = \"node1\"\ndisplay = \":0\"\n", "host = \"node11\"\ndisplay = \":0.0\"\n"),
+              "no complaint");
+    EXPECT_EQ(
+        complaintAbout("host = \"a\"\ndisplay = \"localhost:10\"\n", "host = \"b\"\ndisplay = \"localhost:10\"\n"),
+        "no complaint")
+        << "tunnels of two machines";
 }
 
 }  // namespace

@@ -46,6 +46,38 @@ TEST_F(Backends, MapTheirOwnLibrariesAndNoOthers) {
     }
 }
 
+// With these variables OSMesa would end the process by SIGSEGV, or refuse OpenGL 3.3.
+TEST_F(Backends, NameTheVariableOfMesaThatLeavesNoContext) {
+    const std::map<std::string, std::string> refused{
+        {"GALLIUM_DRIVER=zink", "OSMesa has only the drivers llvmpipe and softpipe"},
+        {"GALLIUM_DRIVER=nonsense", "OSMesa has only the drivers llvmpipe and softpipe"},
+        {"MESA_GL_VERSION_OVERRIDE=2.1", "takes away OpenGL 3.3"},
+        {"MESA_GL_VERSION_OVERRIDE=3.2COMPAT", "takes away OpenGL 3.3"},
+        {"MESA_GLSL_VERSION_OVERRIDE=120", "takes away GLSL 3.30"},
+        {"MESA_EXTENSION_OVERRIDE=-GL_ARB_uniform_buffer_object", "takes extensions away"}};
+    for (const auto& [variable, words] : refused) {
+        start(arguments("osmesa"), {variable});
+        const std::string line = lastLine(2);
+        EXPECT_TRUE(line.starts_with("window_probe: " + variable + ": " + words)) << line;
+        EXPECT_NE(line.find("; unset it"), std::string::npos) << line;
+    }
+    for (const std::string gl : {"egl", "glfw"}) {
+        start(arguments(gl), {"MESA_GL_VERSION_OVERRIDE=2.1"});
+        const std::string line = lastLine(2);
+        EXPECT_NE(line.find("; try again without MESA_GL_VERSION_OVERRIDE=2.1, which changes what Mesa offers\n"),
+                  std::string::npos)
+            << line;
+    }
+}
+
+TEST_F(Backends, TakeVariablesOfMesaThatLeaveAContext) {
+    for (const char* variable : {"GALLIUM_DRIVER=", "GALLIUM_DRIVER=llvmpipe", "MESA_GL_VERSION_OVERRIDE=4.1",
+                                 "MESA_GLSL_VERSION_OVERRIDE=330", "MESA_EXTENSION_OVERRIDE=+GL_ARB_made_up"}) {
+        (void)startAndShow(arguments("osmesa"), {variable});
+        probe_.reset();
+    }
+}
+
 TEST_F(Backends, DrawTheSamePicture) {
     std::map<std::string, std::map<std::string, pictures::Image>> drawn;
     for (const std::string gl : {"osmesa", "egl", "glfw"}) {

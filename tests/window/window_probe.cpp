@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Does without a cluster what a rank does with a backend. It makes the context and the windows of a tile, draws the
 // sample scene for both eyes, and shows frame 0. Then it runs typed commands: "frame N", "part X0 Y0 X1 Y1", "keys",
-// "memory", "end". In the frame of "part", the pictures of the eyes are exchanged, and only these pixels have changed.
-// In the frame of "frame", nothing has changed.
+// "monitors", "memory", "end". "monitors" shows a frame and prints the states of the outputs' monitors. In the frame of
+// "part", the pictures of the eyes are exchanged, and only these pixels have changed. In the frame of "frame", nothing
+// has changed.
 #include <unistd.h>
 
 #include <fstream>
@@ -110,6 +111,14 @@ void obey(const Options& options, render_node::GlContext& context, std::vector<r
                 std::cout << "key " << key.code << "\n";
             }
             std::cout << "keys taken" << std::endl;
+        } else if (word == "monitors") {
+            context.present(outputs, {}, 0);
+            context.swap();
+            std::cout << "monitors";
+            for (const base::MonitorState state : context.monitorStates()) {
+                std::cout << ' ' << base::nameOf(state);
+            }
+            std::cout << std::endl;
         } else if (word == "memory") {
             printMemory(options);
         }

@@ -46,6 +46,9 @@ TEST(OperatorCommand, EveryVerbIsRead) {
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
     EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
     EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(parseCommand("swap-eyes on").verb, Verb::swapEyes);
+    EXPECT_TRUE(parseCommand("swap-eyes on").on);
+    EXPECT_FALSE(parseCommand("swap-eyes off").on);
     EXPECT_EQ(parseCommand("tool 0.02").tool.radius, 0.02);
     EXPECT_EQ(parseCommand("material talus 30").word, "talus");
     EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
@@ -61,7 +64,8 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
               "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern "
               "NAME|none|next, "
-              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, tool [SHAPE] [radius=R] [width=W] "
+              "show LAYER, hide LAYER, eye-separation METRES, stereo MODE, swap-eyes on|off, tool [SHAPE] [radius=R] "
+              "[width=W] "
               "[heading=DEG] [foot=left|right], material KEY VALUE, save NAME, load NAME, capture, force on|off|scale "
               "SHARE, stop");
     EXPECT_EQ(complaint("").substr(0, 19), "'' is not a command");
@@ -90,6 +94,10 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
         EXPECT_EQ(complaint("load " + name), complaint("save " + name));
     }
     EXPECT_EQ(complaint("stereo sideways").find("no stereo mode 'sideways'; there are mono, left"), 0U);
+    EXPECT_EQ(complaint("swap-eyes"), "swap-eyes needs on|off");
+    for (const std::string value : {"true", "1", "ON", "on off"}) {
+        EXPECT_EQ(complaint("swap-eyes " + value), "swap-eyes needs on or off, got '" + value + "'");
+    }
     EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics, help");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");

@@ -47,6 +47,7 @@ TileFigures figuresOf(std::uint64_t frame) {
                                      .slowest = lockstep::Drag{5, 0.97, 30.1},
                                      .agreed = frame - 1,
                                      .slowMotion = {},
+                                     .dark = {},
                                      .swaps = {0, 12, 500, 7, 90, 131}};
     return {draw, 31 - draw, wall};
 }
@@ -326,6 +327,28 @@ TEST(OverlayText, KeepsTheLast120Frames) {
     EXPECT_EQ(history.values().front(), 380);
     EXPECT_EQ(history.latest(), 499);
     EXPECT_EQ(history.largest(), 499);
+}
+
+TEST(OverlayText, NamesTheDarkTileOnEveryTile) {
+    lockstep::WallFigures figures = figuresOf(200).wall;
+    figures.slowest.reset();
+    figures.dark = {6};
+    for (const int rank : {1, 6, 12}) {
+        const std::string words = joined(wordsOf(rank, TileStatistics::kLetters, figures));
+        EXPECT_NE(words.find("\nDARK: RANK 6 r2c2\n"), std::string::npos) << words;
+    }
+    figures.dark = {2, 6, 7};
+    EXPECT_NE(joined(wordsOf(5, TileStatistics::kLetters, figures)).find("DARK: RANK 2 r1c2 AND 2 MORE\n"),
+              std::string::npos);
+    EXPECT_EQ(joined(wordsOf(5, 15, figures)), "R5 30.0 FPS\nDARK R2 R6 R7\nDRAW 31.2 MS\nAGREED 199\n");
+    // With every other warning, the tile's own name is left out.
+    figures.slowest = lockstep::Drag{5, 0.97, 30.1};
+    figures.divergences = 2;
+    figures.unplaced = 12;
+    figures.slowMotion = 6.34;
+    EXPECT_EQ(joined(wordsOf(5, TileStatistics::kLetters, figures, TileStatistics::kLongLines)),
+              "DARK: RANK 2 r1c2 AND 2 MORE\nDIFFERED IN 2 FRAMES, HEALED 0\nNO ROOM FOR SAND IN 12 STEPS\n"
+              "SLOW MOTION 6.3, 0 OWED\nSLOWEST: RANK 5 r2c1, 97 %\n");
 }
 
 }  // namespace
