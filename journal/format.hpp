@@ -51,7 +51,7 @@ struct JournalResumed {
     std::uint64_t frame = 0;  // last frame in the journal before
     JournalEnd sand;
     std::int64_t cutBytes = 0;  // [byte], length of the torn record that was cut off before this one
-    std::string failure;        // text that says what had failed; empty if unknown
+    std::string failure;        // text that says what had failed, without a host; empty if unknown
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("frame", base::varint(it.frame));

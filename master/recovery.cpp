@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "base/byte_stream.hpp"
@@ -84,7 +86,28 @@ Lines linesOf(const std::filesystem::path& folder) {
     return lines;
 }
 
+/// Returns whether `how` is one of the words that the launcher uses for the end of a process.
+bool isKnown(std::string_view how) {
+    if (how == "hung" || how == "broken" || how == "disk") {
+        return true;
+    }
+    constexpr std::array<std::string_view, 3> kBegins{"SIG", "signal ", "status "};
+    return std::any_of(kBegins.begin(), kBegins.end(), [how](std::string_view begin) {
+        return how.starts_with(begin) && std::all_of(how.begin() + std::ssize(begin), how.end(), [](char c) {
+                   return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '+' || c == '-';
+               });
+    });
+}
+
 }  // namespace
+
+std::string withoutHosts(const Failure& failure) {
+    const std::string how = isKnown(failure.how) ? failure.how : "failed";
+    if (failure.rank) {
+        return fmt::format("rank {}: {}", *failure.rank, how);
+    }
+    return failure.how.empty() ? "the start" : how;
+}
 
 void reportRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
     const Failure& failure = recovery.failure;

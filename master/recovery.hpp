@@ -19,6 +19,10 @@ struct Failure {
     double noticed = 0;              // Unix time [s] at which the failure was noticed; 0: when this process started
 };
 
+/// Returns the failure as the journal names it, such as "rank 3: SIGKILL". Leaves out all text that can have the name
+/// of a host, because a journal is given to other people.
+[[nodiscard]] std::string withoutHosts(const Failure& failure);
+
 /// Return of a session to work: the first frame that it shows after a failure.
 struct Recovery {
     Failure failure;
