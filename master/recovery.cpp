@@ -30,9 +30,8 @@ const double kStarted = unixTime();
 std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / kRecoveriesFile; }
 
 /// Returns the text of the file, or an empty text if it cannot be read.
-std::string textOf(const std::filesystem::path& file) {
-    const host::RegularFile opened(file, host::RegularFile::Links::refused);
-    const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
+std::string textOf(const host::RegularFile& file) {
+    const std::optional<base::Bytes> bytes = file.error().empty() ? file.read(file.size()) : std::nullopt;
     return bytes ? std::string(bytes->begin(), bytes->end()) : "";
 }
 
@@ -65,9 +64,10 @@ struct Lines {
     std::vector<std::string> good, complaints;
 };
 
-Lines linesOf(const std::filesystem::path& folder) {
+/// Reads `file`, which is that of the session's folder `folder`.
+Lines linesOf(const std::filesystem::path& folder, const host::RegularFile& file) {
     Lines lines;
-    std::istringstream stream(textOf(fileIn(folder)));
+    std::istringstream stream(textOf(file));
     long number = 0;
     for (std::string line; std::getline(stream, line);) {
         ++number;
@@ -135,7 +135,7 @@ void reportRecovery(const Recovery& recovery, const std::filesystem::path& folde
 }
 
 std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
-    Lines read = linesOf(folder);
+    Lines read = linesOf(folder, host::RegularFile(fileIn(folder), host::RegularFile::Links::refused));
     for (const std::string& complaint : read.complaints) {
         host::printLine("{}", complaint);
     }
@@ -143,13 +143,11 @@ std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
 }
 
 std::size_t RecoveryCount::count() {
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(fileIn(folder_), error);
-    if (error || bytes == 0) {
-        bytes_ = count_ = 0;
-    } else if (bytes != bytes_) {
+    const host::RegularFile file(fileIn(folder_), host::RegularFile::Links::refused);
+    const std::uintmax_t bytes = file.error().empty() ? file.size() : 0;
+    if (bytes != bytes_) {
         bytes_ = bytes;
-        count_ = linesOf(folder_).good.size();
+        count_ = linesOf(folder_, file).good.size();
     }
     return count_;
 }
