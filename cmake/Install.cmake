@@ -47,7 +47,7 @@ install(FILES
     scripts/launcher/session_folder.py scripts/launcher/session_lines.py scripts/launcher/session_report.py
     scripts/launcher/session_results.py scripts/launcher/session_rules.py scripts/launcher/spare_hosts.py
     scripts/launcher/supervisor.py scripts/launcher/text_file.py scripts/launcher/this_machine.py
-    scripts/launcher/web_page.py
+    scripts/launcher/web_files.py scripts/launcher/web_page.py
     docs/schemas/summary.schema.json
     DESTINATION ${private}/python)
 # The web page, if scripts/web.sh has built it.

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 #include "host/whole_file.hpp"
 
@@ -16,12 +17,33 @@ namespace host {
 namespace {
 
 constexpr mode_t kOthersMayWrite = S_IWGRP | S_IWOTH;
+// Without O_NONBLOCK, open() would wait until a process opens the other end of a pipe.
+constexpr int kToRead = O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
 
 /// Closes `descriptor` and returns false with this errno.
 bool refused(int descriptor, int error) {
     close(descriptor);
     errno = error;
     return false;
+}
+
+/// Closes `descriptor` and returns `next`. The errno stays that of the call that has returned `next`.
+int replaced(int descriptor, int next) {
+    const int error = errno;
+    close(descriptor);
+    errno = error;
+    return next;
+}
+
+/// Returns the descriptor of the folder `name` in the folder `held`, which it closes. Returns -1 with errno for all
+/// else; ELOOP for a link.
+int folderIn(int held, const char* name) {
+    const int folder = openat(held, name, O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    struct stat about {};
+    if (folder < 0 && fstatat(held, name, &about, AT_SYMLINK_NOFOLLOW) == 0) {
+        errno = S_ISLNK(about.st_mode) ? ELOOP : ENOTDIR;
+    }
+    return replaced(held, folder);
 }
 
 bool isFileOrLink(const std::filesystem::path& path) {
@@ -53,11 +75,24 @@ std::string whyUnsafeEntry(const std::filesystem::path& entry) {
 }  // namespace
 
 RegularFile::RegularFile(const std::filesystem::path& path, Links links) {
-    // Without O_NONBLOCK, open() would wait until a process opens the other end of a pipe.
     const int follow = links == Links::followed ? 0 : O_NOFOLLOW;
-    descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | follow);
+    take(open(path.c_str(), kToRead | follow), links == Links::refused);
+}
+
+RegularFile::RegularFile(const std::filesystem::path& folder, const std::filesystem::path& inside) {
+    int held = open(folder.empty() ? "." : folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC);
+    for (const std::filesystem::path& name : inside.parent_path()) {
+        if (held >= 0) {
+            held = folderIn(held, name.c_str());
+        }
+    }
+    take(held < 0 ? -1 : replaced(held, openat(held, inside.filename().c_str(), kToRead | O_NOFOLLOW)), true);
+}
+
+void RegularFile::take(int descriptor, bool linksRefused) {
+    descriptor_ = descriptor;
     if (descriptor_ < 0 || fstat(descriptor_, &about_) != 0) {
-        error_ = errno == ELOOP && follow != 0 ? "is a link, which is not followed" : std::strerror(errno);
+        error_ = errno == ELOOP && linksRefused ? "is a link, which is not followed" : std::strerror(errno);
     } else if (!S_ISREG(about_.st_mode)) {
         error_ = "is not a regular file";
     }
@@ -79,20 +114,25 @@ std::string RegularFile::whyNotPrivate() const {
 }
 
 std::optional<std::vector<std::uint8_t>> RegularFile::read(std::size_t most) const {
-    std::vector<std::uint8_t> bytes(std::min<std::uintmax_t>(most, size()));
+    std::vector<std::uint8_t> bytes;
+    return readAt(0, std::min<std::uintmax_t>(most, size()), bytes) ? std::optional(std::move(bytes)) : std::nullopt;
+}
+
+bool RegularFile::readAt(std::uint64_t offset, std::size_t size, std::vector<std::uint8_t>& bytes) const {
+    bytes.resize(size);
     std::size_t done = 0;
-    while (done < bytes.size()) {
-        const ssize_t count = pread(descriptor_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(done));
+    while (done < size) {
+        const ssize_t count = pread(descriptor_, bytes.data() + done, size - done, static_cast<off_t>(offset + done));
         if (count < 0 && errno != EINTR) {
-            return std::nullopt;
+            return false;
         }
         if (count == 0) {
-            break;  // the file has become shorter
+            break;  // the end, or the file has become shorter
         }
         done += count > 0 ? static_cast<std::size_t>(count) : 0;
     }
     bytes.resize(done);
-    return bytes;
+    return true;
 }
 
 void keepOthersFromWriting() { umask(umask(kOthersMayWrite) | kOthersMayWrite); }

@@ -22,6 +22,9 @@ public:
     enum class Links { followed, refused };
     /// Opens `path`. If that fails, error() is the reason.
     explicit RegularFile(const std::filesystem::path& path, Links links = Links::followed);
+    /// Opens the file `inside`, such as "saves/a.sand", of a session's folder. A link may lead to the folder itself. In
+    /// the folder, no link is followed, neither to a folder nor to the file.
+    RegularFile(const std::filesystem::path& folder, const std::filesystem::path& inside);
     ~RegularFile();
     RegularFile(const RegularFile&) = delete;
     RegularFile& operator=(const RegularFile&) = delete;
@@ -33,8 +36,14 @@ public:
     [[nodiscard]] std::string whyNotPrivate() const;
     /// Returns the first `most` bytes, or all if the file is shorter. Returns nullopt if the disk fails.
     [[nodiscard]] std::optional<std::vector<std::uint8_t>> read(std::size_t most) const;
+    /// Sets `bytes` to `size` bytes from `offset` [byte] on, or to fewer at the end of the file. Returns false if the
+    /// disk fails.
+    [[nodiscard]] bool readAt(std::uint64_t offset, std::size_t size, std::vector<std::uint8_t>& bytes) const;
 
 private:
+    /// Takes the result of an open(), whose errno is still set if it has failed.
+    void take(int descriptor, bool linksRefused);
+
     int descriptor_ = -1;
     struct stat about_ {};
     std::string error_;

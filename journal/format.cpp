@@ -96,14 +96,16 @@ std::optional<std::uint64_t> markOf(std::span<const std::uint8_t> body) {
 
 namespace {
 
-/// Returns whether a whole record begins with `record`. `chain` is the checksum before it.
-bool isWhole(std::span<const std::uint8_t> record, std::uint64_t chain) {
+/// Returns the length of the type and payload of a record that begins with `record` [byte], or 0 if it does not fit.
+std::size_t lengthOfBody(std::span<const std::uint8_t> record) {
     std::uint32_t length = 0;
     std::memcpy(&length, record.data(), sizeof length);
-    if (length > record.size() - kAroundPayload) {
-        return false;
-    }
-    const auto body = record.subspan(sizeof length, std::size_t{length} + 1);
+    return length > record.size() - kAroundPayload ? 0 : std::size_t{length} + 1;
+}
+
+/// Returns whether the checksum behind a body of `length` bytes is right. `chain` is the checksum before the record.
+bool isWhole(std::span<const std::uint8_t> record, std::size_t length, std::uint64_t chain) {
+    const auto body = record.subspan(sizeof(std::uint32_t), length);
     std::uint64_t stored = 0;
     std::memcpy(&stored, body.data() + body.size(), sizeof stored);
     return stored == chainedSum(body, chain);
@@ -111,10 +113,11 @@ bool isWhole(std::span<const std::uint8_t> record, std::uint64_t chain) {
 
 }  // namespace
 
-bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
+LaterWrite searchLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
     constexpr std::size_t kLength = sizeof(std::uint32_t);
     constexpr std::size_t kLeast = kAroundPayload + sizeof(std::uint64_t);
     constexpr std::uint64_t kLongestPart = std::uint64_t{1} << 40;  // [byte], of --journal-part
+    LaterWrite search;
     for (std::size_t at = 1; at + kLeast <= rest.size(); ++at) {
         const std::uint8_t type = rest[at + kLength];
         const auto mark = type > kBeginsWrite && type <= (kBeginsWrite | std::variant_size_v<JournalRecord>)
@@ -123,18 +126,26 @@ bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset) {
         // A mark is the place of its own record. That is enough, because its checksum cannot be verified if the bytes
         // before it are lost.
         if (mark == offset + at) {
-            return true;
+            search.found = true;
+            return search;
         }
         // Bytes before it may have been removed or added, so that the record has moved.
         std::uint64_t before = 0;
-        if (mark && *mark < kLongestPart && at >= sizeof before) {
-            std::memcpy(&before, &rest[at - sizeof before], sizeof before);
-            if (isWhole(rest.subspan(at), before)) {
-                return true;
-            }
+        if (!mark || *mark >= kLongestPart || at < sizeof before) {
+            continue;
+        }
+        const std::size_t length = lengthOfBody(rest.subspan(at));
+        if (length == 0 || search.hashed + length > kMostHashesOfTail * rest.size()) {
+            continue;
+        }
+        search.hashed += length;
+        std::memcpy(&before, &rest[at - sizeof before], sizeof before);
+        if (isWhole(rest.subspan(at), length, before)) {
+            search.found = true;
+            return search;
         }
     }
-    return false;
+    return search;
 }
 
 }  // namespace journal

@@ -52,7 +52,7 @@ struct JournalResumed {
     std::uint64_t frame = 0;  // last frame in the journal before
     JournalEnd sand;
     std::int64_t cutBytes = 0;  // [byte], length of the torn record that was cut off before this one
-    std::string failure;        // text that says what had failed; empty if unknown
+    std::string failure;        // text that says what had failed, without a host; empty if unknown
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("frame", base::varint(it.frame));
@@ -167,10 +167,19 @@ public:
 /// Returns the checksum of a record with type and payload `body`. `chain` is the checksum of the record before.
 [[nodiscard]] std::uint64_t recordChecksum(std::span<const std::uint8_t> body, std::uint64_t chain);
 
-/// Returns whether another write begins anywhere in `rest`, which begins with a broken record at `offset` [byte] of its
-/// part. If so, the broken record had been on disk and was damaged later. Otherwise a crash has torn the last write, of
-/// which any bytes may be missing.
-[[nodiscard]] bool holdsLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset);
+/// Result of searchLaterWrite().
+struct LaterWrite {
+    bool found = false;
+    std::uint64_t hashed = 0;  // [byte], how many bytes were hashed for the answer, each counted as often as it was
+};
+/// Searches for the begin of another write anywhere in `rest`, which begins with a broken record at `offset` [byte] of
+/// its part. If one is found, the broken record had been on disk and was damaged later. Otherwise a crash has torn the
+/// last write, of which any bytes may be missing.
+///
+/// Hashes at most kMostHashesOfTail times the length of `rest`, because any bytes may look like records within records.
+/// A write that would need more hashing is not found, unless it is still at the place that its mark names.
+[[nodiscard]] LaterWrite searchLaterWrite(std::span<const std::uint8_t> rest, std::uint64_t offset);
+inline constexpr std::uint64_t kMostHashesOfTail = 3;  // with that of the broken record by the reader, four in all
 
 inline constexpr std::size_t kAroundPayload = sizeof(std::uint32_t) + 1 + sizeof(std::uint64_t);  // [byte]
 

@@ -144,7 +144,7 @@ void JournalReader::endHere(const std::string& why) {
         base::Bytes rest;
         parts_->read(place_.part, place_.offset, left, rest);
         // A crash tears only the last write. If a write follows, this record had been on disk and was damaged there.
-        if (holdsLaterWrite(rest, static_cast<std::uint64_t>(place_.offset))) {
+        if (searchLaterWrite(rest, static_cast<std::uint64_t>(place_.offset)).found) {
             fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_, why));
         }
     }

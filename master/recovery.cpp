@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
+#include <string_view>
 #include <utility>
 
 #include "base/byte_stream.hpp"
@@ -27,9 +29,8 @@ const std::int64_t kStartedNs = host::monotonicNs();
 std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / kRecoveriesFile; }
 
 /// Returns the text of the file, or an empty text if it cannot be read.
-std::string textOf(const std::filesystem::path& file) {
-    const host::RegularFile opened(file, host::RegularFile::Links::refused);
-    const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
+std::string textOf(const host::RegularFile& file) {
+    const std::optional<base::Bytes> bytes = file.error().empty() ? file.read(file.size()) : std::nullopt;
     return bytes ? std::string(bytes->begin(), bytes->end()) : "";
 }
 
@@ -62,9 +63,10 @@ struct Lines {
     std::vector<std::string> good, complaints;
 };
 
-Lines linesOf(const std::filesystem::path& folder) {
+/// Reads `file`, which is that of the session's folder `folder`.
+Lines linesOf(const std::filesystem::path& folder, const host::RegularFile& file) {
     Lines lines;
-    std::istringstream stream(textOf(fileIn(folder)));
+    std::istringstream stream(textOf(file));
     long number = 0;
     for (std::string line; std::getline(stream, line);) {
         ++number;
@@ -83,11 +85,32 @@ Lines linesOf(const std::filesystem::path& folder) {
     return lines;
 }
 
+/// Returns whether `how` is one of the words that the launcher uses for the end of a process.
+bool isKnown(std::string_view how) {
+    if (how == "hung" || how == "broken" || how == "disk") {
+        return true;
+    }
+    constexpr std::array<std::string_view, 3> kBegins{"SIG", "signal ", "status "};
+    return std::any_of(kBegins.begin(), kBegins.end(), [how](std::string_view begin) {
+        return how.starts_with(begin) && std::all_of(how.begin() + std::ssize(begin), how.end(), [](char c) {
+                   return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '+' || c == '-';
+               });
+    });
+}
+
 }  // namespace
 
 double Failure::secondsAgo(std::int64_t nowNs, std::int64_t startedNs, const std::string& here) const {
     const double now = static_cast<double>(nowNs) * 1e-9;
     return std::max(0.0, machine == here ? now - noticed : before + now - static_cast<double>(startedNs) * 1e-9);
+}
+
+std::string withoutHosts(const Failure& failure) {
+    const std::string how = isKnown(failure.how) ? failure.how : "failed";
+    if (failure.rank) {
+        return fmt::format("rank {}: {}", *failure.rank, how);
+    }
+    return failure.how.empty() ? "the start" : how;
 }
 
 void reportRecovery(const Recovery& recovery, const std::filesystem::path& folder) {
@@ -115,7 +138,7 @@ void reportRecovery(const Recovery& recovery, const std::filesystem::path& folde
 }
 
 std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
-    Lines read = linesOf(folder);
+    Lines read = linesOf(folder, host::RegularFile(fileIn(folder), host::RegularFile::Links::refused));
     for (const std::string& complaint : read.complaints) {
         host::printLine("{}", complaint);
     }
@@ -123,13 +146,11 @@ std::vector<std::string> recoveriesOf(const std::filesystem::path& folder) {
 }
 
 std::size_t RecoveryCount::count() {
-    std::error_code error;
-    const std::uintmax_t bytes = std::filesystem::file_size(fileIn(folder_), error);
-    if (error || bytes == 0) {
-        bytes_ = count_ = 0;
-    } else if (bytes != bytes_) {
+    const host::RegularFile file(fileIn(folder_), host::RegularFile::Links::refused);
+    const std::uintmax_t bytes = file.error().empty() ? file.size() : 0;
+    if (bytes != bytes_) {
         bytes_ = bytes;
-        count_ = linesOf(folder_).good.size();
+        count_ = linesOf(folder_, file).good.size();
     }
     return count_;
 }

@@ -27,6 +27,10 @@ struct Failure {
     [[nodiscard]] double secondsAgo(std::int64_t nowNs, std::int64_t startedNs, const std::string& here) const;
 };
 
+/// Returns the failure as the journal names it, such as "rank 3: SIGKILL". Leaves out all text that can have the name
+/// of a host, because a journal is given to other people.
+[[nodiscard]] std::string withoutHosts(const Failure& failure);
+
 /// Return of a session to work: the first frame that it shows after a failure.
 struct Recovery {
     Failure failure;

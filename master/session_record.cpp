@@ -52,7 +52,8 @@ SessionRecord::SessionRecord(std::filesystem::path out, RecordOptions options, c
       incidents_(out_, options_.resumed != nullptr),
       recoveries_(out_) {
     if (options_.keepsJournal) {
-        journal_.emplace(out_, options_.journal, scene, options_.resumed.get(), options_.failure.what, host::buildId());
+        journal_.emplace(out_, options_.journal, scene, options_.resumed.get(), withoutHosts(options_.failure),
+                         host::buildId());
     }
     forgetOldResults(out_, options_.resumed != nullptr);
     if (!options_.resumed) {

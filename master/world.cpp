@@ -34,7 +34,7 @@ void resume(const lockstep::Cluster& cluster, ProgramOptions& options) {
     if (options.session.record.journal.policy == JournalPolicy::off) {
         throw base::InputError("--resume needs the journal of the session; leave out --journal off");
     }
-    if (std::error_code none; std::filesystem::exists(journal, none)) {
+    if (std::error_code none; std::filesystem::exists(std::filesystem::symlink_status(journal, none))) {
         requireMemoryOfJournal(cluster.hosts(), journal);
     }
     std::optional<ResumedSession> resumed = readSession(journal, options.scene);

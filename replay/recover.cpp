@@ -34,8 +34,11 @@ void recoverJournal(const std::filesystem::path& journal, const std::filesystem:
     std::uint64_t records = 0, step = 0;
     std::string damage;
     try {
-        while (const auto record = reader.next()) {
+        while (auto record = reader.next()) {
             ++records;
+            if (auto* const resumed = std::get_if<journal::JournalResumed>(&*record)) {
+                resumed->failure.clear();  // earlier builds have written the names of hosts there
+            }
             const auto* frame = std::get_if<journal::JournalFrame>(&*record);
             step = frame != nullptr && !frame->steps.empty() ? frame->steps.back().number : step;
             writer.keep(*record);

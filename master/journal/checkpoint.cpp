@@ -90,7 +90,9 @@ void writeCheckpoint(const fs::path& journal, const Checkpoint& checkpoint, std:
 }
 
 Checkpoint readCheckpoint(const fs::path& file) {
-    const host::RegularFile opened(file, host::RegularFile::Links::refused);
+    // Neither the file nor its folder in that of the session may be a link.
+    const fs::path folder = file.parent_path();
+    const host::RegularFile opened(folder.parent_path(), folder.filename() / file.filename());
     const std::optional<base::Bytes> bytes = opened.error().empty() ? opened.read(opened.size()) : std::nullopt;
     if (!bytes || bytes->empty()) {
         throw base::FormatError(opened.error().empty() ? "cannot be read" : opened.error());

@@ -4,8 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 
+#include "host/regular_file.hpp"
 #include "journal/journal_parts.hpp"
 
 namespace master {
@@ -13,12 +14,14 @@ namespace master {
 /// Returns the name of a part: FILE, FILE.2, FILE.3 …
 [[nodiscard]] std::filesystem::path partOf(const std::filesystem::path& journal, std::uint32_t part);
 
-/// The parts of a journal in files. Keeps the file open that it has read last.
+/// The parts of a journal in files. Each must be a regular file, and no link is followed to it. Keeps the file open
+/// that it has read last.
 class FileParts : public journal::JournalParts {
 public:
     explicit FileParts(std::filesystem::path journal) : journal_(std::move(journal)) {}
 
     [[nodiscard]] std::string name(std::uint32_t part) const override { return partOf(journal_, part).string(); }
+    /// Returns whether anything has the name of the part. Only length() opens it, and says why if it cannot.
     [[nodiscard]] bool has(std::uint32_t part) const override;
     [[nodiscard]] std::int64_t length(std::uint32_t part) override;
     void read(std::uint32_t part, std::int64_t offset, std::int64_t size, base::Bytes& bytes) override;
@@ -26,10 +29,11 @@ public:
 private:
     void open(std::uint32_t part);
 
-    std::filesystem::path journal_;  // the first part
-    std::ifstream stream_;
-    std::uint32_t opened_ = 0;    // the part of stream_; 0: none
-    std::int64_t position_ = -1;  // of stream_ [byte]; -1: unknown
+    std::filesystem::path journal_;            // the first part
+    std::unique_ptr<host::RegularFile> file_;  // nullptr: none
+    std::uint32_t opened_ = 0;                 // the part of file_; 0: none
+    base::Bytes ahead_;                        // a piece of file_, because records are short and read one after another
+    std::int64_t aheadAt_ = 0;                 // place of ahead_ [byte]
 };
 
 }  // namespace master

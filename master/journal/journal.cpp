@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "master/journal/journal.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <system_error>
 
+#include "base/input_error.hpp"
+#include "host/regular_file.hpp"
 #include "host/version.hpp"
 #include "master/journal/file_parts.hpp"
 
@@ -12,8 +16,18 @@ namespace master {
 namespace fs = std::filesystem;
 
 fs::path journalAt(const fs::path& named) {
-    std::error_code none;
-    return fs::is_directory(named, none) ? named / "session.journal" : named;
+    std::error_code error;
+    if (fs::is_directory(named, error)) {
+        return named / "session.journal";
+    }
+    if (!fs::is_symlink(named, error)) {
+        return named;
+    }
+    fs::path target = fs::canonical(named, error);
+    if (error) {
+        throw base::InputError(fmt::format("{}: cannot be read ({}); check the path", named.string(), error.message()));
+    }
+    return target;
 }
 
 journal::JournalReader openJournal(const fs::path& journal) {
@@ -27,13 +41,12 @@ journal::Journal readJournal(const fs::path& file) {
 
 std::int64_t allBytes(const fs::path& journal) {
     std::int64_t sum = 0;
-    std::error_code error;
     for (std::uint32_t part = 1;; ++part) {
-        const auto size = fs::file_size(partOf(journal, part), error);
-        if (error) {
+        const host::RegularFile file(partOf(journal, part), host::RegularFile::Links::refused);
+        if (!file.error().empty()) {
             return sum;
         }
-        sum += static_cast<std::int64_t>(size);
+        sum += static_cast<std::int64_t>(file.size());
     }
 }
 

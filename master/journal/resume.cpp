@@ -237,7 +237,7 @@ RestoredSand restoreSand(const fs::path& journal, std::uint64_t step, const Rest
 
 std::optional<ResumedSession> readSession(const fs::path& journal, const std::string& scene) {
     std::error_code none;
-    if (!fs::exists(journal, none)) {
+    if (!fs::exists(fs::symlink_status(journal, none))) {
         return std::nullopt;
     }
     journal::JournalReader reader = openJournal(journal);

@@ -121,7 +121,9 @@ void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved) {
 }
 
 SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place, const sand::SurfaceReader& read) {
-    const host::RegularFile opened(file, host::RegularFile::Links::refused);
+    // Neither the file nor its folder in that of the session may be a link.
+    const std::filesystem::path folder = file.parent_path();
+    const host::RegularFile opened(folder.parent_path(), folder.filename() / file.filename());
     if (!opened.error().empty()) {
         throw base::InputError(fmt::format("{}: {}; nothing was loaded", file.string(), opened.error()));
     }

@@ -57,8 +57,8 @@ struct SavedSand {
 /// Writes saved sand, which is on disk when the function returns (format: docs/operator.md). Makes the folder. If it
 /// fails, throws base::InputError with one line, and an earlier file stays unchanged.
 void writeSavedSand(const std::filesystem::path& file, const SavedSand& saved);
-/// Reads saved sand. Throws base::InputError with one line if the file cannot be read, if its sand belongs to another
-/// place than `place`, or if `read` cannot decode it.
+/// Reads a file of saveFile(). Throws base::InputError with one line if the file or its folder is a link or cannot be
+/// read, if its sand belongs to another place than `place`, or if `read` cannot decode it.
 [[nodiscard]] SavedSand readSavedSand(const std::filesystem::path& file, const SandPlace& place,
                                       const sand::SurfaceReader& read);
 

@@ -12,7 +12,7 @@ namespace scene {
 /// Tells what the numbers of a terrain mean, and how the program knows it. Programs print it when they have read
 /// terrain, so that a user sees a wrong unit before hours of work.
 struct RasterStatement {
-    std::string file;
+    std::string file;                   // as a user would name it; in an encoded scene without its folder
     std::string across, acrossFrom;     // unit of lengths, and what named it: "metres", "EPSG:32633"
     std::string up, upFrom;             // unit of heights, and what named it
     std::optional<std::string> noData;  // number of the file that means no data; nullopt if the file declares none

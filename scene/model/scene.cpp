@@ -42,7 +42,12 @@ struct Parts {
             base::putMember(writer, Part{Part::Kind::georeference, base::encoded(scene.georeference)});
         }
         if (scene.statements && withStatements) {
-            base::putMember(writer, Part{Part::Kind::statements, base::encoded(Statements{*scene.statements})});
+            Statements named{*scene.statements};
+            for (RasterStatement& statement : named.statements) {
+                // A journal is given to other people, and its reader has no use for the folders of this machine.
+                statement.file.erase(0, statement.file.rfind('/') + 1);
+            }
+            base::putMember(writer, Part{Part::Kind::statements, base::encoded(named)});
         }
     }
     void get(base::ByteReader& reader) const requires(!std::is_const_v<AnyScene>) {

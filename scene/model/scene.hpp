@@ -54,7 +54,8 @@ struct Scene : sand::Start {
     [[nodiscard]] MaterialGrid grid() const {
         return {rules.scheme, rules.stepsPerSecond, terrain.cellSize(), std::max(rules.columns, rules.rows)};
     }
-    /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins.
+    /// Returns the whole scene as bytes, which the master broadcasts and with which the journal begins. The bytes name
+    /// files without their folders.
     [[nodiscard]] base::Bytes encode() const;
     /// Returns whether `bytes` are this scene. The statements do not count, because the same scene may be read by
     /// another path, and journals of earlier builds have none.

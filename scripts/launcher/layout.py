@@ -73,8 +73,13 @@ def found(kind, named):
 
 
 def journal_at(named):
-    """Returns the journal that a user has named: a file, or the journal in a session's folder."""
-    return str(pathlib.Path(named) / JOURNAL) if os.path.isdir(named) else named
+    """Returns the journal that a user has named: a file, or the journal in a session's folder.
+
+    If the name itself is a link to a file, returns that file, because nobody follows a link to a part of a journal.
+    """
+    if os.path.isdir(named):
+        return str(pathlib.Path(named) / JOURNAL)
+    return os.path.realpath(named) if os.path.islink(named) else named
 
 
 def session_at(named):

@@ -30,9 +30,12 @@ def connect(session, patience=PATIENCE_SECONDS):
         raise BadInput(f"{session}: cannot be opened ({error.strerror}); name the --out folder of a session") from None
     peer = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     peer.settimeout(patience)
+    control = None
     try:
-        # The path goes through the folder's descriptor, because the path of a socket has at most 107 bytes.
-        peer.connect(f"/proc/self/fd/{folder}/{SOCKET}")
+        # A link in a folder of another user could lead to the socket of another session of this user.
+        control = os.open(SOCKET, os.O_PATH | os.O_NOFOLLOW | os.O_CLOEXEC, dir_fd=folder)
+        # The path goes through a descriptor, because the path of a socket has at most 107 bytes. A link cannot be connected to.
+        peer.connect(f"/proc/self/fd/{control}")
     except PermissionError:
         raise BadInput(f"{session}: belongs to another user; only that user may command the session") from None
     except (FileNotFoundError, ConnectionRefusedError):
@@ -41,6 +44,8 @@ def connect(session, patience=PATIENCE_SECONDS):
         raise BadInput(f"{session}: cannot be reached ({error})") from None
     finally:
         os.close(folder)
+        if control is not None:
+            os.close(control)
     return peer
 
 

@@ -9,12 +9,14 @@ import pathlib
 import stat
 import time
 
+import layout
 from rank_hosts import BadInput
 
 PATIENCE = 5  # seconds to wait for a session that is ending
 OTHERS_WRITE = stat.S_IWGRP | stat.S_IWOTH
 FOLDERS = ("log", "checkpoints", "saves")
 JOURNAL = "session.journal"  # first part of the names of all parts
+MAGIC = b"SWJL"  # with which each part begins (docs/journal.md)
 CONTINUED = ("divergence.txt", "drills.done", "failures.jsonl", "incidents.json", "recoveries.jsonl")  # files of a resumed session
 
 
@@ -102,18 +104,55 @@ def require_safe(path):
         raise BadInput(f"{path}: {why}; {advice}")
 
 
-def open_regular(path, flags, mode=0o644):
-    """Returns the descriptor of a regular file. Throws OSError for all else, also for a link, and never waits, for example for a pipe's reader."""
-    descriptor = os.open(path, flags | os.O_CLOEXEC | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_NOCTTY, mode)
+def open_regular(path, flags, mode=0o644, *, links=False, folder=None):
+    """Returns the descriptor of a regular file. Throws OSError for all else, and never waits, for example for a pipe's reader.
+
+    Follows a link only with `links`, for a file that a user has named. `folder` is the descriptor of the folder in which `path` is.
+    """
+    follow = 0 if links else os.O_NOFOLLOW
+    try:
+        descriptor = os.open(path, flags | os.O_CLOEXEC | follow | os.O_NONBLOCK | os.O_NOCTTY, mode, dir_fd=folder)
+    except OSError as error:
+        if error.errno != errno.ELOOP or links:
+            raise
+        raise OSError(errno.ELOOP, "is a link, which is not followed", str(path)) from None
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
         raise OSError(errno.EINVAL, "is not a regular file", str(path))
     return descriptor
 
 
-def read_text(path):
-    """Returns the text of a regular file. Throws OSError for all else, and ValueError if it is not UTF-8."""
-    with open(open_regular(path, os.O_RDONLY), encoding="utf-8") as file:
+def open_folder(path):
+    """Returns a descriptor of a folder, for names of files in it. A link may lead to it. Throws OSError."""
+    return os.open(path, os.O_PATH | os.O_DIRECTORY | os.O_CLOEXEC)
+
+
+def open_journal(path, folder=None):
+    """Returns the descriptor of a part of a journal, after a look at its first bytes. Throws OSError, and never follows a link."""
+    descriptor = open_regular(path, os.O_RDONLY, folder=folder)
+    try:
+        if os.pread(descriptor, len(MAGIC), 0) != MAGIC:
+            raise OSError(errno.EINVAL, "is not a journal", str(path))
+    except OSError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
+def require_journal(named):
+    """Throws BadInput unless a user has named a journal, or a session's folder with one in it."""
+    journal = layout.journal_at(named)
+    try:
+        os.close(open_regular(journal, os.O_RDONLY))
+    except OSError as error:
+        if error.errno in (errno.ELOOP, errno.EINVAL):
+            raise BadInput(f"{journal}: {error.strerror}; name the journal itself") from None
+        raise BadInput(f"{journal}: cannot be read ({error.strerror}); check the path") from None
+
+
+def read_text(path, links=False):
+    """Returns the text of a regular file. Throws OSError for all else, and ValueError if it is not UTF-8. `links` as for open_regular()."""
+    with open(open_regular(path, os.O_RDONLY, links=links), encoding="utf-8") as file:
         return file.read()
 
 

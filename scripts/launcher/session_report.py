@@ -116,7 +116,7 @@ class Report:
 
     def identity(self):
         try:
-            stat = (self.out / "summary.json").stat()
+            stat = (self.out / "summary.json").lstat()
             return stat.st_ino, stat.st_mtime_ns
         except OSError:
             return None

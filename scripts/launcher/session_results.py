@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the summary.json of a session (docs/summary.md)."""
 
+import errno
 import functools
 import pathlib
 import sys
@@ -8,6 +9,7 @@ import sys
 import checked_json
 import json_schema
 import layout
+import session_folder
 from rank_hosts import BadInput
 
 VERSION = 1  # version of summary.json, as in docs/schemas/summary.schema.json
@@ -21,17 +23,20 @@ def schema():
 
 
 def summary_of(path):
-    """Returns the content of a summary file, or of the one in a session's folder or beside its journal.
+    """Returns the content of a summary file, or of the one in a session's folder or beside its journal. The latter may not be a link.
 
     Raises BadInput if the file cannot be read, has another version, or is not as its schema says.
     """
     path = pathlib.Path(path)
-    if path.is_dir() or path.name == "session.journal":
+    inside = path.is_dir() or path.name == session_folder.JOURNAL
+    if inside:
         path = (path if path.is_dir() else path.parent) / "summary.json"
     named = checked_json.one_line(str(path))
     try:
-        found = checked_json.parse(path.read_text(encoding="utf-8"))
+        found = checked_json.parse(session_folder.read_text(path, links=not inside))
     except OSError as error:
+        if error.errno in (errno.ELOOP, errno.EINVAL):
+            raise BadInput(f"{named}: {error.strerror}; name the summary.json of a session itself") from None
         raise BadInput(f"{named}: cannot be read ({error.strerror}); the session has not ended in order") from None
     except ValueError as error:
         raise BadInput(f"{named}: is not JSON ({checked_json.one_line(str(error), 200)}); name the summary.json of a session") from None

@@ -195,7 +195,7 @@ class Supervisor:
 
     def journal_identity(self):
         try:
-            return (self.out / JOURNAL).stat().st_ino
+            return (self.out / JOURNAL).lstat().st_ino
         except OSError:
             return None
 

@@ -103,6 +103,9 @@ TEST_F(Dem, AsATinOverOneAndFourRanksIsOneAndGoesHome) {
     EXPECT_EQ(resumed.status, 0) << resumed.output;
     EXPECT_EQ(summary()["steps"], 92);
     EXPECT_EQ(summary()["terrain"], result["terrain"]);
+    const std::string journal = read("out/session.journal");
+    EXPECT_NE(journal.find("hills.tif"), std::string::npos);
+    EXPECT_EQ(journal.find(folder_.string()), std::string::npos) << "a journal names files without folders";
 }
 
 }  // namespace

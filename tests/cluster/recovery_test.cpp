@@ -72,6 +72,10 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
     EXPECT_GE(summary()["steps"], lastShown);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
+    const std::string journal = read("out/session.journal");
+    EXPECT_TRUE(std::regex_search(journal, std::regex("rank [0-2]: SIG(ABRT|KILL)"))) << "it has the failures";
+    EXPECT_EQ(journal.find(" on "), std::string::npos) << "a journal names no host, as in: rank 1 on node01";
+    EXPECT_EQ(journal.find(folder_.string()), std::string::npos) << "a journal names no folder";
 }
 
 // Whether there is memory depends on the host. So a rank without memory for a step must end, and not leave the step

@@ -46,6 +46,43 @@ TEST_F(Files, ARegularFileIsReadUpToALimit) {
     EXPECT_EQ(host::RegularFile(folder_ / "none").error(), "No such file or directory");
 }
 
+TEST_F(Files, ARegularFileIsReadFromAnyPlace) {
+    const host::RegularFile file(written("text", "sand and rock"));
+    std::vector<std::uint8_t> bytes;
+    const auto from = [&](std::uint64_t offset, std::size_t size) {
+        EXPECT_TRUE(file.readAt(offset, size, bytes));
+        return std::string(bytes.begin(), bytes.end());
+    };
+    EXPECT_EQ(from(5, 3), "and");
+    EXPECT_EQ(from(9, 100), "rock") << "fewer bytes at the end";
+    EXPECT_EQ(from(13, 4), "");
+    EXPECT_EQ(from(1000, 4), "");
+    EXPECT_FALSE(host::RegularFile(folder_ / "none").readAt(0, 1, bytes));
+}
+
+TEST_F(Files, AFileOfAFolderIsOpenedThroughNoLinkInTheFolder) {
+    using Links = host::RegularFile::Links;
+    std::filesystem::create_directories(folder_ / "real" / "saves");
+    written("real/saves/a", "sand");
+    written("real/b", "rock");
+    std::filesystem::create_directory_symlink("real", folder_ / "link");
+    EXPECT_EQ(host::RegularFile(folder_ / "link", "saves/a").error(), "") << "a link to the folder itself";
+    EXPECT_EQ(host::RegularFile(folder_ / "link", "b").error(), "");
+    EXPECT_EQ(host::RegularFile(folder_ / "link", "saves/none").error(), "No such file or directory");
+    EXPECT_EQ(host::RegularFile(folder_ / "link", "none/a").error(), "No such file or directory");
+    EXPECT_EQ(host::RegularFile(folder_ / "link", "b/a").error(), "Not a directory");
+    EXPECT_EQ(host::RegularFile(folder_ / "none", "a").error(), "No such file or directory");
+    EXPECT_EQ(host::RegularFile(folder_ / "real", "saves").error(), "is not a regular file");
+    std::filesystem::create_symlink(folder_ / "real" / "b", folder_ / "real" / "saves" / "c");
+    std::filesystem::create_directory_symlink("saves", folder_ / "real" / "loads");
+    for (const char* name : {"saves/c", "loads/a"}) {
+        EXPECT_EQ(host::RegularFile(folder_ / "real", name).error(), "is a link, which is not followed") << name;
+    }
+    const auto path = folder_ / "real" / "saves" / "c";
+    EXPECT_EQ(host::RegularFile(path, Links::refused).error(), "is a link, which is not followed");
+    EXPECT_EQ(host::RegularFile(path).error(), "");
+}
+
 TEST_F(Files, APipeADeviceAndAFolderAreRefusedWithoutWaiting) {
     support::makePipe(folder_ / "pipe");
     EXPECT_TRUE(support::endsByItself([this] {

@@ -95,6 +95,23 @@ TEST_F(Recoveries, CountBySteadyClocksFromTheFailure) {
     EXPECT_DOUBLE_EQ(failure.secondsAgo(kNow, kStarted, "here/1"), 0);
 }
 
+TEST(FailureInAJournal, NamesTheRankAndHowItFailedAndNoHost) {
+    const auto text = [](std::optional<int> rank, const std::string& how) {
+        return master::withoutHosts({"rank 3 on node02 was killed (its output: node02:/tmp/x)", rank, how, 0});
+    };
+    EXPECT_EQ(text(3, "SIGKILL"), "rank 3: SIGKILL");
+    EXPECT_EQ(text(0, "status 3"), "rank 0: status 3");
+    EXPECT_EQ(text(1, "SIGRTMIN+5"), "rank 1: SIGRTMIN+5");
+    EXPECT_EQ(text({}, "signal 64"), "signal 64");
+    for (const char* how : {"hung", "broken", "disk"}) {
+        EXPECT_EQ(text({}, how), how);
+    }
+    EXPECT_EQ(text({}, ""), "the start");
+    for (const char* other : {"node02", "status 3 on node02", "SIGKILL@node02", "hung on node02", "status\n3"}) {
+        EXPECT_EQ(text(2, other), "rank 2: failed") << other;
+    }
+}
+
 TEST_F(Recoveries, ALineWithAValueThatNoSessionWritesIsNamedAndLeftOut) {
     master::reportRecovery({.failure = {.what = "rank 2 died", .rank = 2, .how = "SIGKILL"}, .step = 7, .frame = 8},
                            folder_);

@@ -84,6 +84,25 @@ TEST_F(Replay, RefusesAFieldThatDoesNotFitItsMemoryBeforeItsHeightsAreMade) {
     }
 }
 
+TEST_F(Replay, RefusesALinkInAFolderAndTakesOneThatIsNamed) {
+    record();
+    const std::filesystem::path session = folder_ / "session";
+    std::filesystem::create_directory(session);
+    std::filesystem::create_symlink(journal(), session / "session.journal");
+    for (const char* question : {"", "--verify", "--hash", "--export /dev/null", "--recover new"}) {
+        const support::Ran ran = support::runProgram("sandwall-replay", session.string() + " " + question);
+        EXPECT_EQ(ran.status, 2) << question;
+        EXPECT_EQ(ran.output, "sandwall-replay: " + (session / "session.journal").string() +
+                                  ": is a link, which is not followed; name the journal itself\n")
+            << question;
+        EXPECT_FALSE(std::filesystem::exists(path("new")));
+    }
+    for (const char* question : {"", "--verify", "--hash", "--export /dev/null"}) {
+        const std::string named = (session / "session.journal").string() + " " + question;
+        EXPECT_EQ(support::runProgram("sandwall-replay", named).status, 0) << question;
+    }
+}
+
 TEST_F(Replay, RefusesStepsBelowZero) {
     record();
     for (const char* number : {"-1", "-99999"}) {

@@ -10,6 +10,7 @@
 
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
+#include "master/journal/resume.hpp"
 #include "sand/replica.hpp"
 #include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
@@ -183,6 +184,21 @@ TEST_F(Replay, RecoversWhatStandsBeforeTheDamage) {
     const support::Ran again = support::runProgram("sandwall-replay", journal() + " --recover " + file);
     EXPECT_EQ(again.status, 2);
     EXPECT_NE(again.output.find("is there already"), std::string::npos) << again.output;
+}
+
+TEST_F(Replay, ARecoveredJournalNamesNoHostThatAnEarlierBuildHasWritten) {
+    record();
+    {
+        const auto session = master::readSession(journal(), "");
+        master::JournalWriter writer(session->place, "test");
+        writer.resume({session->frame, {session->step, session->hash}, 0, "rank 1 on node02 was killed by SIGKILL"});
+        writer.finish(session->step, session->hash);
+    }
+    ASSERT_NE(read("s.journal").find("node02"), std::string::npos);
+    EXPECT_EQ(replay("--recover " + path("new.journal")).status, 0);
+    EXPECT_EQ(read("new.journal").find("node02"), std::string::npos);
+    EXPECT_EQ(master::readJournal(path("new.journal")).resumes.size(), 1U);
+    EXPECT_EQ(support::runProgram("sandwall-replay", path("new.journal") + " --verify").status, 0);
 }
 
 TEST_F(Replay, SaysWhatItReplayedWhereNothingElseIsAskedFor) {

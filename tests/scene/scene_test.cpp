@@ -249,7 +249,9 @@ TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
     ASSERT_EQ(scene.statements.value().size(), 1U);
     EXPECT_EQ(scene.statements->front().noData, "-1");
     const base::Bytes bytes = scene.encode();
-    EXPECT_EQ(scene::Scene::decode(bytes).statements, scene.statements);
+    scene::RasterStatement named = scene.statements->front();
+    named.file = "t.asc";
+    EXPECT_EQ(scene::Scene::decode(bytes).statements, std::vector{named});
     EXPECT_EQ(scene::loadScene(write("flat.toml", kFlat)).statements.value().size(), 0U) << "no files";
 
     // An earlier build has written neither part nor its length.
@@ -276,6 +278,32 @@ TEST_F(SceneFile, WhatItsFilesMeanSurvivesItsEncoding) {
     placed.georeference.west = 7;
     EXPECT_FALSE(scene.isEncodedAs(placed.encode()));
     EXPECT_FALSE(placed.isEncodedAs(bytes));
+}
+
+// A journal begins with these bytes, and is given to other people.
+TEST_F(SceneFile, AnEncodedSceneNamesItsFilesWithoutTheirFolders) {
+    write("t.asc", "ncols 2\nnrows 2\ncellsize 1\n1 2\n3 4\n");
+    const std::string text =
+        "[material]\n[tool]\nradius = 1\n[terrain]\nkind = \"esri_ascii\"\nfile = \"t.asc\"\nbedrock = \"t.asc\"\n";
+    scene::Scene scene = scene::loadScene(write("s.toml", text));
+    ASSERT_EQ(scene.statements.value().size(), 2U);
+    EXPECT_NE(scene.statements->front().file, "t.asc") << "messages have the whole path";
+    scene.statements->push_back(scene.statements->front());
+    scene.statements->back().file = "NETCDF:\"/home/somebody/t.nc\":z";
+    scene.statements->push_back(scene.statements->front());
+    scene.statements->back().file = "folder/";
+    const base::Bytes bytes = scene.encode();
+    const std::string all(bytes.begin(), bytes.end());
+    for (const std::string& folder : {folder_.string(), std::string("somebody"), std::string("folder/")}) {
+        EXPECT_EQ(all.find(folder), std::string::npos) << folder;
+    }
+    std::vector<std::string> files;
+    const scene::Scene read = scene::Scene::decode(bytes);
+    for (const scene::RasterStatement& statement : read.statements.value()) {
+        files.push_back(statement.file);
+    }
+    EXPECT_EQ(files, (std::vector<std::string>{"t.asc", "t.asc", "t.nc\":z", ""}));
+    EXPECT_EQ(scene::Scene::decode(bytes).encode(), bytes);
 }
 
 // Five texts behind their lengths, a 1 and a text, and the double 0.5.

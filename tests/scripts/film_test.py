@@ -104,11 +104,26 @@ class Film(LauncherTest):
 
     def test_a_journal_that_is_missing_is_refused(self):
         (self.folder / "s.journal").unlink()
-        refusal = (2, "", "sandwall: s.journal: cannot be read; check the path\n")
+        refusal = (2, "", "sandwall: s.journal: cannot be read (No such file or directory); check the path\n")
         self.assertEqual(self.film(), refusal)
         self.assertFalse((self.folder / "out %d").exists())
         (self.folder / "s.journal").mkdir()  # a session's folder without a journal
-        self.assertEqual(self.film(), (2, "", "sandwall: s.journal/session.journal: cannot be read; check the path\n"))
+        self.assertEqual(self.film(), (2, "", "sandwall: s.journal/session.journal: cannot be read (No such file or directory); check the path\n"))
+
+    def test_a_link_in_a_sessions_folder_is_refused_and_a_named_one_is_taken(self):
+        journal = self.folder / "s.journal"
+        journal.rename(self.folder / "other")
+        journal.symlink_to("other")
+        self.assertEqual(self.film()[0], 0)
+        journal.unlink()
+        journal.mkdir()
+        (self.folder / "other").rename(journal / "session.journal")
+        status, printed, _ = self.film()
+        self.assertEqual(status, 0)
+        self.assertIn("--replay s.journal --film", printed, "the master must know that the folder was named")
+        (journal / "session.journal").rename(self.folder / "other")
+        (journal / "session.journal").symlink_to(self.folder / "other")
+        self.assertEqual(self.film(), (2, "", "sandwall: s.journal/session.journal: is a link, which is not followed; name the journal itself\n"))
 
     def test_a_wall_that_does_not_pass_the_check_is_refused_in_its_words(self):
         self.script("sandwall-check", "#!/bin/sh\necho 'sandwall-check: wall.toml:3: no' >&2; exit 2\n")

@@ -3,6 +3,7 @@
 """Tests what `sandwall ctl` answers without a master: its help, and while a session is being started again."""
 
 import re
+import socket
 import subprocess
 import unittest
 
@@ -42,6 +43,18 @@ class Ctl(Supervised):
         self.assertEqual(self.ctl("status")[2], "sandwall: out: the session is being started; try again in a moment\n")
         (self.folder / "off").touch()
         self.assertEqual(process.wait(60), 0)
+
+    def test_a_link_in_place_of_the_socket_commands_no_other_session(self):
+        for name in ("out", "mine"):
+            (self.folder / name).mkdir()
+        with socket.socket(socket.AF_UNIX) as listener:
+            listener.bind(str(self.folder / "mine" / "control"))
+            listener.listen()
+            listener.setblocking(False)
+            (self.folder / "out" / "control").symlink_to(self.folder / "mine" / "control")
+            self.assertEqual(self.ctl("stop"), (2, "", "sandwall: out: no session is running in this folder\n"))
+            with self.assertRaises(BlockingIOError):
+                listener.accept()
 
     def test_help_lists_every_verb_of_the_master(self):
         listed = re.findall(r'\{"([a-z-]+)", ".*", Verb::', (ROOT / "master/operator/operator_command.cpp").read_text())

@@ -17,10 +17,43 @@ from supervisor_fixture import Supervised
 
 import processes
 import session_folder
+import session_results
 from rank_hosts import BadInput
 
 
 NOBODY = 65534
+
+
+class Summary(unittest.TestCase):
+    """The summary of a session, read by session_results.summary_of()."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.file = self.folder / "summary.json"
+
+    def refusal(self, path):
+        with self.assertRaises(BadInput) as refused:
+            session_results.summary_of(path)
+        return str(refused.exception).replace(str(self.folder) + "/", "")
+
+    def test_a_link_to_another_summary_is_not_followed(self):
+        (self.folder / "other").write_text("{}")
+        self.file.symlink_to("other")
+        for named in (self.folder, self.folder / "session.journal"):
+            self.assertEqual(self.refusal(named), "summary.json: is a link, which is not followed; name the summary.json of a session itself")
+        self.assertIn("the summary has version 0", self.refusal(self.file))  # a user has named the link itself
+
+    def test_pipes_and_folders_are_no_summary(self):
+        line = "summary.json: is not a regular file; name the summary.json of a session itself"
+        os.mkfifo(self.file)
+        self.assertEqual((self.refusal(self.folder), self.refusal(self.file)), (line, line))
+        self.file.unlink()
+        self.file.mkdir()
+        self.assertEqual(self.refusal(self.folder), line)
+        self.file.rmdir()
+        self.assertEqual(self.refusal(self.folder), "summary.json: cannot be read (No such file or directory); the session has not ended in order")
 
 
 class Folder(Supervised):

@@ -41,7 +41,7 @@ TEST_F(JournalMemory, OfAMissingJournalIsRefused) {
     EXPECT_EQ(test::refusalOf([&] {
                   master::requireMemoryOfJournal({{"a", kGibibyte}}, journal_);
               }),
-              journal_.string() + ": cannot be read; check the path");
+              journal_.string() + ": cannot be read (No such file or directory); check the path");
 }
 
 }  // namespace
