@@ -38,8 +38,8 @@ inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step
 /// Sets the share of its forces that the hand feels from now on. Part of every Start, and sent after every change.
 struct ForceShare {
     double share = 1;  // 0 to 1
-    // Whether an operator of this session has set the share. If not, the server's own --force and --force-scale are a
-    // ceiling.
+    // Whether an operator of this session has set the share. It may then exceed the own --force and --force-scale of a
+    // server with --force-until-ctl.
     bool byOperator = false;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -143,6 +143,7 @@ struct CatchUp {
     static void fields(Self& it, Visit& visit) {
         visit("last", it.last);
         visit("steps", base::upTo<std::uint16_t>(it.steps, kMaxCatchUp));
+    double forceCeiling = 1;  // share of the force that no message lifts, 0 to 1
     }
     friend bool operator==(const CatchUp&, const CatchUp&) = default;
 };
@@ -152,7 +153,9 @@ struct CatchUp {
 /// Answers Start as soon as the server's replica has the same sand. Steps follow.
 struct Ready {
     template <class Self, class Visit>
-    static void fields(Self& /*it*/, Visit& /*visit*/) {}
+    static void fields(Self& it, Visit& visit) {
+        visit("force_ceiling", base::limited(it.forceCeiling, 0, 1));
+    }
     friend bool operator==(const Ready&, const Ready&) = default;
 };
 /// Asks for the sand of Start, because the server's replica differs. The master answers with CatchUps or a State.

@@ -128,9 +128,9 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
     service.log = print;
-    service.shareForce = [&hand, ceiling = options.force ? options.forceScale : 0](const auto& sent) {
-        hand.shareForce(feltShare(ceiling, sent));
-    };
+    const OwnForce own{options.force ? options.forceScale : 0, options.forceUntilCtl};
+    service.shareForce = [&hand, own](const auto& sent) { hand.shareForce(feltShare(own, sent)); };
+    service.forceCeiling = own.ceiling();
     service.tests = options.tests;
     return service;
 }

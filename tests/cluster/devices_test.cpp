@@ -116,6 +116,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
     expectHand(*session);
     ASSERT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
     EXPECT_TRUE(ask("status")["force_share"].is_null());
+    EXPECT_EQ(ask("status")["force_ceiling"], 1);
     (void)ask("force off");
     ASSERT_TRUE(session->waitUntil([&] { return lastAre(true); })) << session->output();
 

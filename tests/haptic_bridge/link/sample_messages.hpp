@@ -34,7 +34,7 @@ inline std::vector<Message> oneOfEach() {
             Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
             Start{2, 40, 99, {0.5, true}},
-            Ready{},
+            Ready{0.25},
             NeedState{8, 9},
             State{{1, 2, 3}},
             StepMessage{-5, 17, someStep()},
