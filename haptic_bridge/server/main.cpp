@@ -56,7 +56,11 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     report.handTicks = hand.handTicks().all();
     report.feltTicks = hand.handTicks().felt();
     report.faultedTicks = hand.handTicks().faulted();
+    report.handSeconds = hand.handTicks().seconds();
+    report.faultedSeconds = hand.handTicks().faultedSeconds();
+    report.asked = hand.handTicks().asked();
     report.literal = hand.guards().mode() == Guards::Mode::literal;
+    report.arm = hand.device().physics() != nullptr;
     return report;
 }
 

@@ -137,6 +137,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
     session->signal(SIGINT);
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_EQ(forces().back(), 0);
+    EXPECT_GT(summary()["haptic"]["asked_ticks"]["off"], 1000);
 }
 
 TEST_F(Force, FadesWhileTheMasterHangs) {
@@ -151,6 +152,7 @@ TEST_F(Force, FadesWhileTheMasterHangs) {
     session->signal(SIGINT);
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_GT(summary()["haptic"]["guarded_ticks"]["frozen"], 0);
+    EXPECT_GT(summary()["haptic"]["asked_ticks"]["steps"], 0);
     EXPECT_EQ(forces().back(), 0);
 }
 

@@ -28,6 +28,8 @@ inline std::vector<Message> oneOfEach() {
     report.handTicks = 5;
     report.feltTicks = 4;
     report.faultedTicks = 2;
+    report.handSeconds = 1;
+    report.asked.back() = 3;
     report.literal = true;
     report.audited = Audited::differed;
     return {Hello{identity, Role::watch, true, true, {1, 2}},
