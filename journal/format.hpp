@@ -170,7 +170,7 @@ public:
 /// Result of searchLaterWrite().
 struct LaterWrite {
     bool found = false;
-    std::uint64_t hashed = 0;  // [byte], how many bytes were hashed for the answer, each counted as often as it was
+    std::uint64_t hashed = 0;  // [byte], all work of the search; a byte that is hashed twice counts twice
 };
 /// Searches for the begin of another write anywhere in `rest`, which begins with a broken record at `offset` [byte] of
 /// its part. If one is found, the broken record had been on disk and was damaged later. Otherwise a crash has torn the

@@ -75,7 +75,7 @@ class Handler(http.server.BaseHTTPRequestHandler):
             try:
                 if found := source.opened(path):
                     return found
-            except OSError:  # it is missing, or is no regular file
+            except OSError:  # it is missing, or another kind of file
                 return None
         return None
 

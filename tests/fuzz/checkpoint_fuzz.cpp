@@ -13,9 +13,9 @@ SANDWALL_FUZZER(checkpoint) {
         return 0;
     }
     static const scene::Scene kScene = samples::flatScene(24, 16);
-    const fuzz::MemoryFile file(fuzz::checksummed({data, size}));
+    const base::Bytes file = fuzz::checksummed({data, size});
     fuzz::takeOrRefuse([&] {
-        const master::Checkpoint checkpoint = master::readCheckpoint(file.path());
+        const master::Checkpoint checkpoint = master::Checkpoint::decode(file);
         sand::Replica replica(kScene);
         replica.decodeState(checkpoint.state);
         (void)replica.stateHash();

@@ -2,8 +2,8 @@
 // Fuzzes a journal, either as it is or put together from records with correct checksums. The correct checksums let the
 // fuzzer reach the contents of the records.
 #include "host/version.hpp"
+#include "journal/memory_parts.hpp"
 #include "journal/recording.hpp"
-#include "master/journal/journal.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -44,10 +44,12 @@ SANDWALL_FUZZER(journal) {
     const fuzz::Input input = fuzz::Input(data, size).subspan(1);
     const bool whole = (data[0] & 1U) != 0;
     const base::Bytes made = whole ? base::Bytes{} : journalOf(input);
-    const fuzz::MemoryFile file(whole ? input : fuzz::Input(made));
+    const fuzz::Input bytes = whole ? input : fuzz::Input(made);
     fuzz::takeOrRefuse([&] {
-        journal::Journal journal = master::readJournal(file.path());
-        const journal::Recording recording(std::move(journal), file.path(), 30);
+        auto parts =
+            std::make_unique<journal::MemoryParts>("journal", std::vector<base::Bytes>{{bytes.begin(), bytes.end()}});
+        journal::JournalReader reader(std::move(parts), host::release());
+        const journal::Recording recording(journal::readAll(reader), "journal", 30);
         (void)recording.stepsOf(1);
     });
     return 0;

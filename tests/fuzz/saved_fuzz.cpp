@@ -17,11 +17,11 @@ SANDWALL_FUZZER(saved) {
     static const std::array<scene::Scene, 2> kScenes{samples::flatScene(24, 16), samples::tinScene()};
     static const fuzz::ScratchFolder kScratch;
     const scene::Scene& scene = kScenes.at((data[0] >> 1U) & 1U);
-    const fuzz::MemoryFile file(fuzz::checksummed({data, size}));
+    kScratch.write("given.sand", fuzz::checksummed({data, size}));
     fuzz::takeOrRefuse([&] {
         const auto place = master::SandPlace::of(scene);
         const auto read = sand::Replica(scene).sandReader();
-        const master::SavedSand saved = master::readSavedSand(file.path(), place, read);
+        const master::SavedSand saved = master::readSavedSand(kScratch.path() / "given.sand", place, read);
         const std::filesystem::path written = kScratch.path() / "again.sand";
         writeSavedSand(written, saved);
         const master::SavedSand again = master::readSavedSand(written, place, read);

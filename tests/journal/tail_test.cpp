@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes behind the last whole record of a journal: a torn write, damage in front of a later write, or bytes that
-// somebody has made up. The work is counted in bytes that are hashed.
+// The bytes behind the last whole record of a journal. They can be a torn write, damage in front of a later write, or
+// bytes that were made to look like records. The work is counted in bytes that are hashed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
