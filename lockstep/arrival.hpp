@@ -26,8 +26,8 @@ struct Arrival {
     std::int64_t dragged = 0, swept = 0, hashed = 0;
     // [pixel], present size of the window that the picture follows (walls::followsWindow); 0 without one
     std::array<std::int32_t, 2> window{};
-    // base::MonitorState of each output of the rank's tile, of which there are at most two. The others are 0, and fill
-    // the message without a gap.
+    // base::MonitorState of each output of the rank's tile. A tile has at most two outputs. The other numbers are 0, so
+    // that the message has no gap.
     std::array<std::uint8_t, 8> monitors{};
 };
 

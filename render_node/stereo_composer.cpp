@@ -28,7 +28,7 @@ void bindTexture(GLenum unit, GLuint texture) {
     glBindTexture(GL_TEXTURE_2D, texture);
 }
 
-/// Returns the index of an eye among those that a mode draws. Returns 0 if the mode does not draw it, as when a mode of
+/// Returns the index of an eye in walls::eyesOf(stereo). Returns 0 if the mode does not draw it, as when a mode of
 /// one eye is shown on the outputs of two.
 std::size_t eyeIndex(Stereo stereo, walls::Eye eye) {
     const auto eyes = walls::eyesOf(stereo);

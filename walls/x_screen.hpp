@@ -7,8 +7,8 @@
 
 namespace walls {
 
-/// Returns a text that is equal for two places exactly if their windows are on the same screen of the same X server, as
-/// far as their hosts and displays tell.
+/// Returns a text that is equal for two places whose windows are on the same screen of the same X server. It is as
+/// exact as their hosts and displays are.
 ///
 /// So ":0", ":0.0", "unix:0" and ":00" of one host are equal, and so is "node1:0" from any host. Names of hosts have no
 /// upper case. A place without a display has $DISPLAY, which a wall file does not know; it equals only such a place of

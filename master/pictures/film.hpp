@@ -23,8 +23,8 @@ constexpr auto valuesOf(FilmEye) {
 /// Writes the pictures of a film of the whole wall: FOLDER/frame_000001.png and so on. Used by one thread.
 ///
 /// Each picture is put together from all tiles. On a wall that draws one eye, it is the picture of this eye. If the
-/// wall's stereo mode packs both eyes into one picture, the film does so too, as if the wall were one tile, with
-/// swapped eyes if the wall swaps them. On other walls with two eyes, the film shows the left eye.
+/// wall's stereo mode packs both eyes into one picture, the film does so too, as if the wall were one tile. It
+/// swaps the eyes if the wall does. On other walls with two eyes, the film shows the left eye.
 class Film {
 public:
     /// With `eye` the film shows this eye instead. Throws base::InputError if `eye` is given and the wall draws only

@@ -21,9 +21,9 @@ constexpr std::int64_t kLookEveryNs = 250'000'000;     // [ns]
 constexpr std::int64_t kLookForNs = 2'000'000'000;     // [ns]
 constexpr std::int64_t kLookAtDarkNs = 1'000'000'000;  // [ns], between two looks at a monitor that is dark
 
-/// Returns GLFW's monitor of this name on which a full screen can have this size. Returns null if GLFW does not know it.
-/// Also returns null if GLFW takes it for one at another place, or has not learnt of its mode. A full screen would then
-/// be on another monitor, or in another mode.
+/// Returns GLFW's monitor of this name on which a full screen can have this size. Returns null if GLFW does not know
+/// it. Also returns null if GLFW takes it for one at another place, or has not learnt of its mode. A full screen would
+/// then be on another monitor, or in another mode.
 GLFWmonitor* knownToGlfw(const std::string& name, const ScreenRect& area, glm::ivec2 pixels) {
     const std::span<GLFWmonitor*> all = glfwMonitors();
     const auto found = std::ranges::find_if(all, [&](GLFWmonitor* monitor) {

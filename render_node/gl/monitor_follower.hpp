@@ -27,7 +27,7 @@ public:
     explicit MonitorFollower(const std::string& display) : watch_(display) {}
 
     /// Adds the window of an output that names a monitor. `index` is its number in state().
-    /// @param refreshRate  Of the full screen [Hz], or GLFW_DONT_CARE.
+    /// @param refreshRate  Refresh rate of the full screen [Hz], or GLFW_DONT_CARE.
     void add(GLFWwindow* window, const WindowRequest& wanted, int refreshRate, std::size_t index);
 
     /// Puts the windows where their monitors are, if a monitor has changed. Without a change it asks the server

@@ -64,7 +64,7 @@ public:
 
 private:
     [[nodiscard]] std::string nameOf(int rank) const;
-    /// Returns the line about the dark tiles, of which there is at least one.
+    /// Returns the line about the dark tiles. At least one tile must be dark.
     [[nodiscard]] std::string darkText() const;
     /// Returns whether the tool waits for sweeps, or has been noticeably slower than the hand.
     [[nodiscard]] bool motionIsSlow() const;

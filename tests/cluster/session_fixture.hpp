@@ -63,7 +63,8 @@ protected:
 
     std::unique_ptr<support::ChildProcess> start(const std::vector<std::string>& arguments) {
         // By default mpirun gives its ranks a second to end. Supervised sessions set the same 0.
-        std::vector<std::string> command{"/usr/bin/env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", "OMPI_MCA_odls_base_sigkill_timeout=0"};
+        std::vector<std::string> command{
+            "/usr/bin/env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", "OMPI_MCA_odls_base_sigkill_timeout=0"};
         command.insert(command.end(), environment_.begin(), environment_.end());
         command.insert(command.end(), {SANDWALL_SOURCE_DIR "/scripts/sandwall", "run"});
         command.insert(command.end(), arguments.begin(), arguments.end());

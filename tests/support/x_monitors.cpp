@@ -14,7 +14,7 @@ namespace {
 template <class Info>
 using Owned = std::unique_ptr<Info, void (*)(Info*)>;
 
-/// What the server knows of one monitor. The mode and the controller (CRTC) are None if it is off.
+/// A monitor as the server knows it. The mode and the controller (CRTC) are None if it is off.
 struct Known {
     Owned<XRRScreenResources> resources;
     RROutput output = None;

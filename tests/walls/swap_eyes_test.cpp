@@ -88,7 +88,7 @@ TEST(SwapEyes, IsInTheBytesOfAWall) {
     const Wall wall = withSwappedEyes(config("tiled_3x4.toml"), true);
     EXPECT_EQ(Wall::decode(wall.encode()), wall);
     Wall odd = wall;
-    odd.swapEyes = false;  // its outputs are still swapped
+    odd.swapEyes = false;  // the outputs are still swapped
     EXPECT_THROW((void)Wall::decode(odd.encode()), base::FormatError);
 }
 

@@ -141,7 +141,7 @@ std::string complaintAbout(const std::string& firstPlace, const std::string& sec
                                           "[[place]]\ntiles = [\"r1c2\"]\nmonitors = [\"DP-1\"]\n" + secondPlace));
 }
 
-// In an X display's name, [PROTOCOL/][HOST]:NUMBER[.SCREEN], the screen is 0 by default, and "unix" is no host.
+// The name of an X display is [PROTOCOL/][HOST]:NUMBER[.SCREEN]. No host and "unix" mean the machine itself.
 TEST(WallPlace, TakesOneDisplayForOneHoweverItIsSpelt) {
     for (const char* display : {":0.0", "unix:0", ":00", "unix:0.0", "unix/:0", ":0.00", "local/:0"}) {
         const std::string line = complaintAbout("display = \":0\"\n", fmt::format("display = \"{}\"\n", display));

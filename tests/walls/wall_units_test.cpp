@@ -12,7 +12,7 @@
 namespace walls {
 namespace {
 
-/// Returns a monitor of 0.531 m x 0.299 m on a desk, whose lengths are written in a unit of which a metre has `scale`.
+/// Returns a monitor of 0.531 m x 0.299 m on a desk. Its lengths are in a unit, and `scale` units are a metre.
 std::string deskIn(double scale) {
     return fmt::format(
         "name = \"desk\"\n[viewer]\neye = [0, 0, {:.6g}]\n[grid]\nrows = 1\ncolumns = 1\n"
