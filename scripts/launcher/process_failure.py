@@ -35,7 +35,8 @@ class Failure:
     rank: int = None  # the haptic server and mpirun have None
     how: str = ""  # for programs: SIGKILL, "status 3", "hung", "broken" or "disk"
     host_is_lost: bool = False  # the host must not draw any more
-    when: float = dataclasses.field(default_factory=time.time)
+    when: float = dataclasses.field(default_factory=time.time)  # time of day, to be printed
+    noticed: float = dataclasses.field(default_factory=time.monotonic)
     frame: int = None  # the last frame that was reported as shown
     step: int = None
     last_lines: list = dataclasses.field(default_factory=list)
