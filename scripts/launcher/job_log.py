@@ -55,7 +55,7 @@ class JobLog:
         self.frame = self.step = None  # the last frame and step that an event reported as shown
         self.shown_at = 0.0  # time of that event by the monotonic clock [s]
         self.hand = None  # time [s] of the last linked hand; before the first link, of the first report without a server
-        self.linked = None  # Unix time [s] of the last event about a hand that was linked or streams
+        self.linked = None  # time by the monotonic clock [s] of the last event about a hand that was linked or streams
         self.force = None  # share of the force that an operator has set in this try, 0 to 1
         self.refused = False  # whether the last attempt to link ended with a refusal by server or master
 
@@ -123,7 +123,7 @@ class JobLog:
                 self.hand = time.monotonic()
                 self.refused = False
         elif name == "link" and event.get("state") in ("linked", "streaming"):
-            self.linked = time.time()
+            self.linked = time.monotonic()
         elif name == "link" and event.get("state") == "refused":
             self.hand, self.refused = None, True  # the server answers, so it does not hang, and a restart would not help
         elif name == "without_hand" and event.get("reason") == "no_server":

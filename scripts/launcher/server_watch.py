@@ -73,7 +73,7 @@ class ServerWatch:
         self.failure = None
         # The wall has continued meanwhile, so the values about a replay are null.
         recovery = {"failure": failure.text, "failed_rank": None, "failed_how": failure.how, "seconds_to_next_frame": None,
-                    "seconds_to_link": log.linked - failure.when, "step": log.step or failure.step or 0,
+                    "seconds_to_link": log.linked - failure.noticed, "step": log.step or failure.step or 0,
                     "frame": log.frame or failure.frame or 0, "state_hash": None,
                     "checkpoint_step": None, "replayed_steps": None, "cut_bytes": None}
         try:
