@@ -24,6 +24,8 @@ std::string line(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
 /// Returns the material in the units in which an operator types it.
 Json materialNow(const scene::Material& material) {
     return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
@@ -139,8 +141,8 @@ bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
             views_.separateEyes(command.number);
             return true;
         case Verb::force:
-            shareForce(command.number);
-            return true;
+            shareForce(command.number, asker);
+            return false;
         case Verb::stereo:
             changeStereo(command.stereo);
             return true;
@@ -187,11 +189,25 @@ void OperatorDesk::askMaterial(const scene::Material& material, const Asker& ask
 }
 
 /// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
-void OperatorDesk::shareForce(double share) {
+void OperatorDesk::shareForce(double share, const Asker& asker) {
     session_.requests->shareForce(share);
     force_ = share;
     host::emitEvent("force", {{"share", share}});
     session_.keepForce(share);
+    const std::optional<double> ceiling = session_.requests->forceCeiling();
+    Json answer{{"ok", true}, {"force_share", share}, {"force_ceiling", orNull(ceiling)}};
+    const bool capped = ceiling && *ceiling < share;
+    if (capped) {
+        answer["note"] = fmt::format(
+            "the hand feels {:g} of the force, because --force or --force-scale of the haptic server is a ceiling; "
+            "start that server with a higher one, or with --force-until-ctl",
+            *ceiling);
+    }
+    if (asker.client) {
+        control_->answer(*asker.client, line(answer));
+    } else if (capped) {
+        host::printLine("{}", answer["note"].get<std::string>());
+    }
 }
 
 void OperatorDesk::changeStereo(walls::Stereo stereo) { showWall(stereo, window_); }
@@ -324,7 +340,8 @@ std::string OperatorDesk::status() const {
     status["stereo"] = std::string(walls::stereoName(shown_.stereo));
     status["eye_separation"] = views_.eyeSeparation();
     status["material"] = materialNow(material_);
-    status["force_share"] = force_ ? Json(*force_) : Json();
+    status["force_share"] = orNull(force_);
+    status["force_ceiling"] = orNull(session_.requests->forceCeiling());
     status["edits_waiting"] = edits_.size();
     return line(status);
 }

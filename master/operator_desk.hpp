@@ -94,7 +94,7 @@ private:
     [[nodiscard]] bool carryOut(const Command& command, const Asker& asker);
     void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
     void askMaterial(const scene::Material& material, const Asker& asker);
-    void shareForce(double share);
+    void shareForce(double share, const Asker& asker);
     void changeStereo(walls::Stereo stereo);
     void showWall(walls::Stereo stereo, glm::ivec2 window);
     void save(const std::string& name, const Asker& asker);
@@ -126,7 +126,7 @@ private:
         std::int64_t sinceNs = 0;  // [ns]
     };
     std::optional<Settling> settling_;
-    std::optional<double> force_;  // share of the force that an operator has set, 0 to 1
+    std::optional<double> force_;  // share of the force that an operator has set, 0 to 1, within any ceiling
     std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool film_;
     bool paused_ = false;

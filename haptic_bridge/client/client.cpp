@@ -66,6 +66,8 @@ std::string Client::lastFailure() const { return session_->shelf.failure(); }
 
 std::uint32_t Client::stepsPerSecond() const { return session_->shelf.stepsPerSecond(); }
 
+std::optional<double> Client::forceCeiling() const { return session_->shelf.forceCeiling(); }
+
 void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_->drill(drill, length); }
 
 void Client::stop() { session_->stop(); }

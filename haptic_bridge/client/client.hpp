@@ -136,7 +136,7 @@ public:
     /// Asks the server to put an operator's edit into its next step. Ignored unless the link is `linked`.
     void request(const sand::Edit& edit);
     /// Sets the share of the server's force that the hand feels from now on, also in later links. At first it is the
-    /// whole force, within the ceiling of the server's own options.
+    /// whole force, within the server's own options.
     void shareForce(const ForceShare& share);
     /// Returns the pieces of the server's tick track since the last call. The journal keeps them. Pieces that came
     /// before the link ended can still be drained. kMaxTicks bytes can wait; later pieces are dropped.
@@ -157,6 +157,9 @@ public:
     [[nodiscard]] std::string lastFailure() const;
     /// Returns the steps per second of the server's scene; 0 before the link was first `offered`.
     [[nodiscard]] std::uint32_t stepsPerSecond() const;
+    /// Returns the share of the force that shareForce() cannot exceed, because the server's own options are a ceiling;
+    /// nullopt unless the link is `linked`.
+    [[nodiscard]] std::optional<double> forceCeiling() const;
     /// Injects a fault into the connection. Ignored without a connection. `length` is for LinkDrill::silence.
     void drill(LinkDrill drill, std::chrono::milliseconds length);
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.

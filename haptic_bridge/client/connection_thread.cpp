@@ -214,12 +214,13 @@ void Client::Session::take(Link link, const NeedState& need) {
     }
 }
 
-void Client::Session::take(Link link, const Ready&) {
+void Client::Session::take(Link link, const Ready& ready) {
     if (link != Link::granting || !grant_) {
         outOfTurn();
         return;
     }
     grant_->begun();
+    shelf.setForceCeiling(ready.forceCeiling);
     retryPause_.linked(host::monotonicNs());
     const Start& start = grant_->start();
     shelf.setStatus(Link::linked,

@@ -174,6 +174,16 @@ std::uint32_t Shelf::stepsPerSecond() const {
     return stepsPerSecond_;
 }
 
+void Shelf::setForceCeiling(double share) {
+    const std::lock_guard lock(mutex_);
+    forceCeiling_ = share;
+}
+
+std::optional<double> Shelf::forceCeiling() const {
+    const std::lock_guard lock(mutex_);
+    return status_.link == Link::linked ? std::optional(forceCeiling_) : std::nullopt;
+}
+
 LinkCounters Shelf::counters() const {
     const std::lock_guard lock(mutex_);
     return counters_;

@@ -59,6 +59,9 @@ public:
     [[nodiscard]] std::int64_t clockOffsetNs() const;
     void setStepsPerSecond(std::uint32_t steps);
     [[nodiscard]] std::uint32_t stepsPerSecond() const;
+    void setForceCeiling(double share);
+    /// Returns the ceiling of the linked server; nullopt unless the link is `linked`.
+    [[nodiscard]] std::optional<double> forceCeiling() const;
     /// Calls change(counters) under the lock.
     template <class Change>
     void count(const Change& change) {
@@ -86,6 +89,7 @@ private:
     LinkCounters counters_;
     std::int64_t clockOffsetNs_ = 0;
     std::uint32_t stepsPerSecond_ = 0;
+    double forceCeiling_ = 1;
     bool full_ = false;
 };
 

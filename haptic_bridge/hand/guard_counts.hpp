@@ -54,29 +54,6 @@ inline constexpr std::size_t kGuards = valuesOf(Guard{}).size();
 inline constexpr std::uint32_t kFaults =
     bit(Guard::notANumber) | bit(Guard::stale) | bit(Guard::missed) | bit(Guard::lost) | bit(Guard::jumped);
 
-/// Number of ticks while a master is linked. One thread writes, any thread may read; no thread waits.
-class HandTicks {
-public:
-    /// Adds a tick in which the guards of the bits `acted` acted. `felt`: a force above 0 was pushed.
-    void add(std::uint32_t acted, bool felt) {
-        count(all_, true);
-        count(felt_, felt);
-        count(faulted_, (acted & kFaults) != 0);
-    }
-    [[nodiscard]] std::uint64_t all() const { return all_.load(std::memory_order_relaxed); }
-    /// Return the number of ticks that pushed a force above 0, and of those in which a fault pushed 0.
-    [[nodiscard]] std::uint64_t felt() const { return felt_.load(std::memory_order_relaxed); }
-    [[nodiscard]] std::uint64_t faulted() const { return faulted_.load(std::memory_order_relaxed); }
-
-private:
-    using Counter = std::atomic<std::uint64_t>;
-    static void count(Counter& counter, bool counts) {
-        counter.store(counter.load(std::memory_order_relaxed) + (counts ? 1 : 0), std::memory_order_relaxed);
-    }
-
-    Counter all_{0}, felt_{0}, faulted_{0};
-};
-
 /// Number of ticks in which each guard acted. One thread writes, any thread may read; no thread waits.
 class GuardCounts {
 public:

@@ -11,6 +11,7 @@
 
 #include "base/field_forms.hpp"
 #include "haptic_bridge/hand/frame_cost.hpp"
+#include "haptic_bridge/hand/held.hpp"
 #include "haptic_bridge/link/greetings.hpp"
 #include "haptic_bridge/link/message_forms.hpp"
 #include "haptic_bridge/link/report.hpp"
@@ -38,8 +39,8 @@ inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step
 /// Sets the share of its forces that the hand feels from now on. Part of every Start, and sent after every change.
 struct ForceShare {
     double share = 1;  // 0 to 1
-    // Whether an operator of this session has set the share. If not, the server's own --force and --force-scale are a
-    // ceiling.
+    // Whether an operator of this session has set the share. It may then exceed the own --force and --force-scale of a
+    // server with --force-until-ctl.
     bool byOperator = false;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
@@ -72,15 +73,6 @@ struct State {
     }
     friend bool operator==(const State&, const State&) = default;
 };
-/// Reason why the wall takes no steps, although it shows frames.
-enum class Held : std::uint8_t {
-    no,    // it takes steps
-    disk,  // the journal's disk has no room
-    pause  // an operator has paused the sand
-};
-constexpr auto valuesOf(Held) {
-    return std::array{base::Named{Held::no, "no"}, base::Named{Held::disk, "disk"}, base::Named{Held::pause, "pause"}};
-}
 /// Tells the server which step the wall shows. Sent after every frame of the wall.
 struct Shown {
     std::uint64_t stepNumber = 0;      // the last step that the wall shows
@@ -151,8 +143,11 @@ struct CatchUp {
 
 /// Answers Start as soon as the server's replica has the same sand. Steps follow.
 struct Ready {
+    double forceCeiling = 1;  // share of the force that no message lifts, 0 to 1
     template <class Self, class Visit>
-    static void fields(Self& /*it*/, Visit& /*visit*/) {}
+    static void fields(Self& it, Visit& visit) {
+        visit("force_ceiling", base::limited(it.forceCeiling, 0, 1));
+    }
     friend bool operator==(const Ready&, const Ready&) = default;
 };
 /// Asks for the sand of Start, because the server's replica differs. The master answers with CatchUps or a State.

@@ -6,6 +6,7 @@
 
 #include "base/field_forms.hpp"
 #include "haptic_bridge/hand/guard_counts.hpp"
+#include "haptic_bridge/hand/hand_ticks.hpp"
 #include "haptic_bridge/link/greetings.hpp"
 
 /// Measurements of a haptic server. protocol.hpp lists all messages.
@@ -60,10 +61,14 @@ struct Report {
     RefusalCounts refused{};                      // connections that the server refused
     std::uint64_t handTicks = 0;                  // ticks while a master was linked, under both paces
     std::uint64_t feltTicks = 0;                  // of these, ticks that pushed a force above 0
-    std::uint64_t faultedTicks = 0;               // of these, ticks in which a fault pushed 0 (kFaults)
+    std::uint64_t faultedTicks = 0;               // of these, ticks in which a fault acted (kFaults)
+    std::uint64_t handSeconds = 0;                // seconds with such a tick
+    std::uint64_t faultedSeconds = 0;             // of these, seconds with a fault
+    OutcomeCounts asked{};                        // ticks in which the law asks for force, by what the hand had of it
     bool literal = false;                         // the server runs with --guards literal
     std::uint64_t deviceLosses = 0;               // times that the device stopped to answer
     bool deviceAway = false;                      // the device does not answer now
+    bool arm = false;                             // the device has a body that forces push
     Audited audited = Audited::no;                // agreed or differed only in the last report of a link
     /// The order of the bytes. The names are the keys in `haptic` of summary.json (master/summary.hpp).
     template <class Self, class Visit>
@@ -91,12 +96,16 @@ struct Report {
         visit("hand_ticks", it.handTicks);
         visit("felt_ticks", it.feltTicks);
         visit("faulted_ticks", it.faultedTicks);
+        visit("hand_seconds", it.handSeconds);
+        visit("faulted_seconds", it.faultedSeconds);
+        visit("asked_ticks", base::byName<ForceOutcome>(it.asked));
         visit("steps_withheld_by", base::byName<Withheld>(it.stepsWithheld));
         visit("guarded_ticks", base::byName<Guard>(it.guards));
         visit("refused/connections", base::byName<RefusalCode>(it.refused));
         visit("literal", it.literal);
         visit("device_losses", it.deviceLosses);
         visit("device_away", it.deviceAway);
+        visit("arm", it.arm);
         visit("audited", it.audited);
     }
     friend bool operator==(const Report&, const Report&) = default;

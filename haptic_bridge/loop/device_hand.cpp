@@ -39,8 +39,8 @@ void ChannelHand::collect() {
 void ChannelHand::publish(const sand::Replica& replica, bool edited) {
     edits_ += edited ? 1 : 0;
     // The hand feels sand in which its oldest waiting movement is missing. The guards see how old that is.
-    const std::int64_t now = now_();
-    stepNs_ = std::min(now, engagedSinceNs().value_or(now));
+    madeNs_ = now_();
+    stepNs_ = std::min(madeNs_, engagedSinceNs().value_or(madeNs_));
     copy(replica);
 }
 
@@ -58,6 +58,8 @@ void ChannelHand::copy(const sand::Replica& replica) {
     next.edits = edits_;
     next.timeNs = copiedNs_ = now_();
     next.stepNs = stepNs_;
+    next.madeNs = madeNs_;
+    next.held = held();
     channel_.surface.publish();
 }
 
@@ -85,7 +87,8 @@ void VirtualHand::collect() {
 void VirtualHand::publish(const sand::Replica& replica, bool edited) {
     takeSurface(replica, hand_.probe(), surface_);
     surface_.edits += edited ? 1 : 0;
-    surface_.stepNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
+    surface_.stepNs = surface_.madeNs = static_cast<std::int64_t>(steps_ * 1000 / stepsPerSecond_) * kMillisecond;
+    surface_.held = held();
 }
 
 }  // namespace haptic_bridge

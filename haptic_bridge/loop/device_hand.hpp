@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "haptic_bridge/hand/hand.hpp"
@@ -31,6 +32,14 @@ public:
     static constexpr std::int64_t kRefreshNs = 10'000'000;  // [ns]
     /// Returns whether the times of the samples are on the host's monotonic clock [ns].
     [[nodiscard]] virtual bool onHostClock() const = 0;
+    /// Sets why the wall takes no steps, as its last frame told; nullopt before its first frame.
+    void hold(std::optional<Held> by) { held_ = by; }
+
+protected:
+    [[nodiscard]] std::optional<Held> held() const { return held_; }
+
+private:
+    std::optional<Held> held_;
 };
 
 /// Hand in real time: a force thread runs the ticks, and both threads meet in a channel without locks.
@@ -63,7 +72,8 @@ private:
     HandChannel& channel_;
     Clock now_;
     std::uint64_t edits_ = 0;                 // steps with an edit that were published
-    std::int64_t copiedNs_ = 0, stepNs_ = 0;  // [ns], of the last copy, and of the first copy of the last step
+    std::int64_t copiedNs_ = 0, madeNs_ = 0;  // [ns], of the last copy, and of the first copy of the last step
+    std::int64_t stepNs_ = 0;                 // FeltSand::stepNs
 };
 
 /// Hand under a virtual clock: the thread that makes steps also runs the ticks of the hand, as fast as it can.

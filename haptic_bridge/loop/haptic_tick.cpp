@@ -2,6 +2,7 @@
 #include "haptic_bridge/loop/haptic_tick.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -80,6 +81,7 @@ void HapticTick::letGo() noexcept {
 void HapticTick::restart() {
     model_ = sand::force::ForceModel(constants_);
     guards_.forget();
+    account_.forget();
     armVelocity_.restart();
     velocity_.restart();
     edits_.reset();
@@ -157,13 +159,28 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     tick_.lawful = forces.lawful;
     tick_.sent = forces.sent;
     tick_.guards = forces.acted;
-    counts_.add(forces.acted);
-    ticks_.add(forces.acted, norm(forces.sent) > 0);
+    count(surface, reading);
     if (sample.engaged) {
         forceCost_.add(host::monotonicNs() - begin);
     }
     push(forces.sent);
     return sample;
+}
+
+/// Counts the tick, which is complete.
+void HapticTick::count(const FeltSand& surface, const Guards::Reading& reading) {
+    const double made = static_cast<double>(input_.nowNs - surface.madeNs) * 1e-9, sent = norm(tick_.sent);
+    const bool known = reading.present && std::isfinite(norm(reading.place));
+    const auto outcome =
+        account_.tick({.time = tick_.time,
+                       .asked = known ? std::optional(askedForce(guards_, reading, tick_.lawful)) : std::nullopt,
+                       .sent = sent,
+                       .acted = tick_.guards,
+                       .share = input_.share,
+                       .clutch = input_.reading.second,
+                       .stopped = stoppedBy({tick_.stepAge, made, surface.held}, guards_.limits().stepSeconds)});
+    counts_.add(tick_.guards);
+    ticks_.add(tick_.time, tick_.guards, sent > 0, outcome);
 }
 
 /// Fills in the part of the tick that follows from input_ and from the place of the hand.

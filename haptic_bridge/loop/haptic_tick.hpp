@@ -12,7 +12,10 @@
 #include "base/triple_buffer.hpp"
 #include "haptic_bridge/hand/device.hpp"
 #include "haptic_bridge/hand/hand_mapping.hpp"
+#include "haptic_bridge/hand/hand_ticks.hpp"
+#include "haptic_bridge/hand/held.hpp"
 #include "haptic_bridge/hand/path_builder.hpp"
+#include "haptic_bridge/loop/force_account.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/tick.hpp"
@@ -30,7 +33,9 @@ struct FeltSand {
     std::uint64_t step = 0;     // number of the step after which the patch was taken
     std::uint64_t edits = 0;    // number of the link's steps with an edit, up to this step
     std::int64_t timeNs = 0;    // when the patch was published, on the clock of HapticTick::tick() [ns]
-    std::int64_t stepNs = 0;    // when the patch of this step was first published, on the same clock [ns]
+    std::int64_t stepNs = 0;    // from when on this step misses movement of the hand, or else madeNs [ns, same clock]
+    std::int64_t madeNs = 0;    // when the patch of this step was first published, on the same clock [ns]
+    std::optional<Held> held;   // of the wall's last frame; nullopt before its first frame
 };
 
 /// Runs the ticks of the force loop. A tick reads the device, quantises the pose, computes the law's force, guards it
@@ -100,6 +105,7 @@ private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
                const LawAtRadius& law);
     void fillTick(bool engaged);
+    void count(const FeltSand& surface, const Guards::Reading& reading);
     [[nodiscard]] bool feelsEdit(const FeltSand& surface);
     void setProbe(const sand::ProbePoint& probe);
     void push(sand::force::Vec3 force);
@@ -120,6 +126,7 @@ private:
     Tick tick_;
     base::LiveHistogram forceCost_;
     GuardCounts counts_;
+    ForceAccount account_;
     HandTicks ticks_;
 };
 

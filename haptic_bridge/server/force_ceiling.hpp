@@ -8,16 +8,24 @@
 
 namespace haptic_bridge {
 
-/// Returns the share of its force that the hand feels, 0 to 1.
-///
-/// @param ceiling  Share that the server's own --force and --force-scale allow. Only an operator of the linked session
-///                 may go beyond it.
-/// @param sent     The share that the linked master has sent; nullopt without a master.
-[[nodiscard]] inline double feltShare(double ceiling, const std::optional<ForceShare>& sent) {
+/// Share of the force that the command line of a server allows, 0 to 1.
+struct OwnForce {
+    double share = 1;  // --force and --force-scale
+    /// --force-until-ctl: an operator of the linked session may go beyond `share`. Only the command line can say so,
+    /// and no message.
+    bool untilOperator = false;
+
+    /// Returns the share that no message lifts.
+    [[nodiscard]] double ceiling() const { return untilOperator ? 1 : share; }
+};
+
+/// Returns the share of its force that the hand feels, 0 to 1. `sent` is the share that the linked master has sent;
+/// nullopt without a master.
+[[nodiscard]] inline double feltShare(const OwnForce& own, const std::optional<ForceShare>& sent) {
     if (!sent) {
         return 0;
     }
-    return sent->byOperator ? sent->share : std::min(sent->share, ceiling);
+    return std::min(sent->share, sent->byOperator ? own.ceiling() : own.share);
 }
 
 }  // namespace haptic_bridge

@@ -56,11 +56,15 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     report.handTicks = hand.handTicks().all();
     report.feltTicks = hand.handTicks().felt();
     report.faultedTicks = hand.handTicks().faulted();
+    report.handSeconds = hand.handTicks().seconds();
+    report.faultedSeconds = hand.handTicks().faultedSeconds();
+    report.asked = hand.handTicks().asked();
     report.literal = hand.guards().mode() == Guards::Mode::literal;
     if (const TroubleCounts* troubles = hand.device().troubles()) {
         report.deviceLosses = troubles->losses();
         report.deviceAway = troubles->away();
     }
+    report.arm = hand.device().physics() != nullptr;
     return report;
 }
 
@@ -132,9 +136,9 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     service.identity = {kProtocolVersion, sand::kAlgorithmVersion, scene.rules.digest(), scene.name};
     service.stepsPerSecond = static_cast<std::uint32_t>(scene.rules.stepsPerSecond);
     service.log = print;
-    service.shareForce = [&hand, ceiling = options.force ? options.forceScale : 0](const auto& sent) {
-        hand.shareForce(feltShare(ceiling, sent));
-    };
+    const OwnForce own{options.force ? options.forceScale : 0, options.forceUntilCtl};
+    service.shareForce = [&hand, own](const auto& sent) { hand.shareForce(feltShare(own, sent)); };
+    service.forceCeiling = own.ceiling();
     service.tests = options.tests;
     return service;
 }

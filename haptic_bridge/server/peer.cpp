@@ -89,7 +89,7 @@ void Peer::ready() {
     connection_->expectState(false);
     connection_->expectLoads(true);
     log(fmt::format("linked, epoch {} from step {}", grant_.epoch, grant_.firstStep));
-    connection_->send(Ready{});
+    connection_->send(Ready{service_.forceCeiling});
     tickTimingTest(service_.tests.after);
 }
 

@@ -22,14 +22,17 @@ void ServerOptions::addTo(host::CommandLine& line) {
         .metavar("FILE.csv")
         .offeredBy({"run"});
     line.choice<bool>("--force", force, {{"on", true}, {"off", false}},
-                      "whether an arm feels a force, until `ctl force` sets a share; with --resume it replaces the "
-                      "share that `ctl` had set")
+                      "whether an arm feels a force. Of `run`: until `ctl force` sets a share; with --resume it "
+                      "replaces the share that `ctl` had set. Of a server that you start: a ceiling; docs/devices.md")
         .offeredBy({"run"});
     line.option("--force-scale", forceScale,
                 "0 to 1: the share of the force that an arm feels, in the same way as --force")
         .metavar("SHARE")
         .range(0.0, 1.0)
         .offeredBy({"run"});
+    line.flag("--force-until-ctl", forceUntilCtl,
+              "--force and --force-scale hold until `ctl force` sets a share, as for the server of `sandwall run`; "
+              "without it they are a ceiling; docs/devices.md");
     line.choice<Guards::Mode>(
             "--guards", guards, {{"on", Guards::Mode::on}, {"literal", Guards::Mode::literal}},
             "literal: the law as its paper prints it, without force limits, for simulated arms only; not for driver: "

@@ -24,6 +24,7 @@ struct ServerOptions {
     std::string record;
     bool force = true;
     double forceScale = 1;
+    bool forceUntilCtl = false;
     LinkOptions link;
 
     /// Adds these options to `line`.

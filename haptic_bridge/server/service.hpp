@@ -27,6 +27,7 @@ struct Service {
     std::function<std::vector<base::Bytes>(bool all)> ticks = {};
     /// Takes the master's share of the force. nullopt: no master is linked, and 0 is pushed.
     std::function<void(const std::optional<ForceShare>&)> shareForce = [](const auto&) {};
+    double forceCeiling = 1;  // share of the force that no message lifts (OwnForce::ceiling())
     TimingTests tests = {};
     LinkSecurity security = {};
     SandThread* sandThread = nullptr;  // set by Listener::serve()

@@ -94,6 +94,7 @@ void StepMaker::shown(const Shown& frame, std::int64_t nowNs) {
     // The master's number is not trusted: shown_ never falls, and never passes the last step that was sent.
     shown_ = std::max(shown_, std::min(frame.stepNumber, replica_.stepNumber()));
     held_ = frame.held;
+    hand_.hold(held_);
     clock_.frameShown(nowNs, frame.frameIntervalNs);
     budget_.shown(frame.cost, shown_);
 }
@@ -131,6 +132,7 @@ void StepMaker::begin() {
     edit_ = {};
     shown_ = start_.stepNumber;
     held_.reset();
+    hand_.hold(held_);
     clock_.start(now_());
     hand_.begin(replica_);
     output_.ready(session_);

@@ -48,6 +48,7 @@ public:
     [[nodiscard]] StepRequests* requests() override { return this; }
     void request(sand::Edit edit) override { edits_.add(std::move(edit)); }
     void shareForce(double share) override { link_.shareForce(share); }
+    [[nodiscard]] std::optional<double> forceCeiling() const override { return link_.forceCeiling(); }
 
     void shown(const haptic_bridge::Shown& frame) override;
     /// If the hashes differ, connects again, so that the server starts from the wall's state.

@@ -41,6 +41,10 @@ public:
 
     /// Sets the share of the force for this client and later ones.
     void shareForce(double share);
+    /// Returns haptic_bridge::Client::forceCeiling().
+    [[nodiscard]] std::optional<double> forceCeiling() const {
+        return client_ ? client_->forceCeiling() : std::nullopt;
+    }
     /// Keeps a fault until startDrills().
     void drill(const lockstep::Fault& fault) { drills_.push_back(fault); }
     /// Injects the faults that wait. Only with a client.

@@ -16,10 +16,19 @@ MOST_LATENCY_P99_MS = 500  # of the 99th percentile [ms]
 MOST_FRAMES_WITHOUT_HAND = 0.1  # of the frames since the last start [1]
 LONGEST_WAIT_FOR_HAND = 5  # after a restart, the time without a hand from which it counts as one that never came [s]
 MOST_TICKS_FAULTED, BAD_TICKS_FAULTED = 0.01, 0.5  # of the ticks with a hand [1]
+LEAST_FORCE, BAD_FORCE = 0.5, 0.1  # of the ticks that ask for force, those in which the hand has at least half of it [1]
+MOST_TICKS_RAMPED = 2000  # [ticks] without force that two faults explain: each is followed by 1000 below half, in its ramp of 2 s
+BAD_SECONDS_FAULTED, LEAST_SECONDS_FAULTED = 0.1, 3  # of the seconds with a hand [1], and at least so many [s]
 MOST_SLOW_MOTION = 1.1  # time of the hand that has passed, divided by that which is in steps [1]
 MOST_SKEW_PERIODS = 1  # of the 99th percentile [period of the wall]
 
-FAULTS = ("not_a_number", "lost", "missed", "jumped", "stale")  # guards that push 0 because of a fault (docs/forces.md)
+# Causes for which the hand has less than half of the force (docs/forces.md), in the words of the line force. Nobody is to
+# blame for CHOSEN; the arm, the link or this machine for FAULTY.
+CHOSEN = {"off": "force is off", "share": "a share of the force", "clutch": "the clutch", "pause": "a pause",
+          "start": "the start of a link"}
+SLOW = {"slow_motion": "slow motion", "disk": "a full disk", "growth": "force that grows", "damped": "damping"}
+FAULTY = {"steps": "no steps", "not_a_number": "fault not_a_number", "stale": "fault stale", "missed": "fault missed",
+          "lost": "fault lost", "jumped": "fault jumped"}
 
 
 def counted(number, one, many=None):
@@ -45,6 +54,14 @@ def wall(summary, _):
     told = len(summary["per_rank"])
     words = f"{summary['wall']}, {counted(summary['ranks'], 'render rank')}"
     return (GOOD, words) if told == summary["ranks"] else (UNMEASURED, f"{words}; not measured: {told} reported at the end")
+
+
+def views(summary, _):
+    blank = [rank for rank in summary["per_rank"] if not rank["views"]["in_part"] + rank["views"]["whole"]]
+    if not blank or shown_frames(summary) < 1:
+        return None
+    named = ", ".join(f"rank {rank['rank']} (tile {rank['tile']}) on {rank['host']}" for rank in blank)
+    return NOTE, f"no view was drawn in {counted(shown_frames(summary), 'frame')} {START} by {named}"
 
 
 def frames(summary, _):
@@ -114,19 +131,27 @@ def force(summary, _):
     if not haptic.get("hand_ticks"):
         return UNMEASURED, f"not measured: {'no tick had a hand' if 'hand_ticks' in haptic else 'no report of a haptic server'} {START}"
     ticks, faulted, guards = haptic["hand_ticks"], haptic["faulted_ticks"], haptic["guarded_ticks"]
-    words = f"pushed in {haptic['felt_ticks']} of {counted(ticks, 'tick')} {SERVER_START}"
+    outcomes, seconds, faulty = dict(haptic["asked_ticks"].items()), haptic["hand_seconds"], haptic["faulted_seconds"]
+    asked, had = sum(outcomes.values()), outcomes["half"]
+    not_chosen = asked - sum(outcomes[cause] for cause in CHOSEN)
+    by_fault = sum(outcomes[cause] for cause in FAULTY)
+    words = f"at least half of it in {had} of {counted(asked, 'tick')} that ask for force, of {counted(ticks, 'tick')} {SERVER_START}"
+    if less := named_counts({what: outcomes[cause] for cause, what in (CHOSEN | SLOW | FAULTY).items()}):
+        words += f"; less because of: {less}"
     if faulted:
-        words += f"; a fault sent 0 in {faulted}, {percent(faulted / ticks)}"
-    if acted := named_counts({name: guards[name] for name in guards if name != "frozen"}):
+        words += f"; a fault in {faulted}, {percent(faulted / ticks)}, and in {faulty} of {counted(seconds, 'second')}"
+    if acted := named_counts(dict(guards.items())):
         words += f"; guards that acted: {acted}"
-    if guards.get("frozen"):
-        words += f"; frozen in {guards['frozen']}"
     if never_answered(haptic):
         return BAD, f"the device answered in no tick; {words}"
     if haptic["literal"]:
         words = f"guards literal, without force limits; {words}"
-    noted = haptic["literal"] or guards.get("not_a_number") or faulted > MOST_TICKS_FAULTED * ticks
-    return BAD if faulted > BAD_TICKS_FAULTED * ticks else NOTE if noted else GOOD, words
+    often = faulty >= LEAST_SECONDS_FAULTED and faulty > BAD_SECONDS_FAULTED * seconds
+    if (faulted > BAD_TICKS_FAULTED * ticks or haptic["arm"] and often  # nobody feels the faults of a recording
+            or by_fault > MOST_TICKS_RAMPED and had < BAD_FORCE * (had + by_fault)):
+        return BAD, words
+    noted = (often or haptic["literal"] or guards.get("not_a_number") or faulted > MOST_TICKS_FAULTED * ticks or had < LEAST_FORCE * not_chosen)
+    return NOTE if noted else GOOD, words
 
 
 def strokes(summary, _):

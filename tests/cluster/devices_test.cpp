@@ -116,6 +116,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
     expectHand(*session);
     ASSERT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
     EXPECT_TRUE(ask("status")["force_share"].is_null());
+    EXPECT_EQ(ask("status")["force_ceiling"], 1);
     (void)ask("force off");
     ASSERT_TRUE(session->waitUntil([&] { return lastAre(true); })) << session->output();
 
@@ -136,6 +137,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
     session->signal(SIGINT);
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_EQ(forces().back(), 0);
+    EXPECT_GT(summary()["haptic"]["asked_ticks"]["off"], 1000);
 }
 
 TEST_F(Force, FadesWhileTheMasterHangs) {
@@ -150,6 +152,7 @@ TEST_F(Force, FadesWhileTheMasterHangs) {
     session->signal(SIGINT);
     EXPECT_EQ(session->wait(kLong), 0) << session->output();
     EXPECT_GT(summary()["haptic"]["guarded_ticks"]["frozen"], 0);
+    EXPECT_GT(summary()["haptic"]["asked_ticks"]["steps"], 0);
     EXPECT_EQ(forces().back(), 0);
 }
 

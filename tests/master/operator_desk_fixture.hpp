@@ -29,9 +29,11 @@ class Requests : public master::StepRequests {
 public:
     void request(sand::Edit edit) override { edits.push_back(std::move(edit)); }
     void shareForce(double share) override { shares.push_back(share); }
+    [[nodiscard]] std::optional<double> forceCeiling() const override { return ceiling; }
 
     std::vector<sand::Edit> edits;
     std::vector<double> shares;
+    std::optional<double> ceiling;  // of the linked server
 };
 
 /// A desk without a wall. Clients talk to it through its control socket.

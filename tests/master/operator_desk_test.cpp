@@ -149,6 +149,22 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_EQ(ask("status")["force_share"], 0.25);
 }
 
+TEST_F(Desk, TellsTheCeilingOfTheServerBesideAShareAboveIt) {
+    json told = ask("force on");
+    EXPECT_TRUE(told["force_ceiling"].is_null()) << "no server is linked";
+    EXPECT_FALSE(told.contains("note"));
+    requests_.ceiling = 0.25;
+    told = ask("force on");
+    EXPECT_EQ(told["ok"], true);
+    EXPECT_EQ(told["force_share"], 1);
+    EXPECT_EQ(told["force_ceiling"], 0.25);
+    EXPECT_TRUE(told["note"].get<std::string>().starts_with("the hand feels 0.25 of the force")) << told;
+    EXPECT_EQ(ask("status")["force_ceiling"], 0.25);
+    EXPECT_FALSE(ask("force scale 0.25").contains("note"));
+    requests_.ceiling = 1;
+    EXPECT_FALSE(ask("force on").contains("note"));
+}
+
 TEST_F(Desk, ShowsTheSandAsWetAsAnOperatorMakesIt) {
     EXPECT_EQ(desk_->views().at(0).humidity, 0);
     const std::future<json> answer = send("material humidity 0.3");

@@ -210,16 +210,25 @@ TEST(Summary, SaysWhatTheDeviceGot) {
     summary.haptic->handTicks = 900;
     summary.haptic->feltTicks = 300;
     summary.haptic->faultedTicks = 5;
+    summary.haptic->handSeconds = 2;
+    summary.haptic->faultedSeconds = 1;
+    summary.haptic->asked[static_cast<std::size_t>(haptic_bridge::ForceOutcome::slowMotion)] = 7;
     summary.haptic->literal = true;
     summary.haptic->deviceLosses = 2;
     summary.haptic->deviceAway = true;
+    summary.haptic->arm = true;
     const nlohmann::json haptic = written(summary)["haptic"];
     EXPECT_EQ(haptic["hand_ticks"], 900);
     EXPECT_EQ(haptic["felt_ticks"], 300);
     EXPECT_EQ(haptic["faulted_ticks"], 5);
+    EXPECT_EQ(haptic["hand_seconds"], 2);
+    EXPECT_EQ(haptic["faulted_seconds"], 1);
+    EXPECT_EQ(haptic["asked_ticks"]["slow_motion"], 7);
+    EXPECT_EQ(haptic["asked_ticks"]["half"], 0);
     EXPECT_EQ(haptic["literal"], true);
     EXPECT_EQ(haptic["device_losses"], 2);
     EXPECT_EQ(haptic["device_away"], true);
+    EXPECT_EQ(haptic["arm"], true);
 }
 
 TEST(Summary, NamesNobodyWhereNoneStandsOut) {

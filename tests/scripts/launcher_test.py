@@ -104,7 +104,7 @@ class PrintedCommands(DisplayTest):
     def test_a_device_needs_a_server_started_before(self):
         server, job = self.printed(["-"], "--device", "script:gis").splitlines()
         self.assertEqual(server, "sandwall-haptic-server --scene scene.toml --device script:gis "
-                         "--listen 127.0.0.1:7750 --pace realtime")
+                         "--listen 127.0.0.1:7750 --force-until-ctl --pace realtime")
         self.assertIn(" --haptic 127.0.0.1:7750 ", job)
 
     def test_what_a_hand_feels_is_for_the_server(self):

@@ -8,6 +8,8 @@ GUARDS = dict.fromkeys(("not_a_number", "stiffness", "damping", "friction", "sle
                         "jumped", "frozen", "contact", "gate"), 0)
 SPREAD = {"p50": 1.0, "p99": 2.0, "max": 3.0}
 DISTRIBUTION = {"mean": 30.0, "stddev": 2.0, "p50": 29.5, "p99": 44.0}
+OUTCOMES = dict.fromkeys(("half", "off", "share", "clutch", "pause", "start", "slow_motion", "disk", "growth", "damped", "steps", "not_a_number",
+                          "stale", "missed", "lost", "jumped"), 0)
 TRIP = {**DISTRIBUTION, "count": 0}
 
 
@@ -34,7 +36,8 @@ SUMMARY = {
                "refused": {"servers": REFUSALS, "connections": REFUSALS}, "force_us": {"p50": 2.0, "p99": 3.0}, "half_round_trip_ms": TRIP,
                "half_round_trip_to_master_ms": TRIP, "step_message_bytes": 140.0, "steps_withheld": 0,
                "steps_withheld_by": {"wall": 0, "disk": 0, "pause": 0, "start": 0}, "samples_dropped": 0, "ticks": 10400, "ticks_missed": 0,
-               "literal": False, "device_losses": 0, "device_away": False, "hand_ticks": 10000, "felt_ticks": 4000, "faulted_ticks": 0, "guarded_ticks": {**GUARDS, "ramp": 500}},
+               "literal": False, "device_losses": 0, "device_away": False, "arm": True, "hand_ticks": 10000, "felt_ticks": 4000, "faulted_ticks": 0, "hand_seconds": 10, "faulted_seconds": 0,
+               "asked_ticks": {**OUTCOMES, "half": 3600, "start": 400}, "guarded_ticks": {**GUARDS, "ramp": 500}},
     "master_memory_bytes": 1 << 26,
     "journal": {"policy": "required", "state": "written", "whole": True, "parts": 1, "checkpoints": 1, "checkpoints_failed": 0,
                 "checkpoints_beyond": 0, "checkpoint_copy_ms": SPREAD, "full_disk": {"times": 0, "seconds": 0.0}},
@@ -54,6 +57,11 @@ def changed(**fields):
             part = part[key]
         part[last] = value
     return summary
+
+
+def outcomes(**counts):
+    """Returns `asked_ticks` with these counts. The others are 0."""
+    return {**OUTCOMES, **counts}
 
 
 def without_hand(**fields):

@@ -9,7 +9,7 @@ import unittest
 import jsonschema
 
 from launcher_fixture import ROOT
-from sample_summary import HEAD, RECOVERY, REFUSALS, SUMMARY, changed, film, without_hand
+from sample_summary import HEAD, OUTCOMES, RECOVERY, REFUSALS, SUMMARY, changed, film, outcomes, rank, without_hand
 
 import session_lines
 import session_rules
@@ -141,9 +141,10 @@ class Lines(unittest.TestCase):
 
     def only(self, name, mark, *words, failures=(), **fields):
         """Checks a line, and that no other line of the session is marked."""
-        self.check(name, mark, *words, failures=failures, **fields)
+        said = self.check(name, mark, *words, failures=failures, **fields)
         marked = [line[:2] for line in session_rules.lines_of(changed(**fields), failures) if line[0] in (NOTE, BAD)]
         self.assertEqual(marked, [(mark, name)])
+        return said
 
 
 class GoodSessions(Lines):
@@ -228,6 +229,13 @@ class SlowWalls(Lines):
         self.only("recoveries", NOTE, "2 in the session, 1 of them by --resume, the wall stood still for 5.0 s", recoveries=[RECOVERY, by_hand])
         self.assertNotIn("--resume", self.check("recoveries", NOTE, recoveries=[RECOVERY]))
 
+    def test_a_rank_that_draws_nothing_is_noted(self):
+        blank = {**rank(2), "views": {"skipped": 600, "in_part": 0, "whole": 0, "pixel_share": 0.0}}
+        self.only("views", NOTE, "no view was drawn in 600 frames since the last start by rank 2 (tile r1c2) on node01", per_rank=[rank(1), blank])
+        self.check("views", NOTE, "in 598 frames", frames_before=2, per_rank=[blank, {**blank, "views": {**blank["views"], "skipped": 0}}])
+        self.check("views", None, per_rank=[rank(1), {**blank, "views": {**blank["views"], "in_part": 1}}])
+        self.check("views", None, frames_before=600, per_rank=[blank])
+
     def test_the_slowest_rank_is_noted(self):
         self.only("slowest", NOTE, "rank 2, last in 90 % of frames", slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0})
 
@@ -255,10 +263,48 @@ class Hands(Lines):
 
     def test_faults_are_a_note_and_more_than_half_are_bad(self):
         for faulted, mark in ((100, GOOD), (101, NOTE), (5000, NOTE), (5001, BAD)):
-            self.check("force", mark, f"a fault sent 0 in {faulted}", haptic__faulted_ticks=faulted, haptic__guarded_ticks__missed=faulted)
+            self.check("force", mark, f"a fault in {faulted}", haptic__faulted_ticks=faulted, haptic__guarded_ticks__missed=faulted)
         self.only("force", NOTE, "not_a_number 1", haptic__guarded_ticks__not_a_number=1)
         self.only("force", NOTE, "guards literal", haptic__literal=True)
-        self.check("force", GOOD, "frozen in 9000", "guards that acted: ramp 500", haptic__guarded_ticks__frozen=9000)
+        self.check("force", GOOD, "guards that acted: ramp 500", haptic__guarded_ticks__frozen=9000)
+
+    def test_faults_in_more_than_a_tenth_of_the_seconds_are_bad(self):
+        # An arm that loses one reading in 250: 0.4 % of the ticks, and each second.
+        self.only("force", BAD, "a fault in 40, 0.4 %, and in 10 of 10 seconds", haptic__faulted_ticks=40, haptic__faulted_seconds=10)
+        for seconds, faulty, mark in ((10, 2, GOOD), (10, 3, BAD), (30, 3, GOOD), (29, 3, BAD)):
+            self.check("force", mark, haptic__hand_seconds=seconds, haptic__faulted_seconds=faulty, haptic__faulted_ticks=faulty)
+            self.check("force", NOTE if mark == BAD else mark, haptic__hand_seconds=seconds, haptic__faulted_seconds=faulty,
+                       haptic__faulted_ticks=faulty, haptic__arm=False)
+
+    def test_a_hand_with_less_than_half_of_the_force_is_noted_and_below_a_tenth_bad_if_arm_or_link_are_to_blame(self):
+        for cause in session_lines.SLOW:
+            self.check("force", GOOD, haptic__asked_ticks=outcomes(half=2000, **{cause: 2000}))
+            self.only("force", NOTE, f"{session_lines.SLOW[cause]} 9840", haptic__asked_ticks=outcomes(half=160, **{cause: 9840}))
+        for cause in session_lines.FAULTY:
+            # 2001 ticks are more than two ramps; the tenth of 2223 ticks is 222.3.
+            for half, faulty, mark in ((2000, 2000, GOOD), (1999, 2000, NOTE), (222, 2001, BAD), (223, 2001, NOTE), (0, 2000, NOTE)):
+                self.only_force(mark, outcomes(half=half, **{cause: faulty}))
+        # 65 of 18,344 ticks with force: the master stands still for 0.35 s in each second.
+        self.only("force", BAD, "at least half of it in 65 of 18344 ticks that ask for force, of 18344 ticks", "the start of a link 1000, no steps 17279",
+                  haptic__hand_ticks=18344, haptic__hand_seconds=19, haptic__asked_ticks=outcomes(half=65, start=1000, steps=17279))
+
+    def test_slow_motion_is_a_note_however_little_the_hand_had(self):
+        said = self.only("force", NOTE, "less because of: slow motion 9830", haptic__asked_ticks=outcomes(half=160, slow_motion=9830, steps=10))
+        self.assertIn("at least half of it in 160 of 10000", said)
+
+    def test_what_a_person_has_chosen_is_named_and_has_no_mark(self):
+        self.check("force", GOOD, "at least half of it in 0 of 7459 ticks", "less because of: force is off 7459", haptic__felt_ticks=0,
+                   haptic__asked_ticks=outcomes(off=7459))
+        for cause, words in session_lines.CHOSEN.items():
+            self.check("force", GOOD, f"{words} 9000", haptic__asked_ticks=outcomes(half=100, **{cause: 9000}))
+            self.check("force", NOTE, f"{words} 9000", haptic__asked_ticks=outcomes(half=100, growth=101, **{cause: 9000}))
+
+    def only_force(self, mark, asked):
+        self.check("force", mark, haptic__asked_ticks=asked) if mark == GOOD else self.only("force", mark, haptic__asked_ticks=asked)
+
+    def test_each_outcome_has_words(self):
+        causes = {**session_lines.CHOSEN, **session_lines.SLOW, **session_lines.FAULTY}
+        self.assertEqual(["half", *causes], list(OUTCOMES))
 
     def test_a_server_that_died_for_good_is_bad(self):
         half = {"hand": {**SUMMARY["hand"], "frames_with_hand": 300, "linked_at_end": False}}
@@ -358,7 +404,7 @@ class Disks(Lines):
         self.only("head", NOTE, "of strangers 2", head_tracking={**HEAD, "strangers": 2})
 
 
-SAMPLES = (SUMMARY, without_hand(), film(),
+SAMPLES = (SUMMARY, without_hand(), film(), changed(per_rank=[{**rank(1), "views": {"skipped": 0, "in_part": 0, "whole": 0, "pixel_share": 0.0}}]),
            changed(head_tracking={**HEAD, "lost": 2}, slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0}),
            changed(recoveries=[RECOVERY, {**RECOVERY, "seconds_to_next_frame": None, "seconds_to_link": 1.5}], held_seconds__pause=2.0, edits=2),
            changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),

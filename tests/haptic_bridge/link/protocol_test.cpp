@@ -50,7 +50,7 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
-// Each of 52 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
+// Each of 70 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
 TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
     Report report{.hapticPeriodUsP50 = 1,
                   .hapticPeriodUsP99 = 2,
@@ -61,7 +61,7 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .toMaster = {10, 11, 12, 13, 20},
                   .stepBytesMean = 14,
                   .steps = 15,
-                  .stepsWithheld = {24, 25, 26, 27},
+                  .stepsWithheld = {42, 43, 44, 45},
                   .samplesDropped = 16,
                   .ticks = 17,
                   .ticksMissed = 18,
@@ -70,23 +70,29 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .handTicks = 21,
                   .feltTicks = 22,
                   .faultedTicks = 23,
+                  .handSeconds = 24,
+                  .faultedSeconds = 25,
+                  .asked = {},
                   .literal = true,
-                  .deviceLosses = 53,
+                  .deviceLosses = 71,
                   .deviceAway = true,
+                  .arm = true,
                   .audited = Audited::differed};
-    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{28});
-    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{43});
+    std::iota(report.asked.begin(), report.asked.end(), std::uint64_t{26});
+    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{46});
+    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{61});
     const base::Bytes framed = encode(report);
     base::ByteReader reader(withoutLength(framed).subspan(1));
     for (int number = 1; number <= 14; ++number) {
         EXPECT_EQ(reader.get<double>(), number);
     }
-    for (std::uint64_t number = 15; number <= 52; ++number) {
+    for (std::uint64_t number = 15; number <= 70; ++number) {
         EXPECT_EQ(reader.get<std::uint64_t>(), number);
     }
     EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "literal guards";
-    EXPECT_EQ(reader.get<std::uint64_t>(), 53) << "losses of the device";
+    EXPECT_EQ(reader.get<std::uint64_t>(), 71) << "losses of the device";
     EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "it is away";
+    EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "an arm";
     EXPECT_EQ(reader.get<std::uint8_t>(), 2) << "the audit: differed";
     EXPECT_TRUE(reader.atEnd());
     EXPECT_EQ(decode(withoutLength(framed)), Message(report));
@@ -133,8 +139,9 @@ TEST(Protocol, RefusesACauseOrAResultThatHasNoName) {
     EXPECT_FALSE(refuses(Shown{}, held, 2));
     EXPECT_TRUE(refuses(Shown{}, held, 3)) << "a reason to hold the sand";
     EXPECT_TRUE(refuses(Shown{}, 1, 255)) << "a time below zero";
-    EXPECT_FALSE(refuses(Report{}, 2, 1));
-    EXPECT_TRUE(refuses(Report{}, 2, 2)) << "a mark of literal guards";
+    EXPECT_FALSE(refuses(Report{}, 3, 1));
+    EXPECT_TRUE(refuses(Report{}, 3, 2)) << "a mark of literal guards";
+    EXPECT_TRUE(refuses(Report{}, 2, 2)) << "a mark of an arm";
     EXPECT_FALSE(refuses(Report{}, 1, 2));
     EXPECT_TRUE(refuses(Report{}, 1, 3)) << "the result of an audit";
 }

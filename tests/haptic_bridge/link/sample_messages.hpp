@@ -28,6 +28,8 @@ inline std::vector<Message> oneOfEach() {
     report.handTicks = 5;
     report.feltTicks = 4;
     report.faultedTicks = 2;
+    report.handSeconds = 1;
+    report.asked.back() = 3;
     report.literal = true;
     report.deviceLosses = 3;
     report.deviceAway = true;
@@ -36,7 +38,7 @@ inline std::vector<Message> oneOfEach() {
             Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
             Start{2, 40, 99, {0.5, true}},
-            Ready{},
+            Ready{0.25},
             NeedState{8, 9},
             State{{1, 2, 3}},
             StepMessage{-5, 17, someStep()},

@@ -95,8 +95,30 @@ TEST_F(WayAround, AServerPushesNothingBeforeAndAfterAMaster) {
     EXPECT_EQ(greatest(0.5), 0);
 }
 
-TEST_F(WayAround, AnOperatorsShareHoldsOverTheServersOptionsInBothDirections) {
+TEST_F(WayAround, NoMessageLiftsTheForceOfAServerThatAPersonHasStarted) {
     open(restsAt(1), 0);  // --force off
+    server_->link({1, true});
+    server_->run(1);
+    server_->share(ForceShare{1, true});
+    server_->run(3);
+    EXPECT_EQ(greatest(4), 0);
+    open(restsAt(1));
+    server_->link({1, true});
+    server_->run(3);
+    const double whole = force();
+    ASSERT_GT(whole, 1);
+    open(restsAt(1), 0.4);  // --force-scale
+    server_->link({1, true});
+    server_->run(3);
+    EXPECT_NEAR(force(), 0.4 * whole, 0.01 * whole);
+    server_->share(ForceShare{0.1, true});
+    server_->run(1);
+    EXPECT_NEAR(force(), 0.1 * whole, 0.01 * whole) << "an operator can lower it";
+}
+
+TEST_F(WayAround, AnOperatorsShareHoldsOverTheOptionsOfTheSessionsOwnServerInBothDirections) {
+    open(restsAt(1), 0);  // --force off
+    server_->forceUntilCtl = true;
     server_->link();
     server_->run(3);
     EXPECT_EQ(greatest(3), 0) << "no operator has set a share";

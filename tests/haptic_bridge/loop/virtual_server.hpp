@@ -53,7 +53,7 @@ public:
         maker_.release();
     }
     void share(const std::optional<haptic_bridge::ForceShare>& sent) {
-        hand_->shareForce(haptic_bridge::feltShare(ceiling_, sent));
+        hand_->shareForce(haptic_bridge::feltShare({ceiling_, forceUntilCtl}, sent));
     }
     void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
 
@@ -100,9 +100,12 @@ public:
         return hand_->guardCounts().all()[static_cast<std::size_t>(guard)];
     }
 
-    std::vector<Push> pushes;      // that the arm got
-    bool sandIsStopped = false;    // the wall shows no steps: a pause, a full disk, a master that hangs
-    bool sandThreadHangs = false;  // the thread that makes steps does nothing
+    std::vector<Push> pushes;    // that the arm got
+    bool sandIsStopped = false;  // the wall shows no steps: a master that hangs, or the reason in `held`
+    haptic_bridge::Held held = haptic_bridge::Held::no;  // why the wall shows frames without steps, in sandIsStopped
+    haptic_bridge::FrameCost cost;                       // of each frame
+    bool forceUntilCtl = false;                          // the server was started with --force-until-ctl
+    bool sandThreadHangs = false;                        // the thread that makes steps does nothing
     std::function<void(const base::Bytes& stepMessage)> onStep;
 
 private:
@@ -119,8 +122,9 @@ private:
         maker_.collect();
         if (maker_.running() && now_ >= maker_.due()) {
             maker_.makeStep();
-            if (!sandIsStopped) {
-                maker_.shown({maker_.sand().stepNumber(), 16'666'667}, now_);
+            shown_ = sandIsStopped ? shown_ : maker_.sand().stepNumber();
+            if (!sandIsStopped || held != haptic_bridge::Held::no) {
+                maker_.shown({shown_, 16'666'667, sandIsStopped ? held : haptic_bridge::Held::no, cost}, now_);
             }
         }
         maker_.refresh();

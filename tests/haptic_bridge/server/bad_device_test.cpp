@@ -89,21 +89,24 @@ TEST_F(BadDevice, IsNotOpenedForAVirtualClockOrForForcesWithoutLimits) {
     }
 }
 
-TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeel) {
-    for (const bool asked : {false, true}) {
+TEST_F(BadDevice, FeelsWhatTheOperatorLetsItFeelWithinTheCeilingOfItsOwnOptions) {
+    for (const bool untilCtl : {false, true}) {
         auto all = words("press:" + folder_.file("pushed"));
         all.insert(all.end(), {"--force", "off"});
+        if (untilCtl) {
+            all.emplace_back("--force-until-ctl");
+        }
         ServerProcess server(folder_, all);
         Client client(server.address(), offerOf(scene_));
         Wall wall(scene_);
         ASSERT_TRUE(wall.follow(client, 10)) << client.link().message << "\n" << server.errors();
-        if (asked) {
-            client.shareForce({0.5, true});
-        }
+        EXPECT_EQ(client.forceCeiling(), untilCtl ? 1 : 0);
+        client.shareForce({0.5, true});
         ASSERT_TRUE(wall.follow(client, 90)) << client.link().message << "\n" << server.errors();
         client.stop();
         EXPECT_EQ(server.stop(SIGTERM), 0) << server.errors();
-        EXPECT_EQ(std::stod(folder_.read("pushed")) > 0, asked) << folder_.read("pushed");
+        EXPECT_EQ(std::stod(folder_.read("pushed")) > 0, untilCtl) << folder_.read("pushed");
+        EXPECT_EQ(client.forceCeiling(), std::nullopt) << "no server is linked";
     }
 }
 
