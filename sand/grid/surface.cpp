@@ -135,9 +135,10 @@ std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
 }
 
 SurfaceReader GridSurface::reader() const {
-    return [columns = field_.columns(), rows = field_.rows(), cellSize = field_.cellSize(),
+    const FieldFaces faces{field_.columns(), field_.rows(), rules_.rim, rules_.aspect};
+    return [faces, cellSize = field_.cellSize(),
             ground = ground_](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, columns, rows, cellSize, ground.get()));
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}));
     };
 }
 
