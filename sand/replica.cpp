@@ -197,7 +197,7 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
 
     owed_ = owed;
     if (step.edit.kind == Edit::settle && !settling()) {
-        surface_->settle();
+        owed_ = surface_->settle() ? owed : Owed{Owed::kUntilRest, 0};
     } else if (step.edit.kind == Edit::tune) {
         tune(step.edit.tuning);
     } else if (putBack(step.edit)) {

@@ -104,10 +104,13 @@ void GridSurface::changeRules(const Rules& rules) {
     erosion_.changeRules(rules_);
 }
 
-void GridSurface::settle() {
-    outflow_ += sand::grid::settle(field_, rules_).outflow;
+bool GridSurface::settle() {
+    WorkLimit limit(mostSettlingWork());
+    const Settled settled = sand::grid::settle(field_, rules_, nullptr, base::fastestCodePath(), &limit);
+    outflow_ += settled.outflow;
     erosion_.touch(field_.bounds());
     touchAll();
+    return settled.atRest;
 }
 
 void GridSurface::reset() {
