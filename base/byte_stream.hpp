@@ -91,12 +91,20 @@ public:
         const auto block = getBlock();
         return {block.begin(), block.end()};
     }
+    /// Reads what putVarint() wrote. A number has one form: more bytes than putVarint() writes are refused.
     std::uint64_t getVarint() {
         std::uint64_t value = 0;
         for (unsigned shift = 0; shift < 64; shift += 7) {
             const auto byte = get<std::uint8_t>();
-            value |= static_cast<std::uint64_t>(byte & 0x7f) << shift;
+            const std::uint64_t bits = byte & 0x7fU;
+            if (bits << shift >> shift != bits) {
+                break;
+            }
+            value |= bits << shift;
             if ((byte & 0x80) == 0) {
+                if (byte == 0 && shift > 0) {
+                    throw FormatError("a number in more bytes than it needs");
+                }
                 return value;
             }
         }

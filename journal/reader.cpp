@@ -17,7 +17,7 @@ JournalReader::JournalReader(std::unique_ptr<JournalParts> parts, std::string_vi
     try {
         open(1);
         if (header_.part == 1) {  // a later part holds no scene
-            sweeps_ = scene::Scene::decodeRules(header_.scene).sweepRange();
+            limits_ = scene::Scene::decodeRules(header_.scene).stepLimits();
         }
     } catch (const HeaderLost& error) {
         fail(fmt::format("{}; it holds the scene as the session began, without which nothing can be recovered",
@@ -167,10 +167,10 @@ void JournalReader::followDoubt(JournalRecord& record) {
     }
 }
 
-void JournalReader::requireSweeps(const JournalRecord& record) const {
+void JournalReader::requireWithinLimits(const JournalRecord& record) const {
     if (const auto* frame = std::get_if<JournalFrame>(&record)) {
         for (const sand::Step& step : frame->steps) {
-            if (const std::string why = step.refusal(sweeps_); !why.empty()) {
+            if (const std::string why = step.refusal(limits_); !why.empty()) {
                 throw base::FormatError(why);
             }
         }
@@ -187,7 +187,7 @@ std::optional<JournalRecord> JournalReader::next() {
         JournalRecord record;
         try {
             record = decodeRecord(body);
-            requireSweeps(record);
+            requireWithinLimits(record);
         } catch (const base::FormatError& error) {
             fail(fmt::format("damaged at byte {} of {}: {}; everything before is intact", place_.offset, size_,
                              error.what()));

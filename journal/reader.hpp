@@ -55,8 +55,8 @@ private:
     void endHere(const std::string& why);
     /// Sets JournalFrame::doubted of a record that has been read.
     void followDoubt(JournalRecord& record);
-    /// Throws base::FormatError if a step of `record` has sweeps that no step of this sand has.
-    void requireSweeps(const JournalRecord& record) const;
+    /// Throws base::FormatError if a step of `record` is one that no step of this sand can be.
+    void requireWithinLimits(const JournalRecord& record) const;
     /// Returns whether there is a next part of this session with a record.
     [[nodiscard]] bool continues();
     /// Returns the name of a part without the folder before it.
@@ -65,7 +65,7 @@ private:
     std::unique_ptr<JournalParts> parts_;
     std::string release_;
     JournalHeader header_;
-    sand::SweepRange sweeps_;  // of the scene, which only the first part has
+    sand::StepLimits limits_;  // of the scene, which only the first part has
     JournalPlace place_;
     std::int64_t size_ = 0;  // [byte], length of the part
     std::int64_t earlierBytes_ = 0;

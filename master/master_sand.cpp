@@ -58,7 +58,8 @@ void MasterSand::noteSettle(const sand::Step& step, bool begins) {
     if (replica_.refusedStep()) {
         return;
     }
-    if (begins) {
+    // A settle at once whose step has not finished it continues by sweeps.
+    if (begins || (step.edit.kind == sand::Edit::settle && replica_.settling())) {
         if (settlingSince_) {
             endedSettles_.push_back({*settlingSince_, SettleEnd::edit});
         }

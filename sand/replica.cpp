@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -13,30 +12,10 @@
 #include <vector>
 
 #include "base/float_environment.hpp"
-#include "sand/model/tool_shape.hpp"
 #include "sand/surface_factory.hpp"
 
 namespace sand {
 namespace {
-
-/// Most cells below the tool, summed over the sub-steps of one step. They take seconds. A hand stays far below it: a
-/// tool of 200 cells may cross the longest field within one step.
-constexpr std::int64_t kMostWork = std::int64_t{1} << 32;
-
-/// Returns the cells below `tool`, summed over the sub-steps of `path`, as if all of them were over the field.
-std::int64_t workOf(const Tool& tool, const std::vector<ProbePoint>& path, const Rules& rules) {
-    const CellRect below = TurnedShape(tool).cellsChanged(0, 0);
-    const std::int64_t cells = std::int64_t{std::min(below.x1 - below.x0, rules.columns)} *
-                               std::min(below.y1 - below.y0, rules.rows);  // at most 2^28
-    std::int64_t substeps = 0;                                             // at most 2^24
-    for (std::size_t i = 1; i < path.size(); ++i) {
-        const ProbePoint &from = path[i - 1], &to = path[i];
-        const std::int32_t longest =
-            std::max({std::abs(to.x - from.x), std::abs(to.y - from.y), std::abs(to.z - from.z)});  // at most 2^25
-        substeps += longest / kProbePerCell + 1;
-    }
-    return cells * substeps;
-}
 
 std::unique_ptr<Surface> cloneOf(const Surface& surface) {
     (void)base::needDefaultFloats();  // a clone of a TIN divides volumes by areas again
@@ -146,7 +125,7 @@ Owed Replica::owedBy(const Step& step) const {
 }
 
 std::int32_t Replica::mostSweeps(const Step& step) const {
-    return std::min(owedBy(step).left(), rules_.sweepRange().most);
+    return std::min(owedBy(step).left(), rules_.stepLimits().mostSweeps);
 }
 
 std::string Replica::whyRefused(const Step& step) const {
@@ -160,7 +139,7 @@ std::string Replica::whyRefused(const Step& step) const {
 }
 
 std::int32_t Replica::wholeSweeps(const Step& step) const {
-    return std::min(wholeOf(owedBy(step)), rules_.sweepRange().most);
+    return std::min(wholeOf(owedBy(step)), rules_.stepLimits().mostSweeps);
 }
 
 std::int32_t Replica::wholeOf(const Owed& owed) const {
@@ -201,10 +180,12 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
             // hovered.
             std::vector<ProbePoint> path{wasEngaged ? probe_ : step.path.front()};
             path.insert(path.end(), step.path.begin(), step.path.end());
-            if (workOf(tool(), path, rules_) <= kMostWork) {
+            if (const std::int64_t most = rules_.mostSubsteps(); lastWork_.substeps <= most) {
                 surface_->drag(tool(), path);
             } else {
-                leftOut_ = "its path was left out: it is too long for so large a tool";
+                leftOut_ = "its path was left out: it has " + std::to_string(lastWork_.substeps) +
+                           " sub-steps, and with this tool at most " + std::to_string(most);
+                lastWork_.substeps = 0;
             }
         }
         probe_ = step.path.back();
@@ -216,7 +197,7 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
 
     owed_ = owed;
     if (step.edit.kind == Edit::settle && !settling()) {
-        surface_->settle();
+        owed_ = surface_->settle() ? owed : Owed{Owed::kUntilRest, 0};
     } else if (step.edit.kind == Edit::tune) {
         tune(step.edit.tuning);
     } else if (putBack(step.edit)) {

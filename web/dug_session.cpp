@@ -102,7 +102,7 @@ sand::Step DugSession::nextStep() {
     if (replica_.holdsTool()) {
         step.engaged = replica_.engaged();
     } else {
-        (void)hand_.fill(step, budget_.mostSubsteps());
+        (void)hand_.fill(step, budget_.substeps(replica_));
     }
     if (!asked_.empty()) {
         step.edit = asked_.front().edit;

@@ -23,7 +23,7 @@ namespace haptic_bridge {
 struct Offer {
     std::uint64_t rulesDigest = 0;  // sand::Rules::digest()
     std::string sceneName;
-    sand::SweepRange sweeps{};  // sand::Rules::sweepRange(); a server whose step states others is refused
+    sand::StepLimits limits{};  // sand::Rules::stepLimits(); a server whose step is beyond them is refused
 };
 
 /// State of the link. In the state `linked` the server numbers the steps. In the states `offered` and `granting` no

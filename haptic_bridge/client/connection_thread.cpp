@@ -30,7 +30,7 @@ bool greets(const Message& message, Link link) {
 
 Client::Session::Session(Address address, Offer offer, LinkSecurity security, LinkClock clock)
     : address_(std::move(address)),
-      sweeps_(offer.sweeps),
+      limits_(offer.limits),
       greeter_(std::move(offer), std::move(security)),
       silence_(io_, clock ? std::move(clock) : host::monotonicNs) {
     shelf.setStatus(Link::connecting, peer() + ": connecting");

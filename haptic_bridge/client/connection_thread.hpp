@@ -81,7 +81,7 @@ private:
     }
 
     const Address address_;
-    const sand::SweepRange sweeps_;
+    const sand::StepLimits limits_;
     Greeter greeter_;
     boost::asio::io_context io_;
     Connector connector_{io_};

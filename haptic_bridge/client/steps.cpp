@@ -19,7 +19,7 @@ void Client::Session::take(Link, const TimingTest& test) {
 }
 
 void Client::Session::take(Link link, StepMessage& message) {
-    if (const std::string why = message.step.refusal(sweeps_); !why.empty()) {
+    if (const std::string why = message.step.refusal(limits_); !why.empty()) {
         connection_->close(why, RefusalCode::garbage);
         return;
     }

@@ -24,12 +24,12 @@ void Hand::add(const HandSample& sample) {
     }
 }
 
-std::int64_t Hand::fill(sand::Step& step, std::int64_t mostSubsteps) {
+std::int64_t Hand::fill(sand::Step& step, const SubstepLimit& limit) {
     if (!present_ || std::exchange(liftFirst_, false)) {
         return 0;
     }
     collect();
-    return path_.take(step, mostSubsteps);
+    return path_.take(step, limit);
 }
 
 }  // namespace haptic_bridge

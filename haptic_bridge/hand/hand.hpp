@@ -30,10 +30,10 @@ public:
 
     /// Fills `step.engaged`, `step.path` and `step.heading` with the movement since the step before. Returns when the
     /// last of its samples was read [ns, the samples' clock]. Returns 0 if the step has no sample that was read.
-    /// A path of an engaged tool has at most `mostSubsteps` sub-steps, or one point.
+    /// The path keeps within `limit`.
     ///
     /// While the replica holds its tool (sand::Replica::holdsTool()), do not call it: the movement waits.
-    std::int64_t fill(sand::Step& step, std::int64_t mostSubsteps = PathBuilder::kNoLimit);
+    std::int64_t fill(sand::Step& step, const SubstepLimit& limit = {});
     /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const { return path_.engagedSinceNs(); }
 

@@ -68,7 +68,16 @@ bool PathBuilder::moves() const {
     });
 }
 
-std::int64_t PathBuilder::take(sand::Step& step, std::int64_t mostSubsteps) {
+sand::ProbePoint PathBuilder::approach(const sand::ProbePoint& goal, std::int64_t substeps) {
+    const std::int64_t all = sand::substepsBetween(last_, goal);
+    const auto part = [&](std::int32_t from, std::int32_t to) {
+        return static_cast<std::int32_t>(from + (std::int64_t{to} - from) * substeps / all);
+    };
+    last_ = {part(last_.x, goal.x), part(last_.y, goal.y), part(last_.z, goal.z)};
+    return last_;
+}
+
+std::int64_t PathBuilder::take(sand::Step& step, const SubstepLimit& limit) {
     step.engaged = engaged_;
     if (waiting_.empty()) {
         return 0;
@@ -85,7 +94,11 @@ std::int64_t PathBuilder::take(sand::Step& step, std::int64_t mostSubsteps) {
         const HandSample sample = waiting_.front();
         if (engaged_ && sample.probe != last_) {
             substeps += changed && path.empty() ? 1 : sand::substepsBetween(last_, sample.probe);
-            if (substeps > mostSubsteps && !path.empty()) {
+            if (path.empty() && substeps > limit.most) {
+                path.push_back(approach(sample.probe, limit.most));  // the sample waits for the next step
+                break;
+            }
+            if (!path.empty() && substeps > std::min(limit.wanted, limit.most)) {
                 break;
             }
         }

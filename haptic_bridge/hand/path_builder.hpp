@@ -19,6 +19,13 @@ struct HandSample {
     bool read = true;  // false: a place that was computed at `readNs`, and at which no hand was read
 };
 
+/// Most sub-steps of an engaged tool in the path of a step.
+struct SubstepLimit {
+    static constexpr std::int64_t kNone = INT64_MAX;
+    std::int64_t wanted = kNone;  // a path that ends at its first point may have more
+    std::int64_t most = kNone;    // the way to the first point is divided if it has more
+};
+
 /// Gathers hand samples and cuts them into the paths of steps. Not thread-safe.
 ///
 /// A step is engaged or hovering as a whole. A path therefore ends where the samples change between the two, and the
@@ -43,10 +50,8 @@ public:
     void add(const HandSample& sample);
     /// Fills `step.engaged`, `step.path` and the hand's last heading from waiting samples. Returns the time at which
     /// the last sample was read [ns], or 0 if the step has no sample that was read. If no sample waits, the hand is
-    /// where it was, and the step is engaged as the one before. A path of an engaged tool has at most `mostSubsteps`
-    /// sub-steps, or one point.
-    std::int64_t take(sand::Step& step, std::int64_t mostSubsteps = kNoLimit);
-    static constexpr std::int64_t kNoLimit = INT64_MAX;
+    /// where it was, and the step is engaged as the one before. The path keeps within `limit`.
+    std::int64_t take(sand::Step& step, const SubstepLimit& limit = {});
     /// Returns when the oldest engaged sample that waits and moves the tool was read [ns]; nullopt if there is none.
     [[nodiscard]] std::optional<std::int64_t> engagedSinceNs() const;
     /// Returns whether samples wait.
@@ -68,6 +73,8 @@ private:
     void thinWaiting();
     [[nodiscard]] std::int64_t waitingNs() const { return waiting_.back().readNs - waiting_.front().readNs; }
     void letGoIfFarAhead();
+    /// Brings the tool nearer to `goal` by at most `substeps` sub-steps. Returns the point that it reaches.
+    sand::ProbePoint approach(const sand::ProbePoint& goal, std::int64_t substeps);
 
     std::int64_t mostNs_;  // [ns] of hand movement that a step may hold
     std::deque<HandSample> waiting_;

@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "haptic_bridge/hand/path_builder.hpp"
-
 namespace haptic_bridge {
 namespace {
 
@@ -83,13 +81,13 @@ double SweepBudget::sweepsIn(double ns, std::int64_t substeps, const sand::Tool&
     return std::min(fit, std::max(fit / growth_, double{kFastPart}));
 }
 
-std::int64_t SweepBudget::mostSubsteps() const {
-    if (pace_ == Pace::fast) {
-        return PathBuilder::kNoLimit;
+SubstepLimit SweepBudget::substeps(const sand::Replica& replica) const {
+    SubstepLimit limit{.most = replica.rules().mostSubsteps()};
+    if (pace_ == Pace::realtime && substepNs_ > 0) {
+        const double fit = static_cast<double>(budgetNs()) / substepNs_;
+        limit.wanted = static_cast<std::int64_t>(std::clamp(fit, 1.0, static_cast<double>(limit.most)));
     }
-    constexpr double kUnlimited = 1 << 30;
-    const double most = substepNs_ > 0 ? static_cast<double>(budgetNs()) / substepNs_ : kUnlimited;
-    return static_cast<std::int64_t>(std::clamp(most, 1.0, kUnlimited));
+    return limit;
 }
 
 bool SweepBudget::fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const {

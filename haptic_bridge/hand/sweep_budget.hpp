@@ -5,6 +5,7 @@
 
 #include "haptic_bridge/hand/frame_cost.hpp"
 #include "haptic_bridge/hand/pace.hpp"
+#include "haptic_bridge/hand/path_builder.hpp"
 #include "sand/replica.hpp"
 
 namespace haptic_bridge {
@@ -42,8 +43,9 @@ public:
 
     /// Returns the sweeps of `step`, which is the next of `replica` and has everything except its sweeps; 0 for a TIN.
     [[nodiscard]] std::int32_t sweepsOf(const sand::Step& step, const sand::Replica& replica);
-    /// Returns how many sub-steps of the tool a step may have, at least 1; PathBuilder::kNoLimit under the fast pace.
-    [[nodiscard]] std::int64_t mostSubsteps() const;
+    /// Returns how many sub-steps of the tool the next step of `replica` may have, at least 1. Under the fast pace only
+    /// the rules limit them.
+    [[nodiscard]] SubstepLimit substeps(const sand::Replica& replica) const;
     /// Returns whether a frame whose steps ask for `taken` may take a further step of `tool` that asks for `further`.
     [[nodiscard]] bool fits(const sand::StepWork& taken, const sand::StepWork& further, const sand::Tool& tool) const;
 

@@ -71,7 +71,7 @@ void StepMaker::catchUp(const CatchUp& steps) {
     bool fits = true;
     for (const sand::Step& step : steps.steps) {
         fits = fits && step.number == replica_.stepNumber() + 1 && step.number <= start_.stepNumber &&
-               step.refusal(replica_.rules().sweepRange()).empty();
+               step.refusal(replica_.rules().stepLimits()).empty();
         if (fits) {
             replica_.apply(step);
         }
@@ -146,7 +146,7 @@ void StepMaker::collect() {
 /// Returns the time at which the last sample of the step was read [ns, the host's clock]. Returns 0 if the step has no
 /// sample, or if the samples have another clock.
 std::int64_t StepMaker::fill(sand::Step& step) {
-    const std::int64_t readNs = hand_.fill(step, budget_.mostSubsteps());
+    const std::int64_t readNs = hand_.fill(step, budget_.substeps(replica_));
     if (sand::isRound(replica_.tool().kind) || step.heading == replica_.heading()) {
         step.heading.reset();  // the heading would not change the sand
     }

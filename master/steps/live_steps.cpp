@@ -43,7 +43,7 @@ LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::
                      std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock,
                      AtRest atRest)
     : now_(clock ? std::move(clock) : host::monotonicNs),
-      link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.sweepRange()}, std::move(security), now_,
+      link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.stepLimits()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace, atRest),
       budget_(pace, 1'000'000'000 / scene.rules.stepsPerSecond),
@@ -210,7 +210,7 @@ std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::si
         if (replica.holdsTool()) {
             next.step.engaged = replica.engaged();
         } else {
-            own_.fill(next, budget_.mostSubsteps(), now_());
+            own_.fill(next, budget_.substeps(replica), now_());
         }
         next.step.edit = edits_.next();
         next.step.sweeps = budget_.sweepsOf(next.step, replica);

@@ -40,8 +40,8 @@ std::size_t OwnSteps::due(std::int64_t nowNs, const sand::Replica& sand, bool ed
     return static_cast<std::size_t>(due);
 }
 
-void OwnSteps::fill(haptic_bridge::TimedStep& own, std::int64_t mostSubsteps, std::int64_t nowNs) {
-    const std::int64_t readNs = hand().fill(own.step, mostSubsteps);
+void OwnSteps::fill(haptic_bridge::TimedStep& own, const haptic_bridge::SubstepLimit& limit, std::int64_t nowNs) {
+    const std::int64_t readNs = hand().fill(own.step, limit);
     // A hand of which no sample waits is where the tool is. A pointer at rest sends none.
     own.handNs = hand().waits() ? readNs : nowNs;
     if (pointer_) {

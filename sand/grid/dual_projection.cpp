@@ -137,7 +137,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
     return sum(sums_[0], iteration.columns - 1) > 0;
 }
 
-int DualProjection::run(double relativeGap) {
+int DualProjection::run(double relativeGap, WorkLimit* limit) {
     const double enough = std::max(kRelativeExcess * rules_.tuning.threshold / kUnitsPerCell, kLeastExcess);
     double weight = 1;  // t of Beck and Teboulle
     double momentum = 0;
@@ -145,6 +145,10 @@ int DualProjection::run(double relativeGap) {
     int iterations = 0;
     const double longest = kIterationsPerCell * std::max(northing_, 1 / northing_);
     while (!atRest() && iterations < longest * (box_.x1 - box_.x0 + box_.y1 - box_.y0)) {
+        const std::int64_t cells = std::int64_t{box_.x1 - box_.x0} * (box_.y1 - box_.y0);
+        if (limit != nullptr && !limit->take(kCost * cells)) {
+            break;
+        }
         ++iterations;
         const bool check = iterations % kCheckEvery == 0;
         Measures measures;

@@ -8,6 +8,7 @@
 
 #include "sand/grid/dual_kernel.hpp"
 #include "sand/grid/erosion.hpp"
+#include "sand/model/work_limit.hpp"
 
 namespace sand::grid {
 
@@ -37,9 +38,9 @@ public:
     /// Returns whether no quad is too steep at the start.
     [[nodiscard]] bool atRest() const { return box_.empty(); }
 
-    /// Iterates until the relative duality gap is small enough, or up to a largest number of iterations. Returns the
-    /// number of iterations.
-    int run(double relativeGap = kRelativeGap);
+    /// Iterates until the relative duality gap is small enough, until `limit` is reached, or up to a largest number of
+    /// iterations. Returns the number of iterations. `limit` may be null.
+    int run(double relativeGap = kRelativeGap, WorkLimit* limit = nullptr);
 
     /// Takes over the pressures of a projection on half as many columns and rows, rounded up, whose heights count in
     /// units of its own cells. Call it before run(); sand/grid/multigrid_start.hpp gives the reason.
@@ -53,7 +54,8 @@ public:
     [[nodiscard]] std::int64_t northFlux(int column, int row) const;
 
 private:
-    static constexpr int kCheckEvery = 16;  // [iteration]; one iteration carries pressure at most one quad further
+    static constexpr std::int64_t kCost = 4;  // [cell of a sweep], time of a cell in an iteration
+    static constexpr int kCheckEvery = 16;    // [iteration]; one iteration carries pressure at most one quad further
     static constexpr int kMargin =
         kCheckEvery + 1;  // [quad], width of the border without pressure around the quads with pressure
 

@@ -102,6 +102,8 @@ public:
 
     /// Returns whether sweeps have found all sand at rest, so that the next sweep would visit no block.
     [[nodiscard]] bool settled() const { return active_.empty() && marked_.empty(); }
+    /// Returns the cells that the next sweep visits if no cell is touched before.
+    [[nodiscard]] std::int64_t activeCells() const;
     /// Returns the age of the inertia: the number of sweeps that moved sand since touch(), at most
     /// Inertia::kMostCounted [sweep].
     [[nodiscard]] int undisturbed() const { return undisturbed_; }

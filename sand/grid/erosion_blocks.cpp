@@ -18,6 +18,15 @@ CellRect Erosion::cellsOf(const CellRect& blocks) const {
         .clippedTo(east_.bounds());
 }
 
+std::int64_t Erosion::activeCells() const {
+    std::int64_t cells = 0;
+    for (const CellRect& run : active_) {
+        const CellRect here = cellsOf(run);
+        cells += std::int64_t{here.x1 - here.x0} * (here.y1 - here.y0);
+    }
+    return cells;
+}
+
 CellRect Erosion::blocksAround(const CellRect& cells) const {
     return CellRect{cells.x0 / blockSize_ - 1, cells.y0 / blockSize_ - 1, (cells.x1 - 1) / blockSize_ + 2,
                     (cells.y1 - 1) / blockSize_ + 2}

@@ -2,6 +2,7 @@
 #include "sand/grid/inertia.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "base/field_forms.hpp"
 #include "sand/model/grid_codec.hpp"
@@ -46,6 +47,31 @@ void write(const std::vector<std::int32_t>& numbers, const CellRect& cells, Cell
     }
 }
 
+/// Throws unless `flux` is 0, or `flows` and at most `most`. `way` and `cell` name the face.
+void requirePossible(std::int32_t flux, bool flows, std::int32_t most, const char* way, const CellRect& cell) {
+    if (flux == 0 || (flows && flux >= -most && flux <= most)) {
+        return;
+    }
+    const std::string which = "sand with a flux of " + std::to_string(flux) + " to the " + way + " from column " +
+                              std::to_string(cell.x0) + ", row " + std::to_string(cell.y0);
+    throw base::FormatError(which + (flows ? ": the most is " + std::to_string(most)
+                                           : ": no sand flows there, because the rim of this field is closed"));
+}
+
+/// Throws if a flux is one that no sweep makes.
+void requirePossible(const CellArray& east, const CellArray& north, const FieldFaces& faces) {
+    const CellRect all = withRim(faces.columns, faces.rows);
+    const bool open = faces.rim == Rim::open;
+    for (int y = all.y0; y < all.y1; ++y) {
+        for (int x = all.x0; x < all.x1; ++x) {
+            const CellRect cell{x, y, x + 1, y + 1};
+            const bool insideEast = x >= 0 && x + 1 < faces.columns, insideNorth = y >= 0 && y + 1 < faces.rows;
+            requirePossible(east.row(y)[x], y >= 0 && (open || insideEast), faces.mostFlux(), "east", cell);
+            requirePossible(north.row(y)[x], x >= 0 && (open || insideNorth), faces.mostFlux(), "north", cell);
+        }
+    }
+}
+
 }  // namespace
 
 void Inertia::keep(const CellArray& east, const CellArray& north, const CellRect& cells) {
@@ -73,15 +99,16 @@ void Inertia::encode(int columns, int rows, base::ByteWriter& writer) const {
     }
 }
 
-Inertia Inertia::decode(base::ByteReader& reader, int columns, int rows) {
+Inertia Inertia::decode(base::ByteReader& reader, const FieldFaces& faces) {
     const auto head = base::read<Head>(reader);
     Inertia inertia(head.undisturbed);
     if (head.flows) {
-        CellArray east(columns, rows);
-        CellArray north(columns, rows);
-        const CellRect all = withRim(columns, rows);
+        CellArray east(faces.columns, faces.rows);
+        CellArray north(faces.columns, faces.rows);
+        const CellRect all = withRim(faces.columns, faces.rows);
         decodeCells(reader, all, kMaxHeight, east);
         decodeCells(reader, all, kMaxHeight, north);
+        requirePossible(east, north, faces);
         for (int y = all.y0; y < all.y1; y += kPiece) {
             for (int x = all.x0; x < all.x1; x += kPiece) {
                 inertia.keep(east, north, CellRect{x, y, x + kPiece, y + kPiece}.clippedTo(all));

@@ -7,8 +7,21 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/model/cell_array.hpp"
+#include "sand/model/rules.hpp"
 
 namespace sand::grid {
+
+/// The faces of a field, and what may flow through them.
+struct FieldFaces {
+    int columns = 0, rows = 0;  // of the field [cell]
+    Rim rim = Rim::closed;
+    std::int32_t aspect = kUnitsPerCell;  // Rules::aspect
+
+    /// Returns the largest flux that a sweep can make [unit]. A flux is at most a share of the difference between two
+    /// heights, which is at most 2 kMaxHeight. The share is below a quarter for square cells. For other cells, the
+    /// shares along both axes add up to less than a half (sand/grid/erosion.cpp).
+    [[nodiscard]] std::int32_t mostFlux() const { return aspect == kUnitsPerCell ? kMaxHeight / 2 : kMaxHeight; }
+};
 
 /// Everything except heights that the next sweeps depend on: the fluxes of the last sweep, and the age of the inertia.
 /// The fluxes also show in which cells sand slid. Only areas in which sand flowed are held, so that sand at rest takes
@@ -28,8 +41,10 @@ public:
 
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
     void encode(int columns, int rows, base::ByteWriter& writer) const;
-    /// Reads what encode() wrote. Throws base::FormatError for invalid bytes.
-    static Inertia decode(base::ByteReader& reader, int columns, int rows);
+    /// Reads what encode() wrote. Throws base::FormatError for invalid bytes, and for a flux that no sweep of these
+    /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them:
+    /// another number would let sand vanish, or come from nowhere, in each sweep.
+    static Inertia decode(base::ByteReader& reader, const FieldFaces& faces);
 
 private:
     struct Piece {

@@ -94,7 +94,8 @@ double DualProjection::pressureBeyond(std::size_t component, int column, int row
     return pressure(component, column, row);
 }
 
-void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules, base::CodePath path) {
+void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules, base::CodePath path,
+                      WorkLimit* limit) {
     if (std::max(field.columns(), field.rows()) <= kLeastSide) {
         return;
     }
@@ -103,8 +104,8 @@ void startFromCoarser(DualProjection& projection, const HeightField& field, cons
     meanRules.columns = mean.columns();
     meanRules.rows = mean.rows();
     DualProjection coarse(mean, meanRules, path);
-    startFromCoarser(coarse, mean, meanRules, path);
-    coarse.run(kCoarseGap);
+    startFromCoarser(coarse, mean, meanRules, path, limit);
+    coarse.run(kCoarseGap, limit);
     projection.startFrom(coarse);
 }
 

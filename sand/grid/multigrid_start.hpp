@@ -14,6 +14,6 @@ namespace sand::grid {
 /// it. It changes neither the projection nor the accuracy. Call it before projection.run(), with the arguments from
 /// which the projection was made. While it runs, the coarser projections take a third as much memory as `projection`.
 void startFromCoarser(DualProjection& projection, const HeightField& field, const Rules& rules,
-                      base::CodePath path = base::fastestCodePath());
+                      base::CodePath path = base::fastestCodePath(), WorkLimit* limit = nullptr);
 
 }  // namespace sand::grid

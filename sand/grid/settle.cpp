@@ -11,6 +11,8 @@
 namespace sand::grid {
 namespace {
 
+constexpr std::int64_t kLeastWork = 1024;  // [cell], of a sweep that visits few cells
+
 struct Extremes {
     std::int64_t least, greatest;  // [unit]
 };
@@ -147,15 +149,16 @@ private:
 };
 
 /// Replaces the field by its projection, or leaves it unchanged if that is not possible.
-void project(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path, Settled& result) {
+void project(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path, WorkLimit* limit,
+             Settled& result) {
     Extremes extremes = extremesOf(field);
     const bool open = rules.rim == Rim::open;
     if (open && extremes.least < 0) {
         return;
     }
     DualProjection projection(field, rules, path);
-    startFromCoarser(projection, field, rules, path);
-    const int iterations = projection.run();
+    startFromCoarser(projection, field, rules, path, limit);
+    const int iterations = projection.run(DualProjection::kRelativeGap, limit);
     Draft draft(field, open);
     draft.apply(projection);
     if (open) {
@@ -170,21 +173,23 @@ void project(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePa
 
 }  // namespace
 
-Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path) {
+Settled settle(HeightField& field, const Rules& rules, NetFlux* flux, base::CodePath path, WorkLimit* limit) {
     Settled result;
     if (isAtRest(field, rules, path)) {
         return result;
     }
-    project(field, rules, flux, path, result);
+    project(field, rules, flux, path, limit, result);
     Rules toRest = rules;
     toRest.tuning.startThreshold = rules.tuning.threshold;
     Erosion erosion(field, toRest, {.path = path});
-    for (; !erosion.settled(); ++result.sweeps) {
+    const auto mayTake = [&] { return limit == nullptr || limit->take(std::max(erosion.activeCells(), kLeastWork)); };
+    for (; !erosion.settled() && mayTake(); ++result.sweeps) {
         result.outflow += erosion.sweep(field, 1);
         if (flux != nullptr) {
             erosion.addFluxes(*flux);
         }
     }
+    result.atRest = erosion.settled();
     return result;
 }
 

@@ -7,13 +7,15 @@
 #include "sand/grid/net_flux.hpp"
 #include "sand/model/height_field.hpp"
 #include "sand/model/rules.hpp"
+#include "sand/model/work_limit.hpp"
 
 namespace sand::grid {
 
 /// Result of settle().
 struct Settled {
     int iterations = 0;        // iterations of the dual projection on the field's own cells; 0 if only sweeps ran
-    int sweeps = 0;            // sweeps until all sand was at rest
+    int sweeps = 0;            // sweeps after it
+    bool atRest = true;        // false if `limit` was reached before all sand was at rest
     std::int64_t outflow = 0;  // volume that left over an open rim [unit · cell]
 };
 
@@ -30,6 +32,6 @@ struct Settled {
 /// `path`. The flux through every face is added to `flux` unless that is null. Memory: 75 bytes per cell of the box in
 /// which sand moves.
 Settled settle(HeightField& field, const Rules& rules, NetFlux* flux = nullptr,
-               base::CodePath path = base::fastestCodePath());
+               base::CodePath path = base::fastestCodePath(), WorkLimit* limit = nullptr);
 
 }  // namespace sand::grid

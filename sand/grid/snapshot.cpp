@@ -52,17 +52,16 @@ base::Bytes Snapshot::encode() const {
     return writer.take();
 }
 
-Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize,
-                          const Ground* ground) {
+Snapshot Snapshot::decode(std::span<const std::uint8_t> bytes, const SandLimits& limits) {
     base::ByteReader reader(bytes);
     const auto outflow = reader.get<std::int64_t>();
-    Snapshot copy(HeightField(columns, rows, cellSize), {}, outflow);
+    Snapshot copy(HeightField(limits.faces.columns, limits.faces.rows, limits.cellSize), {}, outflow);
     decodeCells(reader, copy.field.bounds(), kMaxHeight, copy.field.cells());
     requirePossible(copy);
-    if (ground != nullptr) {
-        requireAbove(*ground, copy.field);
+    if (limits.ground != nullptr) {
+        requireAbove(*limits.ground, copy.field);
     }
-    copy.inertia = Inertia::decode(reader, columns, rows);
+    copy.inertia = Inertia::decode(reader, limits.faces);
     if (!reader.atEnd()) {
         throw base::FormatError("sand with further bytes behind it");
     }

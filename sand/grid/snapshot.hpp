@@ -14,6 +14,13 @@
 
 namespace sand::grid {
 
+/// Limits of the sand of one field, which follow from its start.
+struct SandLimits {
+    FieldFaces faces;
+    double cellSize = 1;             // [scene unit]
+    const Ground* ground = nullptr;  // null without rock and wall cells
+};
+
 /// Snapshot of the sand of a height field.
 class Snapshot final : public SurfaceCopy {
 public:
@@ -21,11 +28,10 @@ public:
         : field(std::move(heights)), inertia(std::move(fluxes)), outflow(over) {}
 
     [[nodiscard]] base::Bytes encode() const override;
-    /// Reads what encode() wrote for a field of this size and `ground`, which may be null. Throws base::FormatError for
-    /// invalid bytes, for sand below rock, and if further bytes follow. Volume and outflow together must be within
-    /// ±kMaxHeight times the number of cells; steps keep that sum.
-    static Snapshot decode(std::span<const std::uint8_t> bytes, int columns, int rows, double cellSize,
-                           const Ground* ground = nullptr);
+    /// Reads what encode() wrote for a field with these limits. Throws base::FormatError for invalid bytes, for sand
+    /// below rock, for fluxes that Inertia::decode() refuses, and if further bytes follow. Volume and outflow together
+    /// must be within ±kMaxHeight times the number of cells; steps keep that sum.
+    static Snapshot decode(std::span<const std::uint8_t> bytes, const SandLimits& limits);
 
     HeightField field;
     Inertia inertia;

@@ -104,10 +104,13 @@ void GridSurface::changeRules(const Rules& rules) {
     erosion_.changeRules(rules_);
 }
 
-void GridSurface::settle() {
-    outflow_ += sand::grid::settle(field_, rules_).outflow;
+bool GridSurface::settle() {
+    WorkLimit limit(mostSettlingWork());
+    const Settled settled = sand::grid::settle(field_, rules_, nullptr, base::fastestCodePath(), &limit);
+    outflow_ += settled.outflow;
     erosion_.touch(field_.bounds());
     touchAll();
+    return settled.atRest;
 }
 
 void GridSurface::reset() {
@@ -135,9 +138,10 @@ std::shared_ptr<const SurfaceCopy> GridSurface::copy() const {
 }
 
 SurfaceReader GridSurface::reader() const {
-    return [columns = field_.columns(), rows = field_.rows(), cellSize = field_.cellSize(),
+    const FieldFaces faces{field_.columns(), field_.rows(), rules_.rim, rules_.aspect};
+    return [faces, cellSize = field_.cellSize(),
             ground = ground_](std::span<const std::uint8_t> bytes) -> std::shared_ptr<const SurfaceCopy> {
-        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, columns, rows, cellSize, ground.get()));
+        return std::make_shared<const Snapshot>(Snapshot::decode(bytes, {faces, cellSize, ground.get()}));
     };
 }
 

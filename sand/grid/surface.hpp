@@ -29,7 +29,7 @@ public:
     void release(const Tool& tool, const ProbePoint& probe) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
-    void settle() override;
+    [[nodiscard]] bool settle() override;
     [[nodiscard]] bool settlesBySweeps() const override { return ground_ != nullptr; }
     [[nodiscard]] std::int64_t sweepCost() const override { return std::int64_t{field_.columns()} * field_.rows(); }
     void reset() override;

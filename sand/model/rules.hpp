@@ -14,7 +14,7 @@ namespace sand {
 
 /// Version of the algorithm. It increases with every change to what a step does to the sand. Programs of different
 /// versions refuse to run together.
-inline constexpr std::uint32_t kAlgorithmVersion = 12;
+inline constexpr std::uint32_t kAlgorithmVersion = 13;
 
 /// Law by which sand slides on a height field. The documents call `isotropic` G and `plainIsotropic` plain G;
 /// docs/sand.md states both laws.
@@ -35,9 +35,14 @@ enum class Rim : std::uint8_t {
 };
 constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
 
-/// Numbers of sweeps that a step may state in bytes.
-struct SweepRange {
-    std::int32_t least = 1, most = kMostSweeps;
+/// Most sub-steps in the path of a step with the smallest tool. They take a few tenths of a second. A tool of a TIN
+/// costs more, because its outline goes into the mesh and out of it.
+inline constexpr std::int64_t kMostSubsteps = 1 << 21, kMostSubstepsOfTin = 1 << 14;
+
+/// What a step may state in bytes.
+struct StepLimits {
+    std::int32_t leastSweeps = 1, mostSweeps = kMostSweeps;
+    std::int64_t mostSubsteps = kMostSubsteps;  // of its path
 };
 
 /// The rules by which every replica computes its sand, as numbers. The process that loads the scene derives them once
@@ -71,9 +76,12 @@ struct Rules {
     /// Returns a digest of what heights belong to, beside the size: rock and walls of a height field, or the start of a
     /// TIN.
     [[nodiscard]] std::uint64_t siteDigest() const { return ground ^ tin; }
-    /// Returns how many sweeps a step of this sand may state. Steps of a TIN state none, because all of its sweeps run
-    /// in one step: the fluxes between two of them are no state.
-    [[nodiscard]] SweepRange sweepRange() const { return tin == 0 ? SweepRange{} : SweepRange{0, 0}; }
+    /// Returns what a step of this sand may state. Steps of a TIN state no sweeps, because all of its sweeps run in one
+    /// step: the fluxes between two of them are no state.
+    [[nodiscard]] StepLimits stepLimits() const;
+    /// Returns how many sub-steps the path of a step may have with the tool of these rules, at least 1. A replica
+    /// leaves out a longer path, and a program that numbers steps divides it.
+    [[nodiscard]] std::int64_t mostSubsteps() const;
     /// Returns a hash of the encoded rules and kAlgorithmVersion. Server and master compare it: replicas with equal
     /// digests and equal sand stay equal under equal steps.
     [[nodiscard]] std::uint64_t digest() const;

@@ -141,13 +141,20 @@ std::int64_t substepsOf(const Step& step, const ProbePoint& probe, bool engaged)
     return substeps;
 }
 
-std::string Step::refusal(const SweepRange& range) const {
-    if (sweeps >= range.least && sweeps <= range.most) {
-        return {};
+std::string Step::refusal(const StepLimits& limits) const {
+    const std::string step = "step " + std::to_string(number);
+    if (sweeps < limits.leastSweeps || sweeps > limits.mostSweeps) {
+        return step + " states " + std::to_string(sweeps) + " sweeps; a step of this sand states " +
+               (limits.mostSweeps == 0
+                    ? "none"
+                    : std::to_string(limits.leastSweeps) + " to " + std::to_string(limits.mostSweeps));
     }
-    return "step " + std::to_string(number) + " states " + std::to_string(sweeps) +
-           " sweeps; a step of this sand states " +
-           (range.most == 0 ? "none" : std::to_string(range.least) + " to " + std::to_string(range.most));
+    // The way to the first point is not among them, because only a replica knows where the tool is.
+    if (const std::int64_t substeps = substepsOf(*this, {}, false) - 1; substeps > limits.mostSubsteps) {
+        return step + " has a path of " + std::to_string(substeps) + " sub-steps; a step of this sand has at most " +
+               std::to_string(limits.mostSubsteps);
+    }
+    return {};
 }
 
 }  // namespace sand

@@ -79,9 +79,9 @@ struct Step {
     /// Reads what put() wrote. Throws base::FormatError for invalid bytes, for more than kMaxPathPoints points or
     /// kMostSweeps sweeps, and for a coordinate beyond kMaxProbe.
     void get(base::ByteReader& reader);
-    /// Returns why no step of sand with this range has so many sweeps, or an empty text. Call it for each step that
-    /// comes from a network or a file, with Rules::sweepRange().
-    [[nodiscard]] std::string refusal(const SweepRange& range) const;
+    /// Returns why no step of sand with these limits has so many sweeps or so long a path, or an empty text. Call it
+    /// for each step that comes from a network or a file, with Rules::stepLimits().
+    [[nodiscard]] std::string refusal(const StepLimits& limits) const;
     friend bool operator==(const Step&, const Step&) = default;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -93,12 +94,19 @@ public:
     virtual Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) = 0;
     /// Replaces the rules and wakes all sand.
     virtual void changeRules(const Rules& rules) = 0;
-    /// Lets all sand come to rest at once. Ignores rock, walls and tools.
-    virtual void settle() = 0;
+    /// Lets all sand come to rest at once. Ignores rock, walls and tools. Returns false if sand still moves after as
+    /// much work as a step may take; sweeps then bring the sand to rest.
+    [[nodiscard]] virtual bool settle() = 0;
     /// Returns whether there is rock or a wall that settle() would ignore. Only sweeps then bring the sand to rest.
     [[nodiscard]] virtual bool settlesBySweeps() const { return false; }
     /// Returns the time of a sweep in which all sand moves, at least that of the field's cells [cell of a grid].
     [[nodiscard]] virtual std::int64_t sweepCost() const = 0;
+    /// Returns the work that settle() may take [cell of a grid, in a sweep]. On 512 x 512 cells it takes less than half a
+    /// second.
+    [[nodiscard]] std::int64_t mostSettlingWork() const {
+        constexpr std::int64_t kVisits = 1536, kLeastCells = 512 * 512;
+        return kVisits * std::max(sweepCost(), kLeastCells);
+    }
     /// Forgets which sand moves, if that is part of the state beside fluxes.
     virtual void stopMoving() {}
     /// Restores the sand that the scene began with, and sets the outflow to 0.

@@ -201,24 +201,27 @@ void TinSurface::changeRules(const Rules& rules) {
     erosion_.changeThresholds(threshold_, startThreshold_);
 }
 
-void TinSurface::settle() {
+bool TinSurface::settle() {
     held_.reset();
     if (erosion_.settled()) {
-        return;
+        return true;
     }
-    const Settled settled = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest, rim_);
+    WorkLimit limit(mostSettlingWork());
+    const Settled settled = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest, rim_, &limit);
     sandMoved(settled.moved);
     erosion_.wake(settled.moved);
     moved_.clear();
-    erosion_.settle(layer_, 1, moved_);  // so that erosion_ finds all sand at rest
+    if (settled.atRest) {
+        erosion_.settle(layer_, 1, moved_);  // so that erosion_ finds all sand at rest
+    }
     state_.outflow += settled.outflow + erosion_.takeOutflow();
     sandMoved(moved_);
+    return settled.atRest;
 }
 
 std::int64_t TinSurface::sweepCost() const {
-    constexpr std::int64_t kCellsPerVertex = 16;  // a vertex takes 14 ns, and a cell 0.8 to 1
     const std::int64_t cells = std::int64_t{start_->width / kLatticePerCell} * (start_->depth / kLatticePerCell);
-    return std::max(cells, kCellsPerVertex * layer_.mesh().vertexCount());
+    return std::max(cells, workOfSweep(layer_));
 }
 
 SandLimits TinSurface::limits() const {

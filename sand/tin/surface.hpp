@@ -38,7 +38,7 @@ public:
     void leave(const Tool& tool) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
-    void settle() override;
+    [[nodiscard]] bool settle() override;
     [[nodiscard]] std::int64_t sweepCost() const override;
     void stopMoving() override { sandMoved(layer_.stopMoving()); }
     void reset() override;

@@ -31,8 +31,7 @@ SANDWALL_FUZZER(state) {
                 break;
             }
             case 1:
-                (void)sand::grid::Snapshot::decode(packed, kScene.terrain.columns(), kScene.terrain.rows(),
-                                                   kScene.terrain.cellSize());
+                (void)sand::grid::Snapshot::decode(packed, {{kScene.rules.columns, kScene.rules.rows}});
                 break;
             case 2:
                 (void)scene::Scene::decode(packed);

@@ -6,6 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "tests/journal/journal_in_memory.hpp"
+#include "tests/support/overlong.hpp"
 
 namespace {
 
@@ -66,6 +67,37 @@ TEST_F(MemoryJournal, IsRefusedFromADamagedRecordOn) {
     EXPECT_NE(found.find("folder/JOURNAL.2: damaged at byte "), std::string::npos) << found;
     EXPECT_NE(found.find(" of " + size + ": an incomplete record; everything before is intact"), std::string::npos)
         << found;
+}
+
+TEST_F(MemoryJournal, IsRefusedFromAPathOnThatNoStepHas) {
+    test::JournalInMemory journal(samples::flatScene(8, 8));
+    sand::Step step{.number = 1, .engaged = true, .path = {{0, 0, 0}}, .sweeps = 1};
+    journal.add(journal::JournalFrame{1, 99, {step}});
+    ++step.number;
+    for (std::size_t i = 1; i < sand::kMaxPathPoints; ++i) {
+        step.path.push_back({i % 2 == 0 ? -sand::kMaxProbe : sand::kMaxProbe, 0, 0});
+    }
+    journal.add(journal::JournalFrame{2, 100, {step}});
+    journal_ = journal;
+    const std::string found = read();
+    EXPECT_EQ(found.find("1 folder/JOURNAL: damaged at byte "), 0U) << found;
+    EXPECT_NE(found.find("step 2 has a path of "), std::string::npos) << found;
+}
+
+TEST_F(MemoryJournal, HasOneFormOfEachNumber) {
+    // A frame's number, and the number of its steps. Then a step's epoch, number and sweeps, and the number of an edit.
+    sand::Step step{.epoch = 3, .number = 1, .edit = samples::withNumber(7, sand::Edit::settle), .sweeps = 1};
+    const base::Bytes body = [&step] {
+        std::uint64_t chain = 0;
+        const base::Bytes record = journal::encodeRecord(journal::JournalFrame{2, 99, {step}}, chain, std::nullopt);
+        return base::Bytes(record.begin() + 4, record.end() - 8);  // without its length and its checksum
+    }();
+    const int refused = test::widenedNumbers(body, [](const base::Bytes& wide) {
+        std::uint64_t chain = 0;
+        const base::Bytes record = journal::encodeRecord(journal::decodeRecord(wide), chain, std::nullopt);
+        return base::Bytes(record.begin() + 4, record.end() - 8);
+    });
+    EXPECT_EQ(refused, 2 + 4);
 }
 
 TEST_F(MemoryJournal, NamesAMissingPartWithoutItsFolder) {

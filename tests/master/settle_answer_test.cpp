@@ -18,7 +18,7 @@ using nlohmann::json;
 /// A tower of sand on rock settles by sweeps, and so in several steps.
 class DeskOnRock : public test::OperatorDeskTest {
 protected:
-    DeskOnRock() : OperatorDeskTest(towerOnRock()) {}
+    explicit DeskOnRock(scene::Scene scene = towerOnRock()) : OperatorDeskTest(std::move(scene)) {}
     static scene::Scene towerOnRock() {
         scene::Scene scene = samples::flatScene(32, 24);
         auto ground = std::make_shared<sand::Ground>(32, 24);
@@ -68,6 +68,27 @@ protected:
         EXPECT_FALSE(sand_.replica().settling());
     }
 };
+
+/// A cliff over a field of 512 x 512 cells settles at once, but its step has too little work for all of it.
+class DeskOnCliff : public DeskOnRock {
+protected:
+    DeskOnCliff() : DeskOnRock(cliff()) {}
+    static scene::Scene cliff() {
+        scene::Scene scene = samples::flatScene(512, 512);
+        for (int y = 0; y < 512; ++y) {
+            for (int x = 0; x < 512; ++x) {
+                scene.terrain.setHeight(x, y, x < 256 ? sand::kMaxHeight : -sand::kMaxHeight);
+            }
+        }
+        return scene;
+    }
+};
+
+TEST_F(DeskOnCliff, SaysWhatHasEndedASettleThatItsStepHasNotFinished) {
+    std::future<json> byHand = settle();
+    take({.engaged = true, .path = {{2048, 2048, 0}}, .sweeps = 1});
+    EXPECT_EQ(await(byHand), (json{{"ok", true}, {"step", 1}, {"settle_ended_by", "hand"}}));
+}
 
 TEST_F(DeskOnRock, SaysWhatHasEndedASettleOfSeveralSteps) {
     std::future<json> byHand = settle();

@@ -64,9 +64,8 @@ TEST(HostileGrid, IsNotDraggedAlongAPathThatTakesHours) {
         }
         return path;
     };
-    // 64 points are 63 ways of 1023 sub-steps and more. A tool of 400 cells changes at least 800 x 800 cells. Together
-    // that is 4.1e10, and the limit is 2^32 = 4.3e9. Three points are far below it, with at most 2 x 1024 x 1024 x
-    // 1024.
+    // 64 points are 63 ways of 1023 sub-steps and more. A tool of 400 cells covers 802 x 802 cells. Together that is
+    // 4.1e10, and the limit is 2^30 = 1.1e9. Three points with 202 x 202 cells are 8.3e7.
     const auto apply = [&](double toolCells, const std::vector<sand::ProbePoint>& path) {
         Replica replica(samples::flatScene(1024, 1024, toolCells));
         replica.apply({.epoch = 1, .number = 1, .engaged = true, .path = path});
@@ -76,6 +75,29 @@ TEST(HostileGrid, IsNotDraggedAlongAPathThatTakesHours) {
     EXPECT_NE(apply(400, pathOver(1023, 64)), "");
     EXPECT_EQ(apply(100, pathOver(1023, 3)), "") << "a fast hand";
     EXPECT_EQ(apply(4, pathOver(1023, 64)), "") << "a small tool";
+}
+
+// A small tool costs little in each sub-step, and a frame cannot divide the step.
+TEST(HostileGrid, IsNotDraggedToAndFroOverTheLongestWay) {
+    Replica replica(samples::flatScene(24, 16, 1));
+    std::vector<sand::ProbePoint> path{{8 * sand::kProbePerCell, 8 * sand::kProbePerCell, 0}};
+    replica.apply({.number = 1, .engaged = true, .path = path});
+    for (std::size_t i = 0; i < sand::kMaxPathPoints; ++i) {
+        path.push_back({i % 2 == 0 ? -sand::kMaxProbe : sand::kMaxProbe, 8 * sand::kProbePerCell, 0});
+    }
+    path.erase(path.begin());
+    const std::int64_t volume = samples::fieldOf(replica).volume();
+    replica.apply({.number = 2, .engaged = true, .path = path});
+    // From column 8 to the west, and 63 ways of 131,072 cells each.
+    EXPECT_EQ(replica.leftOut(), "its path was left out: it has 8323080 sub-steps, and with this tool at most 2097152");
+    EXPECT_EQ(replica.lastWork().substeps, 0);
+    EXPECT_EQ(replica.probe(), path.back());
+    EXPECT_EQ(samples::fieldOf(replica).volume(), volume);
+    path.resize(16);
+    replica.apply({.number = 3, .engaged = true, .path = path});
+    EXPECT_EQ(replica.leftOut(), "") << "16 of these ways are within the limit";
+    EXPECT_EQ(replica.lastWork().substeps, 16 * 131'072);
+    EXPECT_EQ(samples::fieldOf(replica).volume(), volume);
 }
 
 // Whether there is memory depends on the host. A replica without memory must not leave out a step that the others

@@ -250,7 +250,7 @@ TEST(Owed, StepsOfATinStateNoSweeps) {
     EXPECT_EQ(sand.owed(), Owed());
     EXPECT_EQ(sand.mostSweeps({.engaged = true, .path = {}, .edit = Edit::settle}), 0);
     Step step{.number = 3};
-    const sand::SweepRange ofTin = sand.rules().sweepRange(), ofGrid = towerScene().rules.sweepRange();
+    const sand::StepLimits ofTin = sand.rules().stepLimits(), ofGrid = towerScene().rules.stepLimits();
     EXPECT_EQ(step.refusal(ofTin), "");
     EXPECT_EQ(step.refusal(ofGrid), "step 3 states 0 sweeps; a step of this sand states 1 to 4096");
     step.sweeps = 2;

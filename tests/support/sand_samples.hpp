@@ -68,7 +68,7 @@ inline sand::Edit withNumber(std::uint64_t number, sand::Edit edit) {
 /// Returns a step of a hand that moves at random. About one step in five hovers. It runs all its sweeps.
 inline sand::Step randomStep(std::uint64_t number, const sand::Rules& rules, std::mt19937& random) {
     sand::Step step{.epoch = 1, .number = number, .engaged = random() % 5 != 0, .path = {}};
-    step.sweeps = std::min(rules.tuning.sweepsPerStep, rules.sweepRange().most);
+    step.sweeps = std::min(rules.tuning.sweepsPerStep, rules.stepLimits().mostSweeps);
     const auto within = [&random](std::int32_t cells) {
         return static_cast<std::int32_t>(random() % static_cast<std::uint32_t>((cells + 8) * sand::kProbePerCell)) -
                4 * sand::kProbePerCell;

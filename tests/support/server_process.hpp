@@ -202,7 +202,7 @@ struct Wall {
 };
 
 inline haptic_bridge::Offer offerOf(const scene::Scene& scene) {
-    return {scene.rules.digest(), scene.name, scene.rules.sweepRange()};
+    return {scene.rules.digest(), scene.name, scene.rules.stepLimits()};
 }
 
 }  // namespace test

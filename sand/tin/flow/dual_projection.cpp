@@ -13,6 +13,7 @@ constexpr double kRelativeGap = 3e-4;
 // Sand that falls over an open rim never comes back. With the gap above, a table of 64 x 64 cells on a jittered mesh
 // had lost 0.15 % too much at rest. With this gap it keeps as much sand as with sweeps, and is at rest sooner.
 constexpr double kRelativeGapOpen = 3e-6;
+constexpr std::int64_t kCost = 16;  // [cell of a grid, in a sweep], time of a triangle in an iteration
 constexpr double kMostVolume = 4611686018427387904.0;  // 2^62
 constexpr double kIterationsPerSide = 64;  // per square root of the number of facets; the slowest known start needed 5
 
@@ -102,13 +103,16 @@ DualProjection::Measures DualProjection::measure() {
     return measures;
 }
 
-int DualProjection::run() {
+int DualProjection::run(WorkLimit* limit) {
     double weight = 1;  // t in Beck and Teboulle
     double momentum = 0;
     const double relativeGap = rim_ == Rim::open ? kRelativeGapOpen : kRelativeGap;
     bool wasClose = false;
     int iterations = 0;
     while (iterations < kIterationsPerSide * std::sqrt(static_cast<double>(facets_.size()))) {
+        if (limit != nullptr && !limit->take(kCost * static_cast<std::int64_t>(facets_.size()))) {
+            break;
+        }
         if (iterate(momentum)) {
             weight = 1;
         }

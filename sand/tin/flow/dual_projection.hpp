@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sand/model/rules.hpp"
+#include "sand/model/work_limit.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
 namespace sand::tin {
@@ -35,9 +36,9 @@ public:
     /// heights have a limited accuracy. On an open rim, no vertex may lie above 0 at first.
     DualProjection(const VertexSand& layer, double slope, Rim rim = Rim::closed);
 
-    /// Iterates until the relative duality gap is small enough, or up to a limit. Returns the number of iterations,
-    /// which is 0 if no triangle is too steep.
-    int run();
+    /// Iterates until the relative duality gap is small enough, until `limit` is reached, or up to a largest number of
+    /// iterations. Returns the number of iterations, which is 0 if no triangle is too steep. `limit` may be null.
+    int run(WorkLimit* limit = nullptr);
 
     /// Returns the gain of each vertex that changes, in ascending order of vertices [volume unit]. Their sum is 0,
     /// because the fluxes of every triangle add up to 0. With an open rim, their sum is the outflow with a negative

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sand/model/rules.hpp"
+#include "sand/model/work_limit.hpp"
 #include "sand/tin/volume/vertex_sand.hpp"
 
 namespace sand::tin {
@@ -13,7 +14,7 @@ namespace sand::tin {
 struct Settled {
     int iterations = 0;         // of the dual projection; 0: sweeps alone did the work
     int sweeps = 0;             // that brought the sand to rest
-    bool atRest = false;        // false: sand still moved after `most` sweeps
+    bool atRest = false;        // false: sand still moved after `most` sweeps, or when `limit` was reached
     std::int64_t outflow = 0;   // volume that fell over an open rim [volume unit]; the layer has lost it
     std::vector<Vertex> moved;  // vertices whose volume has changed, ascending
 };
@@ -26,8 +27,13 @@ struct Settled {
 /// ground at height 0 beyond it counts as well. If the projection would exceed these extremes, sweeps do all of the
 /// work.
 ///
-/// The sweeps end by themselves. `most` limits their number on meshes whose stars differ much in size.
+/// The sweeps end by themselves. `most` limits their number on meshes whose stars differ much in size. `limit` bounds
+/// the work of iterations and sweeps, and may be null. If it is reached, the sand is that of the work until then, and
+/// the layer records which sand moves.
 Settled settle(VertexSand& layer, std::int32_t threshold, std::int32_t startThreshold, int most = 1'000'000,
-               Rim rim = Rim::closed);
+               Rim rim = Rim::closed, WorkLimit* limit = nullptr);
+
+/// Returns the work of a sweep over all of the layer, or of an iteration [cell of a grid, in a sweep].
+[[nodiscard]] std::int64_t workOfSweep(const VertexSand& layer);
 
 }  // namespace sand::tin

@@ -86,10 +86,10 @@ std::uint64_t refusedForGarbage(const Client& client) {
 
 TEST(Client, RefusesSweepsThatNoStepHas) {
     haptic_bridge::Offer tin = kOffer;
-    tin.sweeps = {0, 0};
+    tin.limits.leastSweeps = tin.limits.mostSweeps = 0;
     for (const auto& [offer, sweeps] : {std::pair(kOffer, 0), {kOffer, sand::kMostSweeps + 1}, {tin, 1}}) {
         FakeServer server(
-            toTheFirst([&, given = offer.sweeps.least, wrong = sweeps](FakeServer::Connection& connection) {
+            toTheFirst([&, given = offer.limits.leastSweeps, wrong = sweeps](FakeServer::Connection& connection) {
                 if (linkUp(connection)) {
                     for (const std::uint64_t number : {1U, 2U}) {
                         StepMessage message = stepOf(1, number);
@@ -106,6 +106,34 @@ TEST(Client, RefusesSweepsThatNoStepHas) {
             << client.lastFailure();
         EXPECT_EQ(client.drain(10).size(), 1U) << "the step before it counts";
     }
+}
+
+// A frame cannot divide a step. Such a path took a second, and every frame can have one.
+TEST(Client, RefusesAPathThatTakesTooLong) {
+    FakeServer server(toTheFirst([&](FakeServer::Connection& connection) {
+        if (linkUp(connection)) {
+            StepMessage message = stepOf(1, 1);
+            message.step.engaged = true;
+            for (std::size_t i = 0; i < sand::kMaxPathPoints; ++i) {
+                message.step.path.push_back({i % 2 == 0 ? -sand::kMaxProbe : sand::kMaxProbe, 0, 0});
+                if (message.step.path.size() == 2) {
+                    connection.send(message);  // 2^17 sub-steps: the longest way of a hand
+                    ++message.step.number;
+                }
+            }
+            connection.send(message);
+            connection.await<Bye>();
+        }
+    }));
+    Client client(server.address(), kOffer);
+    grantWhenOffered(client, 1, 0);
+    EXPECT_TRUE(eventually([&] { return refusedForGarbage(client) == 1; }, 10000ms));
+    // 63 ways of 2 * 65536 cells each.
+    EXPECT_NE(client.lastFailure().find("step 2 has a path of 8257536 sub-steps; a step of this sand has at most "
+                                        "2097152"),
+              std::string::npos)
+        << client.lastFailure();
+    EXPECT_EQ(client.drain(10).size(), 1U) << "the step before it counts";
 }
 
 StepMessage editOf(std::uint64_t number, const sand::Edit& edit) {

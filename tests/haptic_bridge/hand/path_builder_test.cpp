@@ -82,19 +82,58 @@ TEST(PathBuilder, EndsAPathBehindTheSubstepsThatFit) {
         builder.add(at(cell * sand::kProbePerCell));
     }
     sand::Step step;
-    EXPECT_EQ(builder.take(step, 3), 3 * sand::kProbePerCell + 1);
+    EXPECT_EQ(builder.take(step, {.wanted = 3}), 3 * sand::kProbePerCell + 1);
     EXPECT_EQ(step.path.size(), 3U) << "a press, and two cells";
     EXPECT_EQ(builder.engagedSinceNs(), 4 * sand::kProbePerCell + 1);
-    (void)builder.take(step, 2);
+    (void)builder.take(step, {.wanted = 2});
     EXPECT_EQ(step.path.size(), 2U);
     EXPECT_EQ(step.path.front().x, 4 * sand::kProbePerCell);
     builder.add(at(40 * sand::kProbePerCell));
-    (void)builder.take(step, 4);
-    (void)builder.take(step, 1);
+    (void)builder.take(step, {.wanted = 4});
+    (void)builder.take(step, {.wanted = 1});
     EXPECT_EQ(step.path.size(), 1U) << "a single point is always taken";
     EXPECT_EQ(step.path.front().x, 40 * sand::kProbePerCell);
     EXPECT_EQ(builder.dropped(), 0U);
     EXPECT_EQ(builder.engagedSinceNs(), std::nullopt);
+}
+
+// A replica leaves out a longer path. So the tool would pass through the sand.
+TEST(PathBuilder, DividesTheWayOfAJumpThatNoStepMayHave) {
+    PathBuilder builder(kStepsPerSecond);
+    builder.add(at(0));
+    builder.add({2, {10 * sand::kProbePerCell - 1, -20 * sand::kProbePerCell, 30 * sand::kProbePerCell}, true});
+    sand::Step step;
+    (void)builder.take(step, {.wanted = 1, .most = 8});
+    EXPECT_EQ(step.path, (std::vector<sand::ProbePoint>{{0, 0, 0}})) << "a press";
+    sand::ProbePoint tool = step.path.back();
+    int steps = 0;
+    for (; builder.waits(); ++steps) {
+        const std::int64_t readNs = builder.take(step, {.wanted = 1, .most = 8});
+        EXPECT_EQ(readNs, builder.waits() ? 0 : 2) << "no hand was read on the way";
+        EXPECT_TRUE(step.engaged);
+        ASSERT_EQ(step.path.size(), 1U);
+        EXPECT_LE(sand::substepsOf(step, tool, true), 8);
+        tool = step.path.back();
+        // It stays on the line, to the cut-off fraction of each coordinate.
+        EXPECT_NEAR(tool.x, tool.z / 3.0, 4);
+        EXPECT_NEAR(tool.y, tool.z / -1.5, 4);
+    }
+    EXPECT_EQ(steps, 4) << "30 sub-steps";
+    EXPECT_EQ(tool,
+              (sand::ProbePoint{10 * sand::kProbePerCell - 1, -20 * sand::kProbePerCell, 30 * sand::kProbePerCell}));
+}
+
+TEST(PathBuilder, EndsAPathBehindTheSubstepsThatAStepMayHave) {
+    PathBuilder builder(kStepsPerSecond);
+    for (int cell = 1; cell <= 9; ++cell) {
+        builder.add(at(cell * sand::kProbePerCell));
+    }
+    sand::Step step;
+    (void)builder.take(step, {.most = 4});
+    EXPECT_EQ(step.path.size(), 4U);
+    EXPECT_EQ(step.path.back().x, 4 * sand::kProbePerCell);
+    (void)builder.take(step, {.most = 4});
+    EXPECT_EQ(step.path.back().x, 8 * sand::kProbePerCell);
 }
 
 TEST(PathBuilder, HoveringTakesNoTimeOfTheSand) {
@@ -104,7 +143,7 @@ TEST(PathBuilder, HoveringTakesNoTimeOfTheSand) {
     }
     sand::Step step;
     EXPECT_EQ(builder.engagedSinceNs(), std::nullopt);
-    (void)builder.take(step, 1);
+    (void)builder.take(step, {.wanted = 1});
     EXPECT_EQ(step.path.size(), 9U);
 }
 

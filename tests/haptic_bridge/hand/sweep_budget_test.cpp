@@ -180,11 +180,14 @@ TEST_F(Budget, SweepsAfterADragCountAsLongerByItsArea) {
 }
 
 TEST_F(Budget, APathFitsByTheLastTimeOfASubstep) {
-    EXPECT_GT(budget_.mostSubsteps(), 1'000'000) << "no cost is known yet";
+    const std::int64_t most = sand_->rules().mostSubsteps();
+    EXPECT_EQ(budget_.substeps(*sand_).wanted, haptic_bridge::SubstepLimit::kNone) << "no cost is known yet";
+    EXPECT_EQ(budget_.substeps(*sand_).most, most);
     budget_.shown({.sweeps = 1, .substeps = 10, .sweepNs = 1, .dragNs = 20 * kMillisecond}, 1);
-    EXPECT_EQ(budget_.mostSubsteps(), 4);
+    EXPECT_EQ(budget_.substeps(*sand_).wanted, 4);
     budget_.shown({.sweeps = 1, .substeps = 1, .sweepNs = 1, .dragNs = 20 * kMillisecond}, 1);
-    EXPECT_EQ(budget_.mostSubsteps(), 1) << "at least one";
+    EXPECT_EQ(budget_.substeps(*sand_).wanted, 1) << "at least one";
+    EXPECT_EQ(budget_.substeps(*sand_).most, most) << "no time changes what the rules allow";
 }
 
 TEST_F(Budget, AFrameTakesTheStepsThatFit) {
@@ -217,7 +220,8 @@ TEST_F(Budget, TheFastPaceDependsOnNoTime) {
     SweepBudget fast(Pace::fast, kPeriod);
     for (const std::int64_t sweepNs : {1, 1000, 1'000'000'000}) {
         fast.shown({.sweeps = 64, .substeps = 8, .sweepNs = 64 * sweepNs, .dragNs = 8 * sweepNs}, 1);
-        EXPECT_EQ(fast.mostSubsteps(), haptic_bridge::PathBuilder::kNoLimit);
+        EXPECT_EQ(fast.substeps(*sand_).wanted, haptic_bridge::SubstepLimit::kNone);
+        EXPECT_EQ(fast.substeps(*sand_).most, sand_->rules().mostSubsteps());
         EXPECT_EQ(fast.sweepsOf({1, 1, true, {}}, *sand_), 64);
         EXPECT_EQ(fast.sweepsOf({1, 1, true, {}, sand::Edit::reset}, *sand_), 64);
     }

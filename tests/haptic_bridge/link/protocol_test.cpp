@@ -11,6 +11,7 @@
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/message_reader.hpp"
 #include "tests/haptic_bridge/link/sample_messages.hpp"
+#include "tests/support/overlong.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
@@ -31,6 +32,21 @@ TEST(Protocol, EveryMessageComesBackAsItWent) {
         EXPECT_EQ(framed[4], i + 1) << "the type byte";
         EXPECT_EQ(decode(withoutLength(framed)), messages[i]) << "message " << i;
     }
+}
+
+TEST(Protocol, HasOneFormOfEachNumber) {
+    const auto numbersIn = [](const Message& message) {
+        const base::Bytes framed = encode(message);
+        const auto payload = withoutLength(framed);
+        return test::widenedNumbers({payload.begin(), payload.end()}, [](const base::Bytes& wide) {
+            const base::Bytes again = encode(decode(wide));
+            const auto written = withoutLength(again);
+            return base::Bytes(written.begin(), written.end());
+        });
+    };
+    EXPECT_EQ(numbersIn(StepMessage{-5, 17, someStep()}), 3 + 9) << "epoch, number and sweeps, and three points";
+    EXPECT_EQ(numbersIn(EditRequest{samples::withNumber(300, sand::Edit::undo)}), 1);
+    EXPECT_EQ(numbersIn(CatchUp{true, {someStep(), someStep()}}), 2 * (3 + 9));
 }
 
 TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {

@@ -18,6 +18,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
 #include "tests/support/blocked_child.hpp"
+#include "tests/support/overlong.hpp"
 #include "tests/support/sand_samples.hpp"
 #include "tests/support/server_process.hpp"
 #include "tests/support/small_disk.hpp"
@@ -249,6 +250,16 @@ TEST(TickTrack, RefusesBytesThatAreNone) {
     EXPECT_NO_THROW((void)decodeTrackPiece(encode(piece)));
     piece.ticks[1].surfaceProbe = {0, sand::kMaxProbe + 1, 0};
     EXPECT_THROW((void)decodeTrackPiece(encode(piece)), base::FormatError) << "beyond any field";
+}
+
+TEST(TickTrack, HasOneFormOfEachNumber) {
+    TrackPiece piece;
+    piece.ticks.resize(3);
+    piece.ticks[1].surfaceProbe = {7, 8, 0};
+    piece.ticks[2].surfaceProbe = {7, 9, 0};
+    const int refused =
+        test::widenedNumbers(encode(piece), [](const base::Bytes& wide) { return encode(decodeTrackPiece(wide)); });
+    EXPECT_EQ(refused, 1 + 3 * 4 + 2 * 2) << "their count, three times and a step of each, and two places";
 }
 
 TEST(TickTrack, RefusesTimesThatNoClockShows) {

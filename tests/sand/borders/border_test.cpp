@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "sand/grid/settle.hpp"
 #include "sand/tin/flow/settle.hpp"
 #include "tests/support/border_experiments.hpp"
 #include "tests/support/tool_kinds.hpp"
@@ -188,6 +189,37 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     Hand(again).hover(sand::Edit::settle);
     EXPECT_FALSE(again.settling()) << "a settle without a tool ends in its step, and ends the other";
     EXPECT_TRUE(again.settled());
+}
+
+// Such sand took two minutes in its step, and no wall has a frame meanwhile.
+TEST(Settle, ThatIsNotDoneAfterTheWorkOfAStepGoesOnInTheStepsAfter) {
+    Case given;
+    given.columns = given.rows = 512;
+    given.sweeps = 4;
+    given.height = [](double x, double) { return x < 256 ? 4096.0 : -4096.0; };
+    const scene::Scene scene = borders::sceneOf(given);
+    sand::Replica sand(scene);
+    const std::int64_t volume = sand.volume();
+    sand::HeightField field = scene.terrain;
+    sand::WorkLimit limit(sand.surface().mostSettlingWork());
+    EXPECT_FALSE(sand::grid::settle(field, scene.rules, nullptr, base::fastestCodePath(), &limit).atRest);
+    EXPECT_TRUE(limit.reached());
+    Hand hand(sand);
+    hand.hover(sand::Edit::settle);
+    ASSERT_TRUE(sand.settling());
+    EXPECT_EQ(sand.volume(), volume);
+    EXPECT_LE(sand.lastWork().sweeps, sand.settlingSweeps());
+    EXPECT_FALSE(sand.holdsTool());
+    EXPECT_EQ(sand.mostSweeps({}), sand::kMostSweeps) << "a program that numbers steps divides the rest";
+    sand::Replica other(scene);
+    other.decodeState(sand.encodeState());
+    hand.hover();
+    Hand(other).hover();
+    EXPECT_EQ(other.stateHash(), sand.stateHash()) << "a replica that loads the state must continue alike";
+    EXPECT_TRUE(sand.settling());
+    EXPECT_EQ(sand.volume(), volume);
+    Hand(other).press(256, 256, 0);
+    EXPECT_FALSE(other.settling()) << "the first movement of a tool in the sand ends it";
 }
 
 // 2^27 cells in a step, at least 16 and at most 4096 sweeps. A vertex of a TIN takes as long as 16 cells.

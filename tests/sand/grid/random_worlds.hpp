@@ -251,7 +251,9 @@ private:
         erosion_.inertia().encode(field_.columns(), field_.rows(), writer);
         base::ByteReader reader(writer.bytes());
         erosion_ = Erosion(field_, expected_.rules, options_);
-        erosion_.resume(sand::grid::Inertia::decode(reader, field_.columns(), field_.rows()));
+        const sand::Rules& rules = expected_.rules;
+        erosion_.resume(
+            sand::grid::Inertia::decode(reader, {field_.columns(), field_.rows(), rules.rim, rules.aspect}));
     }
 
     void touch(const sand::CellRect& cells) {

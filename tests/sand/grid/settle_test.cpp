@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include "tests/support/oracles.hpp"
 #include "tests/support/sand_samples.hpp"
@@ -202,6 +203,70 @@ TEST(Settle, ChequerboardComesToRest) {
         }
     }
     settleAndCheck(field, settlingRules(field));
+}
+
+/// Fields with the greatest differences: halves, a chequerboard, a spike, a pit, noise, and halves of one row.
+std::vector<HeightField> extremeFields() {
+    constexpr std::int32_t kMost = sand::kMaxHeight;
+    std::mt19937 random(5);
+    std::vector<HeightField> fields(5, HeightField(48, 40, 1.0));
+    for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 48; ++x) {
+            fields[0].setHeight(x, y, x < 24 ? kMost : -kMost);
+            fields[1].setHeight(x, y, (x + y) % 2 == 0 ? kMost : -kMost);
+            fields[2].setHeight(x, y, x == 20 && y == 20 ? kMost : -kMost);
+            fields[3].setHeight(x, y, x == 0 && y == 0 ? -kMost : kMost);
+            fields[4].setHeight(x, y, static_cast<std::int32_t>(random() % (2U * kMost + 1)) - kMost);
+        }
+    }
+    fields.emplace_back(64, 1, 1.0);
+    for (int x = 0; x < 64; ++x) {
+        fields.back().setHeight(x, 0, x < 32 ? kMost : -kMost);
+    }
+    return fields;
+}
+
+TEST(Settle, EndsAtItsLimitWithSandThatSweepsBringToRest) {
+    std::size_t number = 0;
+    for (const HeightField& start : extremeFields()) {
+        SCOPED_TRACE(number++);
+        const Rules rules = settlingRules(start);
+        const auto [least, greatest] = extremes(start);
+        bool ended = false;
+        for (std::int64_t work = 1000; !ended; work *= 100) {
+            HeightField field = start;
+            sand::WorkLimit limit(work);
+            const auto settled = sand::grid::settle(field, rules, nullptr, base::fastestCodePath(), &limit);
+            ended = settled.atRest;
+            EXPECT_EQ(limit.reached(), !settled.atRest) << work;
+            EXPECT_TRUE(work > 1000 || settled.iterations + settled.sweeps == 0) << "one of them takes more";
+            EXPECT_EQ(field.volume(), start.volume()) << work;
+            const auto [low, high] = extremes(field);
+            EXPECT_GE(low, least) << work;
+            EXPECT_LE(high, greatest) << work;
+            sand::grid::Erosion erosion(field, rules);
+            erosion.sweep(field, 100'000);
+            EXPECT_TRUE(erosion.settled()) << work;
+        }
+    }
+}
+
+TEST(Settle, WithinItsLimitIsAsWithoutOne) {
+    HeightField field = samples::cylinder(64, 16, 24), other = field;
+    const Rules rules = settlingRules(field);
+    const auto free = sand::grid::settle(field, rules);
+    constexpr std::int64_t kMuch = 1'000'000'000;
+    sand::WorkLimit limit(kMuch);
+    const auto limited = sand::grid::settle(other, rules, nullptr, base::fastestCodePath(), &limit);
+    EXPECT_TRUE(sameHeights(field, other));
+    EXPECT_EQ(limited.iterations, free.iterations);
+    EXPECT_EQ(limited.sweeps, free.sweeps);
+    const std::int64_t used = kMuch - limit.left();
+    EXPECT_GT(used, 4 * 64 * 64) << "at least an iteration";
+    // With one cell less than it takes, it does not come to rest.
+    HeightField short1 = samples::cylinder(64, 16, 24);
+    sand::WorkLimit less(used - 1);
+    EXPECT_FALSE(sand::grid::settle(short1, rules, nullptr, base::fastestCodePath(), &less).atRest);
 }
 
 TEST(Settle, AngleZeroComesToRest) {

@@ -6,6 +6,7 @@
 #include <random>
 #include <span>
 
+#include "tests/support/overlong.hpp"
 #include "tests/support/relaxing.hpp"
 #include "tests/support/sand_samples.hpp"
 
@@ -49,6 +50,34 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     const base::Bytes bytes = bytesOf({1, 2, false, {}, static_cast<sand::Edit::Kind>(sand::kEdits)});
     base::ByteReader reader(bytes);
     EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
+}
+
+TEST(Step, HasOneFormOfEachNumber) {
+    const sand::Step step{.epoch = 3,
+                          .number = 300,
+                          .engaged = true,
+                          .path = {{5, -6, 70}, {5, 900, 70}},
+                          .edit = samples::withNumber(7, sand::Edit::settle)};
+    const int refused = test::widenedNumbers(bytesOf(step), [](const base::Bytes& wide) {
+        base::ByteReader reader(wide);
+        const auto read = base::read<sand::Step>(reader);
+        base::requireEnd(reader);
+        return bytesOf(read);
+    });
+    EXPECT_EQ(refused, 3 + 6 + 1) << "epoch, number and sweeps, two points, and the number of the edit";
+}
+
+TEST(Step, WithAPathBeyondTheLimitsIsRefusedByName) {
+    const sand::StepLimits limits{1, 4, 8};
+    sand::Step step{.number = 7, .engaged = true, .path = {{0, 0, 0}}, .sweeps = 1};
+    EXPECT_EQ(step.refusal(limits), "") << "a path of one point, whose way only a replica knows";
+    step.path.push_back({8 * sand::kProbePerCell, 0, 0});
+    EXPECT_EQ(step.refusal(limits), "");
+    step.path.push_back({8 * sand::kProbePerCell, 0, 0});
+    EXPECT_EQ(step.refusal(limits), "step 7 has a path of 9 sub-steps; a step of this sand has at most 8")
+        << "a press without a way is a sub-step";
+    step.engaged = false;
+    EXPECT_EQ(step.refusal(limits), "") << "a tool that hovers takes no time of the sand";
 }
 
 // Journals and messages have exactly these bytes.

@@ -11,6 +11,7 @@
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "tests/support/memory_limit.hpp"
+#include "tests/support/overlong.hpp"
 #include "tests/support/sand_of.hpp"
 #include "tests/support/tin_scene.hpp"
 
@@ -98,6 +99,33 @@ TEST(HostileTin, OfMoreVerticesThanTheSceneAllowsIsRefused) {
     };
     EXPECT_NO_THROW(replica.decodeState(stateOf(most - 5)));
     EXPECT_THROW(replica.decodeState(stateOf(most - 4)), base::FormatError);
+}
+
+TEST(HostileTin, HasOneFormOfEachNumber) {
+    const scene::Scene scene = samples::tinScene();
+    const int ofSand = test::widenedNumbers(plainWith(*scene.tin, 2), [](const base::Bytes& wide) {
+        base::ByteReader reader(wide);
+        const auto layer = sand::tin::VertexSand::decode(reader);
+        base::ByteWriter writer;
+        layer.encode(writer);
+        writer.putBytes(reader.rest());
+        return writer.take();
+    });
+    EXPECT_EQ(ofSand, 1 + 5 * 3 + 2 + 1) << "counts of vertices and constraints, five vertices, and two dead ones";
+    sand::tin::TinState state;
+    state.imprint.pose.emplace();
+    state.imprint.points.push_back({3, {4, 5}});
+    state.imprint.edges.emplace_back(1, 2);
+    base::ByteWriter plain;
+    state.encode(plain);
+    const int ofImprint = test::widenedNumbers(plain.bytes(), [](const base::Bytes& wide) {
+        base::ByteReader reader(wide);
+        base::ByteWriter writer;
+        sand::tin::TinState::decode(reader).encode(writer);
+        writer.putBytes(reader.rest());
+        return writer.take();
+    });
+    EXPECT_EQ(ofImprint, 2) << "counts of points and edges";
 }
 
 TEST(HostileTin, WithMoreOutflowThanSandIsRefused) {

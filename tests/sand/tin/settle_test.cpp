@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -102,6 +103,24 @@ TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
     }
     EXPECT_LE(misplaced(layer, oracles::around(kSide / 2.0, kSide / 2.0, [&](double r) { return tower.rest(r); })),
               0.01);
+}
+
+TEST(TinSettle, EndsAtItsLimitWithSandThatSweepsBringToRest) {
+    VertexSand start = layerOf(Kind::jittered, 24);
+    fill(start, [](double x, double) { return x < 12 ? 4096.0 : -4096.0; });
+    const sand::tin::Wide volume = start.volume();
+    bool ended = false;
+    for (std::int64_t work = 1000; !ended; work *= 100) {
+        VertexSand layer = start;
+        sand::WorkLimit limit(work);
+        const auto settled = sand::tin::settle(layer, kTalus, kTalus, 1'000'000, sand::Rim::closed, &limit);
+        ended = settled.atRest;
+        EXPECT_TRUE(layer.volume() == volume) << work;
+        const auto moves = std::count(layer.moving().begin(), layer.moving().end(), 1);
+        EXPECT_TRUE(settled.atRest ? moves == 0 : moves > 0) << work << ", " << moves;
+        EXPECT_TRUE(sand::tin::settle(layer, kTalus, kTalus).atRest) << work;
+        EXPECT_TRUE(layer.volume() == volume) << work;
+    }
 }
 
 // Only a few cells of many move. The sand beyond must not be examined twice.
