@@ -25,8 +25,8 @@ public:
     /// Sets the share of the server's forces that the hand feels from now on, 0 to 1, as an operator asked. Servers
     /// that link later get it, too.
     virtual void shareForce(double share) = 0;
-    /// Returns the share that shareForce() cannot exceed, because the linked server's own options are a ceiling; nullopt
-    /// if no server is linked.
+    /// Returns the share that shareForce() cannot exceed, because the linked server's own options are a ceiling;
+    /// nullopt if no server is linked.
     [[nodiscard]] virtual std::optional<double> forceCeiling() const { return std::nullopt; }
 };
 
