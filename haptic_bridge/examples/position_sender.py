@@ -22,7 +22,7 @@ import struct
 import sys
 import time
 
-MAGIC, PROTOCOL = b"SWHB", 9
+MAGIC, PROTOCOL = b"SWHB", 10
 HELLO, REFUSAL, POSITION_GREETING, POSITION, CHALLENGE, PROOF = 1, 3, 19, 20, 21, 22
 MOVE, PROVES, REFUSED_SECRET = 1, 1, 7
 LONGEST_GREETING, PATIENCE, SILENCE = 1024, 3, 10  # bytes, seconds, seconds
@@ -75,7 +75,7 @@ def prove(master, device, secret):
     master.sendall(challenge)
 
     def proof_of(side):
-        label = b"sandwall 9 " + side
+        label = b"sandwall 10 " + side
         said = struct.pack("<I", len(label)) + label + hello + challenge + struct.pack("<I", 0)
         return hmac.digest(secret, said, "sha256")
     answer = receive(master, deadline)

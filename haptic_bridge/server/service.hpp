@@ -27,6 +27,8 @@ struct Service {
     std::function<std::vector<base::Bytes>(bool all)> ticks = {};
     /// Takes the master's share of the force. nullopt: no master is linked, and 0 is pushed.
     std::function<void(const std::optional<ForceShare>&)> shareForce = [](const auto&) {};
+    /// An operator has switched the force on, or has set a share above 0. After three faults it stays off until then.
+    std::function<void()> switchOn = [] {};
     TimingTests tests = {};
     LinkSecurity security = {};
     SandThread* sandThread = nullptr;  // set by Listener::serve()

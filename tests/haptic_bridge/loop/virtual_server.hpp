@@ -33,14 +33,14 @@ public:
           maker_(scene, deviceHand_, output(), {}, [this] { return now_; }),
           sand_(scene),
           ceiling_(ceiling) {
-        share(std::nullopt);
+        setShare(std::nullopt);
         hand_->rest(0);
     }
 
     /// Links a master with the sand that the server has, or with `sand`.
     void link(const haptic_bridge::ForceShare& force = {}, std::optional<sand::Replica> sand = std::nullopt) {
         sand_ = sand ? *std::move(sand) : maker_.sand();
-        share(force);
+        setShare(force);
         maker_.start(++session_, {++epoch_, sand_.stepNumber(), sand_.stateHash(), force});
         if (!maker_.running()) {
             maker_.state(sand_.encodeState());
@@ -49,11 +49,15 @@ public:
     }
     /// Ends the link, as when a master leaves or dies.
     void unlink() {
-        share(std::nullopt);
+        setShare(std::nullopt);
         maker_.release();
     }
-    void share(const std::optional<haptic_bridge::ForceShare>& sent) {
-        hand_->shareForce(haptic_bridge::feltShare(ceiling_, sent));
+    /// Takes a ForceShare of the linked master, as Peer does.
+    void share(const haptic_bridge::ForceShare& sent) {
+        setShare(sent);
+        if (sent.byOperator && sent.share > 0) {
+            hand_->switchOn();
+        }
     }
     void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
 
@@ -103,6 +107,7 @@ public:
     std::vector<Push> pushes;      // that the arm got
     bool sandIsStopped = false;    // the wall shows no steps: a pause, a full disk, a master that hangs
     bool sandThreadHangs = false;  // the thread that makes steps does nothing
+    std::int64_t sweepNs = 0;      // [ns], cost of a sweep and of a sub-step; 0: the frames of the wall have no costs
     std::function<void(const base::Bytes& stepMessage)> onStep;
 
 private:
@@ -115,12 +120,27 @@ private:
                     }
                 }};
     }
+    void setShare(const std::optional<haptic_bridge::ForceShare>& sent) {
+        hand_->shareForce(haptic_bridge::feltShare(ceiling_, sent));
+    }
+    /// Returns the frame that shows the last step.
+    [[nodiscard]] haptic_bridge::Shown frame() const {
+        haptic_bridge::Shown shown{.stepNumber = maker_.sand().stepNumber(), .frameIntervalNs = 16'666'667};
+        if (sweepNs > 0) {
+            const sand::StepWork& work = maker_.sand().lastWork();
+            shown.cost.sweeps = work.sweeps;
+            shown.cost.sweepNs = work.sweeps * sweepNs;
+            shown.cost.substeps = work.substeps;
+            shown.cost.dragNs = work.substeps * sweepNs;
+        }
+        return shown;
+    }
     void runSand() {
         maker_.collect();
         if (maker_.running() && now_ >= maker_.due()) {
             maker_.makeStep();
             if (!sandIsStopped) {
-                maker_.shown({maker_.sand().stepNumber(), 16'666'667}, now_);
+                maker_.shown(frame(), now_);
             }
         }
         maker_.refresh();
