@@ -63,10 +63,17 @@ void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
 
 Pose MappedDevice::read(double time) {
     const ArmReading reading = arm_->read(time);
-    if (!reading.present) {
-        troubles_.count(Trouble::absent);
+    silent_ = reading.present ? 0 : silent_ + 1;
+    if (silent_ > 0) {
+        if (!known_ || silent_ > kMayBeLate) {
+            troubles_.count(Trouble::absent);
+        }
+        reading_.present = false;
+        Pose hovering = pose_;
+        hovering.engaged = false;
+        return hovering;  // pose_ stays, because the clutch keeps a stroke engaged
     }
-    if (!reading.present || !check_.accept(time, reading.place)) {
+    if (!check_.accept(time, reading.place)) {
         reading_.present = false;
         pose_.engaged = false;
         return pose_;

@@ -97,6 +97,8 @@ public:
     [[nodiscard]] virtual std::int64_t clockOffsetNs() const { return 0; }
     /// Returns the server's latest report; nullopt if no server has sent one.
     [[nodiscard]] virtual std::optional<haptic_bridge::Report> report() const { return std::nullopt; }
+    /// Returns whether the server pushes 0 after three faults, until an operator switches the force on.
+    [[nodiscard]] virtual bool forceTripped() const { return false; }
     /// Returns the counters of all links so far, added up.
     [[nodiscard]] virtual haptic_bridge::LinkCounters counters() const { return {}; }
     /// Says goodbye to the server and ends the link.
