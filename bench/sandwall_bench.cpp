@@ -72,6 +72,12 @@ std::vector<Curve> allCurves() {
          1,
          bench::betweenStability},
         {"tap", "force and work of a tap of 0.1 s, by `between`", {0}, 1, bench::tap},
+        {"force-loop",
+         "force of 50 runs with edits, lost readings and slow sweeps, and whether it keeps its bars; --runs 2: the "
+         "first two",
+         {0},
+         50,
+         bench::forceLoop},
         {"extremes", "sand at the ends of its ranges: sweeps, volume and excess at rest", {0}, 1, bench::extremes},
         {"explain", "parts that a scene loads, runs and leaves out, with the cost of each", {}, 100, bench::explain},
         {"certificate",

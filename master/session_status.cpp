@@ -34,6 +34,7 @@ nlohmann::json Session::status() const {
                           {"ranks", wall_.ranks()},
                           {"linked", steps_->linked()},
                           {"streaming", steps_->streaming()},
+                          {"force_tripped", steps_->forceTripped()},
                           {"tool_radius", sand.toolRadius()},
                           {"tool_shape", std::string(base::nameOf(sand.tool().kind))},
                           {"tool_heading", sand::degreesOf(sand.heading())},

@@ -28,6 +28,7 @@ void hashes(const Settings& settings, Csv& csv);
 void stability(const Settings& settings, Csv& csv);
 void guardedSweep(const Settings& settings, Csv& csv);
 void betweenStability(const Settings& settings, Csv& csv);
+void forceLoop(const Settings& settings, Csv& csv);
 void tap(const Settings& settings, Csv& csv);
 void tinPiles(const Settings& settings, Csv& csv);
 void tinActive(const Settings& settings, Csv& csv);

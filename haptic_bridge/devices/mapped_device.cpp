@@ -63,8 +63,15 @@ void MappedDevice::moveOrigin(const ArmReading& reading, Vec3 place) {
 
 Pose MappedDevice::read(double time) {
     const ArmReading reading = arm_->read(time);
-    troubles_.answered(reading.present);
-    if (!reading.present || !check_.accept(time, reading.place)) {
+    silent_ = reading.present ? 0 : std::min(silent_ + 1, kMayBeLate + 1);
+    troubles_.answered(silent_ == 0 || (known_ && silent_ <= kMayBeLate));
+    if (silent_ > 0) {
+        reading_.present = false;
+        Pose hovering = pose_;
+        hovering.engaged = false;
+        return hovering;  // pose_ stays, because the clutch keeps a stroke engaged
+    }
+    if (!check_.accept(time, reading.place)) {
         reading_.present = false;
         pose_.engaged = false;
         return pose_;

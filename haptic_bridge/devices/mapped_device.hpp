@@ -18,12 +18,14 @@ namespace haptic_bridge {
 /// scale of its own, the force along the direction with the smaller scale is reduced.
 ///
 /// After an implausible reading the tool hovers at its last place, and reading() is absent until a reading is
-/// plausible.
+/// plausible. While the arm gives no reading, the tool hovers, too, and answers() is false.
 ///
 /// While the second button is held, the tool keeps its place, and the hand moves freely. With a drift, the middle of
 /// the workspace moves slowly to where the hand works, while the hand feels no force.
 class MappedDevice : public Device {
 public:
+    /// So many readings in a row may be missing before the arm counts as absent. It may only be late until then.
+    static constexpr int kMayBeLate = 10;
     static constexpr double kFarthestShare = 0.5;  // [share of the reach], largest movement between two readings
 
     /// Throws base::InputError for settings that an arm cannot have. Call it before an arm is opened, so that bad input
@@ -43,6 +45,7 @@ public:
     [[nodiscard]] double scale() const override;
     [[nodiscard]] bool finished(double) const override { return false; }
     [[nodiscard]] ArmReading reading() const override { return reading_; }
+    [[nodiscard]] bool answers() const override { return silent_ == 0; }
     [[nodiscard]] const TroubleCounts* troubles() const override { return &troubles_; }
 
 private:
@@ -60,6 +63,7 @@ private:
     ArmReading reading_;      // the last plausible reading; `present` is that of the latest
     sand::force::Vec3 last_;  // [m], place of reading_: east, north, up
     bool known_ = false, feels_ = false;
+    int silent_ = 0;  // number of readings in a row that are missing, at most one more than kMayBeLate
 };
 
 }  // namespace haptic_bridge

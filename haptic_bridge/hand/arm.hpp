@@ -31,7 +31,7 @@ struct ArmReading {
     sand::force::Vec3 place;  // [m], from the middle of its workspace
     bool first = false;       // button that touches the sand
     bool second = false;      // button that works as a clutch
-    bool present = true;      // false: the device does not answer, and gets no force
+    bool present = true;      // false: no reading, `place` does not count; after 10 ms the device gets no force
 };
 
 /// A device with a body. One thread reads it and pushes it at 1 kHz, in metres along the arm's own axes.

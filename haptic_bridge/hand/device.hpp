@@ -48,6 +48,9 @@ public:
     /// Returns the last plausible reading of an arm, in the arm's own axes [m]. `present` is false if the latest read()
     /// got no plausible reading. A device without a body returns the default.
     [[nodiscard]] virtual ArmReading reading() const { return {}; }
+    /// Returns whether the latest read() got a reading at all. A reading that is not plausible is a fault of the
+    /// device; a missing one may only be late (Guards::kLate).
+    [[nodiscard]] virtual bool answers() const { return true; }
     /// Returns how often each kind of trouble has happened, or null if the device counts no troubles. Any thread.
     [[nodiscard]] virtual const TroubleCounts* troubles() const { return nullptr; }
     /// Returns whether a recording has ended at `time` [s]. From then on it hovers where it ended. Other devices always

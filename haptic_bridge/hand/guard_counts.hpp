@@ -26,7 +26,10 @@ enum class Guard : std::uint8_t {
     jumped,      // the device seems to move faster than any arm can: no force is sent
     frozen,      // the sand gets no steps: the force fades
     contact,     // a contact or an edit asks for much force at once: the excess grows in a ramp
-    gate         // the force to be pushed would grow or turn faster than any guard before the gate allows
+    gate,        // the force to be pushed would grow or turn faster than any guard before the gate allows
+    unread,      // the device gives no reading, but may only be late: the force fades
+    edit,        // an edit has changed what is felt: the force crosses over
+    tripped      // three faults came within ten seconds: no force is sent until an operator switches it on
 };
 constexpr auto valuesOf(Guard) {
     using enum Guard;
@@ -44,15 +47,18 @@ constexpr auto valuesOf(Guard) {
                       base::Named{jumped, "jumped"},
                       base::Named{frozen, "frozen"},
                       base::Named{contact, "contact"},
-                      base::Named{gate, "gate"}};
+                      base::Named{gate, "gate"},
+                      base::Named{unread, "unread"},
+                      base::Named{edit, "edit"},
+                      base::Named{tripped, "tripped"}};
 }
 inline constexpr std::size_t kGuards = valuesOf(Guard{}).size();
 
 [[nodiscard]] constexpr std::uint32_t bit(Guard guard) { return 1U << static_cast<unsigned>(guard); }
 
-/// Guards that act on a fault: in such a tick no force is sent.
-inline constexpr std::uint32_t kFaults =
-    bit(Guard::notANumber) | bit(Guard::stale) | bit(Guard::missed) | bit(Guard::lost) | bit(Guard::jumped);
+/// Guards that act on a fault, or after three of them: in such a tick no force is sent.
+inline constexpr std::uint32_t kFaults = bit(Guard::notANumber) | bit(Guard::stale) | bit(Guard::missed) |
+                                         bit(Guard::lost) | bit(Guard::jumped) | bit(Guard::tripped);
 
 /// Number of ticks in which each guard acted. One thread writes, any thread may read; no thread waits.
 class GuardCounts {

@@ -33,7 +33,8 @@ enum class ForceOutcome : std::uint8_t {
     stale,
     missed,
     lost,
-    jumped
+    jumped,
+    tripped  // three faults within ten seconds: no force until an operator switches it on
 };
 constexpr auto valuesOf(ForceOutcome) {
     using enum ForceOutcome;
@@ -52,7 +53,8 @@ constexpr auto valuesOf(ForceOutcome) {
                       base::Named{stale, "stale"},
                       base::Named{missed, "missed"},
                       base::Named{lost, "lost"},
-                      base::Named{jumped, "jumped"}};
+                      base::Named{jumped, "jumped"},
+                      base::Named{tripped, "tripped"}};
 }
 /// Number of ticks with each outcome, in the order of valuesOf(ForceOutcome).
 using OutcomeCounts = std::array<std::uint64_t, valuesOf(ForceOutcome{}).size()>;
@@ -68,10 +70,10 @@ public:
     /// @param felt     A force above 0 was pushed.
     /// @param outcome  nullopt if the law asks for no force.
     void add(double time, std::uint32_t acted, bool felt, std::optional<ForceOutcome> outcome) {
-        const bool fault = (acted & kFaults) != 0;
+        const bool fault = (acted & (kFaults | bit(Guard::unread))) != 0;  // a missing reading counts for its second
         count(all_, true);
         count(felt_, felt);
-        count(faulted_, fault);
+        count(faulted_, (acted & kFaults) != 0);
         if (outcome) {
             count(asked_[static_cast<std::size_t>(*outcome)], true);
         }

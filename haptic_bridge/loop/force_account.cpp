@@ -12,13 +12,13 @@ namespace haptic_bridge {
 namespace {
 
 constexpr double kHalf = 0.5;
-constexpr std::uint32_t kGrowth = bit(Guard::contact) | bit(Guard::gate) | bit(Guard::slew);
+constexpr std::uint32_t kGrowth = bit(Guard::contact) | bit(Guard::gate) | bit(Guard::slew) | bit(Guard::edit);
 
 std::optional<ForceOutcome> faultIn(std::uint32_t acted) {
     using enum ForceOutcome;
-    static constexpr std::array kOutcomes{std::pair{Guard::notANumber, notANumber}, std::pair{Guard::stale, stale},
-                                          std::pair{Guard::missed, missed}, std::pair{Guard::lost, lost},
-                                          std::pair{Guard::jumped, jumped}};
+    static constexpr std::array kOutcomes{std::pair{Guard::tripped, tripped}, std::pair{Guard::notANumber, notANumber},
+                                          std::pair{Guard::stale, stale},     std::pair{Guard::missed, missed},
+                                          std::pair{Guard::lost, lost},       std::pair{Guard::jumped, jumped}};
     for (const auto& [guard, outcome] : kOutcomes) {
         if ((acted & bit(guard)) != 0) {
             return outcome;
@@ -97,6 +97,9 @@ ForceOutcome ForceAccount::outcomeOf(const Tick& now) const {
     }
     if (const auto fault = faultIn(now.acted)) {
         return *fault;
+    }
+    if ((now.acted & bit(Guard::unread)) != 0) {
+        return ForceOutcome::lost;
     }
     if ((now.acted & bit(Guard::frozen)) != 0) {
         return stoppedBy_;

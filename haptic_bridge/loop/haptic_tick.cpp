@@ -117,6 +117,7 @@ sand::ProbePoint HapticTick::probe() const {
 
 HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSand& surface) {
     const Pose pose = device_->read(deviceTime);
+    const bool silent = !device_->answers(), late = silent && guards_.mayBeLate(deviceTime);
     input_ = {.time = deviceTime,
               .pose = pose,
               .reading = device_->reading(),
@@ -127,19 +128,25 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
               .surfaceProbe = surface.probe,
               .talus = surface.talus,
               .share = share_.load(std::memory_order_relaxed),
-              .edited = feelsEdit(surface)};
+              .edited = !late && feelsEdit(surface),
+              .silent = silent,
+              .tripped = mayNotPush()};
     const bool present = input_.reading.present;
     const auto probe = mapping_.probe(pose);
     tick_.probe = probe.value_or(tick_.probe);
     setProbe(tick_.probe);
-    const HandSample sample{nowNs, tick_.probe, pose.engaged && probe.has_value() && present, mapping_.heading(pose)};
+    const bool engaged = late ? tick_.engaged : pose.engaged && probe.has_value() && present;
+    const HandSample sample{nowNs, tick_.probe, engaged, mapping_.heading(pose)};
 
     const std::int64_t begin = host::monotonicNs();
     fillTick(sample.engaged);
+    followHand(late);
     const double perMetre = guards_.limits().scale;
     // The time is on the device's clock. A recording of ticks keeps that clock, so that a replay finds the same forces.
     Guards::Reading reading{.time = deviceTime,
                             .present = present,
+                            .silent = silent,
+                            .tripped = input_.tripped,
                             .engaged = sample.engaged,
                             .edited = input_.edited,
                             .surfaceAge = tick_.surfaceAge,
@@ -152,7 +159,7 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     if (!probe) {
         reading.place.x = std::numeric_limits<double>::quiet_NaN();
     }
-    if (sample.engaged) {
+    if (sample.engaged && !late) {
         reading.felt = model_.at(surface.patch, surface.step, surface.tool, tick_.place, deviceTime, input_.edited);
     }
     const Guards::Forces forces = guards_.tick(reading);
@@ -160,6 +167,10 @@ HandSample HapticTick::tick(double deviceTime, std::int64_t nowNs, const FeltSan
     tick_.sent = forces.sent;
     tick_.guards = forces.acted;
     count(surface, reading);
+    if (guards_.mode() == Guards::Mode::on) {
+        breaker_.take(deviceTime, forces.acted);
+        tripped_.store(breaker_.tripped(), std::memory_order_relaxed);
+    }
     if (sample.engaged) {
         forceCost_.add(host::monotonicNs() - begin);
     }
@@ -187,9 +198,7 @@ void HapticTick::count(const FeltSand& surface, const Guards::Reading& reading) 
 void HapticTick::fillTick(bool engaged) {
     tick_.time = input_.time;
     tick_.armPlace = input_.reading.place;
-    tick_.armVelocity = armVelocity_.add(input_.time, tick_.armPlace);
     tick_.place = sand::force::placeOf(tick_.probe, probeUnit_);
-    tick_.velocity = velocity_.add(input_.time, tick_.place);
     tick_.surfaceStep = input_.surfaceStep;
     tick_.surfaceAge = static_cast<double>(input_.surfaceAgeNs) * 1e-9;
     tick_.stepAge = static_cast<double>(input_.stepAgeNs) * 1e-9;
@@ -197,6 +206,28 @@ void HapticTick::fillTick(bool engaged) {
     tick_.talus = input_.talus;
     tick_.edited = input_.edited;
     tick_.engaged = engaged;
+}
+
+/// Finds the velocities of the hand. While the device may only be `late`, they stay, because a place that is repeated
+/// would count as a hand that rests. After a longer silence they begin again.
+void HapticTick::followHand(bool late) {
+    if (late) {
+        return;
+    }
+    if (input_.silent) {
+        armVelocity_.restart();
+        velocity_.restart();
+    }
+    tick_.armVelocity = armVelocity_.add(input_.time, tick_.armPlace);
+    tick_.velocity = velocity_.add(input_.time, tick_.place);
+}
+
+/// Returns whether the Breaker has tripped, unless an operator has switched the force on since.
+bool HapticTick::mayNotPush() {
+    if (switchedOn_.exchange(false, std::memory_order_relaxed)) {
+        breaker_.reset();
+    }
+    return breaker_.tripped();
 }
 
 }  // namespace haptic_bridge

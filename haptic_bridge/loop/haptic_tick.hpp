@@ -16,6 +16,7 @@
 #include "haptic_bridge/hand/held.hpp"
 #include "haptic_bridge/hand/path_builder.hpp"
 #include "haptic_bridge/loop/force_account.hpp"
+#include "haptic_bridge/loop/guards/breaker.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/tick.hpp"
@@ -61,7 +62,8 @@ public:
     HapticTick& operator=(const HapticTick&) = delete;
 
     /// Runs one tick. Returns the quantised sample of the hand, from which the next step is made. If the pose is not
-    /// finite or an arm does not answer, the sample hovers at the last place.
+    /// finite or an arm does not answer, the sample hovers at the last place. While the answer may only be late, the
+    /// tool stays as it was: to lift and to press it again would take two steps.
     ///
     /// @param deviceTime  Time at which the device is read [s], see Device::read().
     /// @param nowNs       Time of this tick [ns], on the same clock as surface.timeNs.
@@ -73,12 +75,16 @@ public:
     /// Pushes 0, because an arm holds its last force until the next one. An exception of the device is dropped: it may
     /// be the reason why the hand lets go.
     void letGo() noexcept;
-    /// Forgets all earlier ticks, except in the counters. Called when a link begins, so that its forces depend only on
-    /// its own ticks.
+    /// Forgets all earlier ticks, except in the counters and in the Breaker. Called when a link begins. The forces of
+    /// the link depend only on its own ticks and on TickInput::tripped.
     void restart();
     /// Sets the share of each force that the hand feels from now on, 0 to 1. The force changes to it in a ramp. Any
     /// thread.
     void shareForce(double share) { share_.store(share, std::memory_order_relaxed); }
+    /// Allows force again after the Breaker has tripped. Called when an operator switches the force on. Any thread.
+    void switchOn() { switchedOn_.store(true, std::memory_order_relaxed); }
+    /// Sets whether the Breaker has tripped. Only for a replay.
+    void trip(bool tripped) { breaker_.set(tripped); }
 
     /// Returns the last tick. Only for the thread that ticks.
     [[nodiscard]] const Tick& lastTick() const { return tick_; }
@@ -100,12 +106,16 @@ public:
     [[nodiscard]] const GuardCounts& guardCounts() const { return counts_; }
     /// Returns the number of calls of tick(), and what the hand got in them. Any thread.
     [[nodiscard]] const HandTicks& handTicks() const { return ticks_; }
+    /// Returns whether the Breaker has tripped, as of the last tick. Any thread.
+    [[nodiscard]] bool tripped() const { return tripped_.load(std::memory_order_relaxed); }
 
 private:
     HapticTick(const scene::Scene& scene, std::unique_ptr<Device> device, HandSettings::Datum datum, Guards::Mode mode,
                const LawAtRadius& law);
     void fillTick(bool engaged);
     void count(const FeltSand& surface, const Guards::Reading& reading);
+    void followHand(bool late);
+    [[nodiscard]] bool mayNotPush();
     [[nodiscard]] bool feelsEdit(const FeltSand& surface);
     void setProbe(const sand::ProbePoint& probe);
     void push(sand::force::Vec3 force);
@@ -121,6 +131,9 @@ private:
     std::vector<std::string> words_;
     std::atomic<std::uint64_t> probe_{0};  // x and y, 32 bits each; one value, so that no thread reads half of it
     std::atomic<double> share_{1};
+    std::atomic<bool> switchedOn_{false};
+    std::atomic<bool> tripped_{false};  // as breaker_, for other threads
+    Breaker breaker_;
     std::optional<std::uint64_t> edits_;  // FeltSand::edits at the last tick; nullopt before the first
     TickInput input_;
     Tick tick_;

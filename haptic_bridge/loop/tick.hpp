@@ -20,8 +20,10 @@ struct TickInput {
     std::uint64_t surfaceStep = 0;  // FeltSand::step
     sand::ProbePoint surfaceProbe;  // FeltSand::probe
     double talus = 0;               // FeltSand::talus
-    double share = 1;     // of each force that the hand may feel, as operators and the server's options have it
-    bool edited = false;  // whether this is the first tick that feels a step with an edit
+    double share = 1;      // of each force that the hand may feel, as operators and the server's options have it
+    bool edited = false;   // whether this is the first tick that feels a step with an edit
+    bool silent = false;   // the device gave no reading: `reading` and `pose` are those of an earlier tick
+    bool tripped = false;  // no force may be sent until an operator switches it on (Breaker)
 };
 
 /// Complete record of one tick of the force loop. --record writes it, and a replay must reproduce it bit for bit.

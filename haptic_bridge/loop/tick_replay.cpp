@@ -19,6 +19,7 @@ public:
     [[nodiscard]] const ArmPhysics* physics() const override { return header_.body ? &header_.physics : nullptr; }
     [[nodiscard]] double scale() const override { return header_.scale; }
     [[nodiscard]] ArmReading reading() const override { return input_.reading; }
+    [[nodiscard]] bool answers() const override { return !input_.silent; }
     [[nodiscard]] bool finished(double) const override { return false; }
 
 private:
@@ -53,6 +54,7 @@ void TickReplay::tick(const TickInput& input, const sand::Replica& replica, std:
     surface_.talus = input.talus;
     surface_.edits += input.edited ? 1 : 0;
     hand_->shareForce(input.share);
+    hand_->trip(input.tripped);
     player_->set(input);
     (void)hand_->tick(input.time, input.nowNs, surface_);
     appendRow(hand_->lastTick(), rows);

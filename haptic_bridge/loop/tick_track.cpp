@@ -12,20 +12,32 @@ namespace {
 
 using sand::force::Vec3;
 
-enum Flag : std::uint8_t {
+enum Flag : std::uint32_t {
     kEngaged = 1,
     kFirst = 2,
     kSecond = 4,
     kPresent = 8,
     kElsewhere = 16,
     kTuned = 32,
-    kEdited = 64
+    kEdited = 64,
+    // From here on a flag makes the varint of the flags longer.
+    kSilent = 128,
+    kTripped = 256,
+    kNoFlag = 512
 };
 
-std::uint8_t flagsOf(const TickInput& tick) {
-    return static_cast<std::uint8_t>((tick.pose.engaged ? kEngaged : 0) | (tick.reading.first ? kFirst : 0) |
-                                     (tick.reading.second ? kSecond : 0) | (tick.reading.present ? kPresent : 0) |
-                                     (tick.edited ? kEdited : 0));
+std::uint32_t flagsOf(const TickInput& tick) {
+    return (tick.pose.engaged ? kEngaged : 0U) | (tick.reading.first ? kFirst : 0U) |
+           (tick.reading.second ? kSecond : 0U) | (tick.reading.present ? kPresent : 0U) |
+           (tick.edited ? kEdited : 0U) | (tick.silent ? kSilent : 0U) | (tick.tripped ? kTripped : 0U);
+}
+
+std::uint64_t getFlags(base::ByteReader& reader) {
+    const std::uint64_t flags = reader.getVarint();
+    if (flags >= kNoFlag) {
+        throw base::FormatError(fmt::format("a tick with the flags {}", flags));
+    }
+    return flags;
 }
 
 void putVec(const Vec3& v, base::ByteWriter& writer) {
@@ -103,7 +115,7 @@ base::Bytes encode(const TrackPiece& piece) {
         writer.put(tick.time);
         putVec({tick.pose.x, tick.pose.y, tick.pose.z}, writer);
         putVec(tick.reading.place, writer);
-        writer.put(static_cast<std::uint8_t>(flagsOf(tick) | (elsewhere ? kElsewhere : 0) | (tuned ? kTuned : 0)));
+        writer.putVarint(flagsOf(tick) | (elsewhere ? kElsewhere : 0U) | (tuned ? kTuned : 0U));
         writer.putSigned(tick.nowNs - beforeNs);
         writer.putSigned(tick.surfaceAgeNs);
         writer.putSigned(tick.stepAgeNs);
@@ -144,13 +156,15 @@ TrackPiece decodeTrackPiece(std::span<const std::uint8_t> bytes) {
             tick.time = reader.get<double>();
             const Vec3 pose = getVec(reader);
             tick.reading.place = getVec(reader);
-            const auto flags = reader.get<std::uint8_t>();
+            const std::uint64_t flags = getFlags(reader);
             tick.pose = {pose.x, pose.y, pose.z, (flags & kEngaged) != 0};
             tick.reading.first = (flags & kFirst) != 0;
             tick.reading.second = (flags & kSecond) != 0;
             tick.reading.present = (flags & kPresent) != 0;
             tick.nowNs = beforeNs = getNs(beforeNs, reader);
             tick.edited = (flags & kEdited) != 0;
+            tick.silent = (flags & kSilent) != 0;
+            tick.tripped = (flags & kTripped) != 0;
             tick.surfaceAgeNs = getNs(0, reader);
             tick.stepAgeNs = getNs(0, reader);
             tick.surfaceStep = reader.getVarint();

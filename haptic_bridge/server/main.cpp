@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstdio>
+#include <utility>
 
 #include "base/input_error.hpp"
 #include "haptic_bridge/devices/driver.hpp"
@@ -68,15 +69,13 @@ Report measured(const HapticTick& hand, const ForceLoop* loop, const SandThread&
     return report;
 }
 
-/// Prints what the device does wrong, at most twice per second. The force loop does not print, because it must not wait
-/// for a terminal.
+/// Prints what the device does wrong, and that the force is off after three faults, at most twice per second. The force
+/// loop does not print, because it must not wait for a terminal.
 class DeviceWatch {
 public:
-    DeviceWatch(asio::io_context& io, const std::string& device, const Device& watched)
-        : timer_(io), reporter_("device " + device), device_(watched) {
-        if (device_.troubles() != nullptr) {
-            look();
-        }
+    DeviceWatch(asio::io_context& io, const std::string& device, const HapticTick& hand)
+        : timer_(io), reporter_("device " + device), hand_(hand) {
+        look();
     }
 
 private:
@@ -84,18 +83,30 @@ private:
         timer_.expires_after(std::chrono::milliseconds(500));
         timer_.async_wait([this](error_code error) {
             if (!error) {
-                for (const std::string& line :
-                     reporter_.lines(*device_.troubles(), static_cast<double>(host::monotonicNs()) * 1e-9)) {
-                    print(line);
+                printTroubles();
+                const bool before = std::exchange(tripped_, hand_.tripped());
+                if (tripped_ && !before) {
+                    print(
+                        "three faults in ten seconds: the hand feels no force until an operator switches it on "
+                        "(sandwall ctl SESSION force on)");
                 }
                 look();
             }
         });
     }
+    void printTroubles() {
+        if (const TroubleCounts* troubles = hand_.device().troubles()) {
+            for (const std::string& line :
+                 reporter_.lines(*troubles, static_cast<double>(host::monotonicNs()) * 1e-9)) {
+                print(line);
+            }
+        }
+    }
 
     asio::steady_timer timer_;
     TroubleReporter reporter_;
-    const Device& device_;
+    const HapticTick& hand_;
+    bool tripped_ = false;  // at the last look
 };
 
 std::function<std::vector<base::Bytes>(bool)> ticksOf(TickRecorder* recorder) {
@@ -139,6 +150,7 @@ Service serviceOf(const ServerOptions& options, const scene::Scene& scene, asio:
     const OwnForce own{options.force ? options.forceScale : 0, options.forceUntilCtl};
     service.shareForce = [&hand, own](const auto& sent) { hand.shareForce(feltShare(own, sent)); };
     service.forceCeiling = own.ceiling();
+    service.switchOn = [&hand] { hand.switchOn(); };
     service.tests = options.tests;
     return service;
 }
@@ -219,7 +231,7 @@ void serve(const ServerOptions& options) {
         print("no real-time priority for the force loop: " + loop->priorityRefused());
     }
 
-    DeviceWatch watch(io, options.device, device);
+    DeviceWatch watch(io, options.device, hand);
     signals.onFirst([&listener] { listener.shut("the server was stopped"); });
     listener.serve(sandThread);
     open = &listener;

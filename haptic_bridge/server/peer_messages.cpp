@@ -136,8 +136,11 @@ void Peer::take(EditRequest& request) {
 void Peer::take(const ForceShare& force) {
     if (phase_ != Phase::granting && phase_ != Phase::linked) {
         outOfTurn();
-    } else {
-        service_.shareForce(force);
+        return;
+    }
+    service_.shareForce(force);
+    if (force.byOperator && force.share > 0) {
+        service_.switchOn();
     }
 }
 

@@ -28,6 +28,8 @@ struct Service {
     /// Takes the master's share of the force. nullopt: no master is linked, and 0 is pushed.
     std::function<void(const std::optional<ForceShare>&)> shareForce = [](const auto&) {};
     double forceCeiling = 1;  // share of the force that no message lifts (OwnForce::ceiling())
+    /// An operator has switched the force on, or has set a share above 0. After three faults it stays off until then.
+    std::function<void()> switchOn = [] {};
     TimingTests tests = {};
     LinkSecurity security = {};
     SandThread* sandThread = nullptr;  // set by Listener::serve()

@@ -76,6 +76,7 @@ public:
     [[nodiscard]] std::uint32_t epoch() const override { return epoch_; }
     [[nodiscard]] std::int64_t clockOffsetNs() const override { return link_.clockOffsetNs(); }
     [[nodiscard]] std::optional<haptic_bridge::Report> report() const override { return link_.report(); }
+    [[nodiscard]] bool forceTripped() const override { return link_.forceTripped(); }
     [[nodiscard]] haptic_bridge::LinkCounters counters() const override { return link_.counters(); }
     void stop() override;
     [[nodiscard]] std::optional<bool> serverAtEnd() const override { return serverAtEnd_; }

@@ -59,9 +59,24 @@ void ServerLink::leave(const std::string& why) {
     client_->stop();
     client_.reset();
     changes_ = 0;
+    trippedTicks_.reset();
+    tripped_ = false;
+}
+
+/// Compares the last report with the one before.
+void ServerLink::followReports() {
+    const auto latest = client_->report();
+    if (!latest || (trippedTicks_ && latest->handTicks == handTicks_)) {
+        return;
+    }
+    const std::uint64_t ticks = latest->guards[static_cast<std::size_t>(haptic_bridge::Guard::tripped)];
+    tripped_ = trippedTicks_ && ticks > *trippedTicks_;
+    trippedTicks_ = ticks;
+    handTicks_ = latest->handTicks;
 }
 
 haptic_bridge::LinkStatus ServerLink::follow(std::uint32_t epoch) {
+    followReports();
     haptic_bridge::LinkStatus status = client_->link();
     if (status.changes != changes_) {
         changes_ = status.changes;

@@ -58,19 +58,27 @@ public:
 
     [[nodiscard]] std::int64_t clockOffsetNs() const { return client_ ? client_->clockOffsetNs() : 0; }
     [[nodiscard]] std::optional<haptic_bridge::Report> report() const;
+    /// Returns whether the linked server pushes 0 until an operator switches the force on, because of three faults. It
+    /// follows from the last two reports, which come once a second.
+    [[nodiscard]] bool forceTripped() const { return tripped_; }
     [[nodiscard]] std::string lastRefusal() const;
     [[nodiscard]] haptic_bridge::LinkCounters counters() const;
 
 private:
+    void followReports();
+
     std::optional<haptic_bridge::Address> server_;
     haptic_bridge::Offer offer_;
     haptic_bridge::LinkSecurity security_;
     haptic_bridge::LinkClock now_;
     std::unique_ptr<haptic_bridge::Client> client_;
-    std::uint64_t changes_ = 0;            // LinkStatus::changes that was printed last
-    haptic_bridge::ForceShare share_;      // the whole force until an operator sets it
-    ServerTicks ticks_;                    // of all clients
-    std::vector<lockstep::Fault> drills_;  // faults that wait for a link
+    std::uint64_t changes_ = 0;                  // LinkStatus::changes that was printed last
+    haptic_bridge::ForceShare share_;            // the whole force until an operator sets it
+    ServerTicks ticks_;                          // of all clients
+    std::vector<lockstep::Fault> drills_;        // faults that wait for a link
+    std::optional<std::uint64_t> trippedTicks_;  // of the last report of this client that had ticks
+    std::uint64_t handTicks_ = 0;                // of that report
+    bool tripped_ = false;                       // forceTripped()
     // Counters, report and failure of earlier clients.
     haptic_bridge::LinkCounters earlierLinks_;
     std::optional<haptic_bridge::Report> earlierReport_;

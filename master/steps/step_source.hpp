@@ -25,8 +25,8 @@ public:
     /// Sets the share of the server's forces that the hand feels from now on, 0 to 1, as an operator asked. Servers
     /// that link later get it, too.
     virtual void shareForce(double share) = 0;
-    /// Returns the share that shareForce() cannot exceed, because the linked server's own options are a ceiling; nullopt
-    /// if no server is linked.
+    /// Returns the share that shareForce() cannot exceed, because the linked server's own options are a ceiling;
+    /// nullopt if no server is linked.
     [[nodiscard]] virtual std::optional<double> forceCeiling() const { return std::nullopt; }
 };
 
@@ -99,6 +99,8 @@ public:
     [[nodiscard]] virtual std::int64_t clockOffsetNs() const { return 0; }
     /// Returns the server's latest report; nullopt if no server has sent one.
     [[nodiscard]] virtual std::optional<haptic_bridge::Report> report() const { return std::nullopt; }
+    /// Returns whether the server pushes 0 after three faults, until an operator switches the force on.
+    [[nodiscard]] virtual bool forceTripped() const { return false; }
     /// Returns the counters of all links so far, added up.
     [[nodiscard]] virtual haptic_bridge::LinkCounters counters() const { return {}; }
     /// Says goodbye to the server and ends the link.

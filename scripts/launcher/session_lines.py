@@ -28,7 +28,7 @@ CHOSEN = {"off": "force is off", "share": "a share of the force", "clutch": "the
           "start": "the start of a link"}
 SLOW = {"slow_motion": "slow motion", "disk": "a full disk", "growth": "force that grows", "damped": "damping"}
 FAULTY = {"steps": "no steps", "not_a_number": "fault not_a_number", "stale": "fault stale", "missed": "fault missed",
-          "lost": "fault lost", "jumped": "fault jumped"}
+          "lost": "fault lost", "jumped": "fault jumped", "tripped": "force that three faults in ten seconds have switched off"}
 
 
 def counted(number, one, many=None):
@@ -138,8 +138,10 @@ def force(summary, _):
     words = f"at least half of it in {had} of {counted(asked, 'tick')} that ask for force, of {counted(ticks, 'tick')} {SERVER_START}"
     if less := named_counts({what: outcomes[cause] for cause, what in (CHOSEN | SLOW | FAULTY).items()}):
         words += f"; less because of: {less}"
-    if faulted:
+    if faulted or faulty:
         words += f"; a fault in {faulted}, {percent(faulted / ticks)}, and in {faulty} of {counted(seconds, 'second')}"
+    if outcomes["tripped"]:
+        words += "; force stays off after three faults in ten seconds until `sandwall ctl SESSION force on`"
     if acted := named_counts(dict(guards.items())):
         words += f"; guards that acted: {acted}"
     if never_answered(haptic):

@@ -86,9 +86,9 @@ INSTANTIATE_TEST_SUITE_P(Bench, Curve,
                                          "budget --sizes 16", "edit --sizes 64", "dig --sizes 240",
                                          "throughput --sizes 32", "rest --sizes 16", "rest-moving --sizes 16",
                                          "hashes --sizes 16", "force-rate --sizes 192", "force-work --sizes 64",
-                                         "between-stability", "tap", "parts --sizes 32", "certificate --sizes 16",
-                                         "tin-imprint --sizes 104", "tin-simplify --sizes 32", "extremes",
-                                         "explain " SANDWALL_SOURCE_DIR "/scenes/writing.toml"),
+                                         "between-stability", "tap", "force-loop", "parts --sizes 32",
+                                         "certificate --sizes 16", "tin-imprint --sizes 104", "tin-simplify --sizes 32",
+                                         "extremes", "explain " SANDWALL_SOURCE_DIR "/scenes/writing.toml"),
                          [](const auto& curve) {
                              std::string name = curve.param;
                              name = name.substr(0, name.find(' '));

@@ -5,11 +5,11 @@ import copy
 
 REFUSALS = dict.fromkeys(("garbage", "protocol", "algorithm", "scene", "busy", "state", "secret", "role", "tls", "limit"), 0)
 GUARDS = dict.fromkeys(("not_a_number", "stiffness", "damping", "friction", "slew", "passivity", "clamp", "ramp", "stale", "missed", "lost",
-                        "jumped", "frozen", "contact", "gate"), 0)
+                        "jumped", "frozen", "contact", "gate", "unread", "edit", "tripped"), 0)
 SPREAD = {"p50": 1.0, "p99": 2.0, "max": 3.0}
 DISTRIBUTION = {"mean": 30.0, "stddev": 2.0, "p50": 29.5, "p99": 44.0}
 OUTCOMES = dict.fromkeys(("half", "off", "share", "clutch", "pause", "start", "slow_motion", "disk", "growth", "damped", "steps", "not_a_number",
-                          "stale", "missed", "lost", "jumped"), 0)
+                          "stale", "missed", "lost", "jumped", "tripped"), 0)
 TRIP = {**DISTRIBUTION, "count": 0}
 
 

@@ -35,13 +35,21 @@ Vec3 ForceGate::pass(const Wanted& wanted, std::uint32_t& acted) {
     const Vec3 pushed = follower_.follow(shortened(bounded, most), followed);
     acted |= followed != 0 ? bit(Guard::gate) : 0;
     pushed_ = norm(pushed);
+    passed_ = pushed_ < norm(bounded) ? pushed_ / norm(bounded) : 1;
     return pushed;
+}
+
+Vec3 ForceGate::shorten(double share) {
+    follower_.shorten(share);
+    pushed_ = norm(follower_.last());
+    passed_ *= share;
+    return follower_.last();
 }
 
 void ForceGate::restart(double time) {
     rampFrom_ = time;
     follower_.restart();
-    pushed_ = 0;
+    pushed_ = passed_ = 0;
     contact_ = grows_ = false;
 }
 
@@ -59,7 +67,8 @@ double ForceGate::mostInContact(const Wanted& wanted, double whole) {
     }
     const double grown = (wanted.time - growsFrom_) / kContactSeconds;
     grows_ = grows_ && wanted.contact && grown < 1;
-    return grows_ ? base_ + std::max(grown, 0.0) * std::max(whole - base_, 0.0)
+    // This bounds a growth. If the law asks for less than before, the force need not fall below the last one.
+    return grows_ ? std::max(base_ + std::max(grown, 0.0) * std::max(whole - base_, 0.0), pushed_)
                   : std::numeric_limits<double>::infinity();
 }
 

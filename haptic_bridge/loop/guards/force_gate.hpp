@@ -38,6 +38,10 @@ public:
     };
     /// Returns the force to push, and sets the bit of each guard that acted.
     [[nodiscard]] sand::force::Vec3 pass(const Wanted& wanted, std::uint32_t& acted);
+    /// Returns the part `share` of the last passed force, 0 to 1, and passes it. For a tick that has no reading.
+    [[nodiscard]] sand::force::Vec3 shorten(double share);
+    /// Returns which part of the last wanted force was passed, 0 to 1, beside the ramp; 0 after a fault.
+    [[nodiscard]] double passed() const { return passed_; }
     /// Begins the ramp. Call it at a start, and at every tick whose fault sends 0.
     void restart(double time /* [s] */);
 
@@ -49,6 +53,7 @@ private:
     Slew follower_;
     double rampFrom_ = 0;              // [s]
     double pushed_ = 0;                // [N], norm of the last passed force
+    double passed_ = 0;                // passed()
     bool contact_ = false;             // at the last tick
     bool grows_ = false;               // whether the excess of a contact or an edit still grows
     double growsFrom_ = 0, base_ = 0;  // [s], [N]: when the growth began, and the force at that time

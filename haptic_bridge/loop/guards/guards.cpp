@@ -11,6 +11,15 @@ namespace haptic_bridge {
 using sand::force::shortened;
 using sand::force::Vec3;
 
+namespace {
+
+constexpr double kRounding = 1e-6;  // [s], so that ten ticks of 1 ms are kLate
+
+/// Returns which part of a force is left after this `silence` [s] of a device that may only be late.
+double leftAfter(double silence) { return silence < Guards::kLate - kRounding ? 1 - silence / Guards::kLate : 0; }
+
+}  // namespace
+
 Guards::Forces Guards::tick(const Reading& reading) {
     Forces forces;
     if (reading.engaged) {
@@ -23,13 +32,17 @@ Guards::Forces Guards::tick(const Reading& reading) {
         restart(reading.time);
     }
     const double span = reading.time - time_;
-    forces.acted = faults(reading, span, forces.lawful);
+    const bool late = !reading.present && reading.silent && mayBeLate(reading.time);
+    forces.acted = faults(reading, span, late, forces.lawful);
+    const double left = fade(reading, span, late && forces.acted == 0);
     time_ = reading.time;
-    place_ = reading.place;
+    place_ = late ? place_ : reading.place;
     const double share = share_.next(span, reading.share);
     if (mode_ == Mode::literal) {
         forces.acted &= bit(Guard::notANumber) | bit(Guard::lost);
-        forces.sent = forces.acted == 0 ? share * forces.lawful : Vec3{};
+        forces.acted |= late ? bit(Guard::unread) : 0;
+        literal_ = (forces.acted & kFaults) != 0 ? Vec3{} : late ? left * literal_ : share * forces.lawful;
+        forces.sent = literal_;
         return forces;
     }
     const double moving = frozen_.next(span, reading.stepAge);
@@ -41,6 +54,13 @@ Guards::Forces Guards::tick(const Reading& reading) {
         return forces;
     }
 
+    if (late) {
+        passivity_.wait(span);
+        forces.sent = gate_.shorten(left);
+        forces.acted = bit(Guard::unread);
+        passivity_.sent(forces.sent);
+        return forces;
+    }
     passivity_.observe(reading.place, span);
     ForceGate::Wanted wish = wanted(reading, share * moving, softness, forces.acted);
     forces.acted |= moving < 1 && wish.contact ? bit(Guard::frozen) : 0;
@@ -59,7 +79,9 @@ ForceGate::Wanted Guards::wanted(const Reading& reading, double share, double so
     const double limited = norm(wish.force);
     wish.contact = limited > 0;
     wish.whole = share * std::min(limited, limits_.maxForce);
-    wish.force = slew_.follow(wish.force, acted);
+    const Vec3 law = slew_.follow(wish.force, acted);
+    wish.force = crossOver_.next({reading.time, reading.edited, reading.engaged, gate_.passed(), reading.place}, law);
+    acted |= norm(wish.force - law) > 0 ? bit(Guard::edit) : 0;
     // Damping may reduce a push, but must not turn it into a pull. It also grows no faster than a force may.
     const double pushed = std::max(dot(wish.force, reading.felt.normal), 0.0);
     const Vec3 damping = pushed > 0 ? passivity_.control(reading.velocity, acted) : Vec3{};
@@ -72,30 +94,46 @@ ForceGate::Wanted Guards::wanted(const Reading& reading, double share, double so
     return wish;
 }
 
+bool Guards::mayBeLate(double time) const { return heard_ && silence_ + (time - time_) <= kLate + kRounding; }
+
+/// Follows the silence of the device. Returns which part of the last force is left at this tick. `late`: the device may
+/// only be late, and nothing else has failed.
+double Guards::fade(const Reading& reading, double span, bool late) {
+    heard_ = reading.present || late;
+    const double before = leftAfter(silence_);
+    silence_ = late ? silence_ + span : 0;
+    return late && before > 0 ? leftAfter(silence_) / before : 0;
+}
+
 /// Returns one bit for each fault of this tick. After any fault no force is sent.
-std::uint32_t Guards::faults(const Reading& reading, double span, Vec3 lawful) const {
+std::uint32_t Guards::faults(const Reading& reading, double span, bool late, Vec3 lawful) const {
     std::uint32_t acted = 0;
     const bool numbers = std::isfinite(norm(lawful)) && std::isfinite(norm(reading.place)) &&
                          std::isfinite(norm(reading.velocity)) && std::isfinite(reading.felt.stiffness) &&
                          std::isfinite(reading.talus) && std::isfinite(reading.share);
     acted |= numbers ? 0 : bit(Guard::notANumber);
-    acted |= reading.present ? 0 : bit(Guard::lost);
+    acted |= reading.present || late ? 0 : bit(Guard::lost);
+    acted |= reading.tripped ? bit(Guard::tripped) : 0;
     acted |= reading.surfaceAge <= ForceLimits::kStaleSurface ? 0 : bit(Guard::stale);
     acted |= span >= 0 && span <= ForceLimits::kGap ? 0 : bit(Guard::missed);
-    const double farthest = limits_.fastestThing * std::max(span, ForceLimits::kTick) + 2 * limits_.resolution;
-    acted |= !(norm(reading.place - place_) > farthest) ? 0 : bit(Guard::jumped);
+    const double since = std::max(silence_ + span, ForceLimits::kTick);  // [s], the place before
+    const double farthest = limits_.fastestThing * since + 2 * limits_.resolution;
+    acted |= late || !(norm(reading.place - place_) > farthest) ? 0 : bit(Guard::jumped);
     return acted;
 }
 
 void Guards::restart(double time) {
     gate_.restart(time);
     slew_.restart();
+    crossOver_.stop();
     passivity_.restart();
     damping_ = {};
 }
 
 void Guards::forget() {
-    begun_ = false;
+    begun_ = heard_ = false;
+    silence_ = 0;
+    literal_ = {};
     share_ = {};
     frozen_ = FrozenSand(limits_.stepSeconds);
     late_ = LateStep(limits_);

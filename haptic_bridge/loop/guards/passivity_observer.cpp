@@ -24,9 +24,15 @@ PassivityObserver::PassivityObserver(const ForceLimits& limits)
       tolerance_(2 * limits.maxForce * limits.resolution),
       delay_(std::min(static_cast<std::size_t>(std::max(limits.arm.delayTicks, 0)), kMostDelay - 1)) {}
 
-void PassivityObserver::observe(Vec3 place, double span) {
+void PassivityObserver::wait(double span) {
+    waited_ += span;
+    impulse_ = impulse_ + span * acting();
+}
+
+void PassivityObserver::observe(Vec3 place, double last) {
+    const double span = waited_ + last;
     if (begun_ && span > 0) {
-        const Vec3 acted = sent_[(newest_ + kMostDelay - delay_) % kMostDelay];
+        const Vec3 acted = waited_ > 0 ? (1 / span) * (impulse_ + last * acting()) : acting();
         const Vec3 way = place - place_;
         const double given = dot(acted, way);
         returned_ += given;
@@ -35,6 +41,8 @@ void PassivityObserver::observe(Vec3 place, double span) {
     }
     begun_ = true;
     place_ = place;
+    waited_ = 0;
+    impulse_ = {};
     // The arm and the hand have taken the rest of an old surplus, so it no longer makes the loop less stable.
     surplus_ -= surplus_ > 0 ? std::clamp(span / kMemory, 0.0, 1.0) * surplus_ : 0;
 }
@@ -62,7 +70,8 @@ void PassivityObserver::sent(Vec3 force) {
 void PassivityObserver::restart() {
     sent_ = {};
     begun_ = false;
-    surplus_ = 0;
+    waited_ = surplus_ = 0;
+    impulse_ = {};
 }
 
 }  // namespace haptic_bridge

@@ -21,6 +21,8 @@ public:
 
     /// Takes the tip's current `place` [m]. The tip has moved for `span` [s] under the force that acted.
     void observe(sand::force::Vec3 place, double span);
+    /// Takes a tick of `span` [s] without a place. The next place counts for it: the tip has then moved at one speed.
+    void wait(double span);
     /// Returns the damping force that takes the surplus back within one tick; zero without a surplus.
     [[nodiscard]] sand::force::Vec3 control(sand::force::Vec3 velocity, std::uint32_t& acted) const;
     /// Takes the force that is sent to the device at this tick.
@@ -33,11 +35,16 @@ public:
 private:
     static constexpr std::size_t kMostDelay = 16;
 
+    /// Returns the force that has acted until now, after the device's delay.
+    [[nodiscard]] sand::force::Vec3 acting() const { return sent_[(newest_ + kMostDelay - delay_) % kMostDelay]; }
+
     double stiffness_, damping_, most_, tolerance_;
     std::size_t delay_;
     std::array<sand::force::Vec3, kMostDelay> sent_{};  // ring buffer of the latest forces
     std::size_t newest_ = 0;
     sand::force::Vec3 place_;
+    double waited_ = 0;          // [s], since place_ was taken
+    sand::force::Vec3 impulse_;  // [N s], of the forces that have acted in this time
     bool begun_ = false;
     double returned_ = 0, surplus_ = 0;
 };

@@ -27,6 +27,9 @@ public:
         last_ = tooFar ? kept + (most_ / length) * step : wanted;
         return last_;
     }
+    /// Shortens the last force to `share` of it, 0 to 1.
+    void shorten(double share) { last_ = share * last_; }
+    [[nodiscard]] sand::force::Vec3 last() const { return last_; }
     void restart() { last_ = {}; }
 
 private:

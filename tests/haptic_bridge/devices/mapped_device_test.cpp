@@ -161,7 +161,13 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndCountsAsAbsent) {
         const Pose before = at({0.01, 0, 0});
         expectEqual(feel({0, 0, 2}), {0, 0, 2});
         state_.reading = reading;
+        const int late = trouble == Trouble::absent ? MappedDevice::kMayBeLate : 0;
+        for (int lost = 0; lost < late; ++lost) {
+            (void)device_->read(time_ += kArmTick);
+        }
+        EXPECT_EQ(device_->troubles()->of(trouble), 0U) << "an arm that may only be late is no trouble";
         const Pose during = device_->read(time_ += kArmTick);
+        EXPECT_EQ(device_->answers(), trouble != Trouble::absent) << "a reading that is not plausible is a fault";
         EXPECT_FALSE(during.engaged);
         EXPECT_DOUBLE_EQ(during.x, before.x) << "the tool stays where it was";
         EXPECT_FALSE(device_->reading().present) << "the guards must notice";
@@ -171,6 +177,7 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndCountsAsAbsent) {
         state_.reading = {{trouble == Trouble::jump ? 1 : 0.01, 0, 0}, false, false, true};
         EXPECT_TRUE(device_->read(time_ += kArmTick).engaged);
         EXPECT_TRUE(device_->reading().present);
+        EXPECT_TRUE(device_->answers());
     }
 }
 

@@ -66,7 +66,7 @@ TEST(Protocol, BytesOnTheWireAreThoseOfTheDocument) {
     EXPECT_EQ(encode(Hello{{6, 1, 2, "a"}, Role::watch, true, true, nonce}), hello);
 }
 
-// Each of 70 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
+// Each of 74 numbers of the same type must be at its documented place. Otherwise both ends would make the same mistake.
 TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
     Report report{.hapticPeriodUsP50 = 1,
                   .hapticPeriodUsP99 = 2,
@@ -77,7 +77,7 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .toMaster = {10, 11, 12, 13, 20},
                   .stepBytesMean = 14,
                   .steps = 15,
-                  .stepsWithheld = {42, 43, 44, 45},
+                  .stepsWithheld = {43, 44, 45, 46},
                   .samplesDropped = 16,
                   .ticks = 17,
                   .ticksMissed = 18,
@@ -95,14 +95,14 @@ TEST(Protocol, TheNumbersOfAReportStandInTheOrderOfTheDocument) {
                   .arm = true,
                   .audited = Audited::differed};
     std::iota(report.asked.begin(), report.asked.end(), std::uint64_t{26});
-    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{46});
-    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{61});
+    std::iota(report.guards.begin(), report.guards.end(), std::uint64_t{47});
+    std::iota(report.refused.begin(), report.refused.end(), std::uint64_t{65});
     const base::Bytes framed = encode(report);
     base::ByteReader reader(withoutLength(framed).subspan(1));
     for (int number = 1; number <= 14; ++number) {
         EXPECT_EQ(reader.get<double>(), number);
     }
-    for (std::uint64_t number = 15; number <= 70; ++number) {
+    for (std::uint64_t number = 15; number <= 74; ++number) {
         EXPECT_EQ(reader.get<std::uint64_t>(), number);
     }
     EXPECT_EQ(reader.get<std::uint8_t>(), 1) << "literal guards";

@@ -81,7 +81,7 @@ TEST(ForceAccount, NamesTheRampAfterWhatBeganIt) {
     for (const auto& [guard, outcome] :
          {std::pair{Guard::notANumber, ForceOutcome::notANumber}, std::pair{Guard::stale, ForceOutcome::stale},
           std::pair{Guard::missed, ForceOutcome::missed}, std::pair{Guard::lost, ForceOutcome::lost},
-          std::pair{Guard::jumped, ForceOutcome::jumped}}) {
+          std::pair{Guard::jumped, ForceOutcome::jumped}, std::pair{Guard::tripped, ForceOutcome::tripped}}) {
         EXPECT_EQ(account.tick(asks(0, bit(guard))), outcome);
         EXPECT_EQ(account.tick(asks(0.1, bit(Guard::ramp) | bit(Guard::slew))), outcome);
     }
@@ -129,6 +129,7 @@ TEST(ForceAccount, NamesWhatTheGuardsTake) {
         EXPECT_EQ(account.tick(asks(0.2, bit(guard) | bit(Guard::passivity))), ForceOutcome::growth);
     }
     EXPECT_EQ(account.tick(asks(0.2, bit(Guard::passivity))), ForceOutcome::damped);
+    EXPECT_EQ(account.tick(asks(0.2, bit(Guard::unread))), ForceOutcome::lost);
 }
 
 TEST(ForceAccount, TakesTheForceOfTheLastReadingWhereThereIsNone) {

@@ -6,80 +6,19 @@
 #include <numbers>
 
 #include "scene/model/scene.hpp"
-#include "tests/haptic_bridge/loop/push_check.hpp"
-#include "tests/haptic_bridge/loop/virtual_server.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/haptic_bridge/loop/guarded_server.hpp"
 
 namespace {
 
 using namespace haptic_bridge;
+using test::kToolInArm;
 using test::VirtualServer;
-
-/// Returns an arm without a body of its own: it moves along the test's path, whatever pushes it.
-ArmPhysics strongArm() {
-    ArmPhysics arm;
-    arm.name = "strong";
-    arm.mass = 0.2;
-    arm.damping = 1;
-    arm.friction = 0.3;
-    arm.resolution = 2e-5;
-    arm.maxForce = 8;
-    arm.reach = 0.06;
-    arm.maxStiffness = 2000;
-    arm.delayTicks = 1;
-    return arm;
-}
-
-constexpr double kToolInArm = 0.006;  // [m], of the tool, in metres of the arm
 
 /// Returns a path that rests at `depth` [tool radius] below level sand.
 test::LoggingArm::Path restsAt(double depth) {
     return [depth](double) { return ArmReading{{0, 0, -depth * kToolInArm}, true, false, true}; };
 }
-class WayAround : public testing::Test {
-protected:
-    /// Begins a server. Ends and checks the one before.
-    void open(test::LoggingArm::Path path, double ceiling = 1, const std::vector<std::string>& map = {}) {
-        endAndCheck();
-        server_ =
-            std::make_unique<VirtualServer>(scene_, strongArm(), std::move(path), ceiling, HandSettings::parse(map));
-    }
-    void TearDown() override { endAndCheck(); }
-    /// Ends the server, and checks all of its pushes.
-    void endAndCheck() {
-        if (!server_) {
-            return;
-        }
-        const ForceLimits limits = server_->hand().guards().limits();
-        server_->end();
-        test::PushCheck check(limits);
-        for (const test::Push& push : server_->pushes) {
-            const std::string wrong = check.wrong(push.force);
-            ASSERT_EQ(wrong, "") << "at " << push.time << " s";
-        }
-        EXPECT_EQ(norm(server_->pushed()), 0) << "the last push";
-    }
-    [[nodiscard]] double force() const { return norm(server_->pushed()); }
-    /// Returns the greatest force of the last `seconds` [s].
-    [[nodiscard]] double greatest(double seconds) const {
-        double most = 0;
-        for (std::size_t i = server_->pushes.size() - static_cast<std::size_t>(seconds * 1000);
-             i < server_->pushes.size(); ++i) {
-            most = std::max(most, norm(server_->pushes[i].force));
-        }
-        return most;
-    }
-    /// Returns the tuning of the sand with another talus [deg].
-    [[nodiscard]] sand::Edit talus(double degrees) const {
-        sand::Tuning tuning = server_->sand().rules().tuning;
-        tuning.threshold = tuning.startThreshold =
-            static_cast<std::int32_t>(std::lround(std::tan(degrees * std::numbers::pi / 180) * sand::kUnitsPerCell));
-        return sand::Edit::tuned(tuning);
-    }
-
-    scene::Scene scene_ = test::levelSand({}, 128, 0.25);
-    std::unique_ptr<VirtualServer> server_;
-};
+class WayAround : public test::GuardedServer {};
 
 TEST_F(WayAround, AServerPushesNothingBeforeAndAfterAMaster) {
     open(restsAt(1));
@@ -365,7 +304,7 @@ TEST_F(WayAround, AnArmThatComesBackIsFeltInTheRampOfTwoSeconds) {
     for (const double away : {0.0, std::nan("")}) {
         there = std::isnan(away);
         place = away;
-        server_->tick();
+        server_->run(there ? 0.001 : 0.011);  // ten lost readings are no fault
         EXPECT_EQ(force(), 0);
         there = true;
         place = 0;
@@ -374,6 +313,7 @@ TEST_F(WayAround, AnArmThatComesBackIsFeltInTheRampOfTwoSeconds) {
         server_->run(1.1);
         EXPECT_NEAR(force(), whole, 0.05 * whole);
     }
+    server_->run(7);            // a third fault within ten seconds would switch the force off
     server_->tick(15'000'000);  // fifteen ticks missed
     EXPECT_EQ(force(), 0);
     server_->run(1);

@@ -103,6 +103,8 @@ public:
           trouble_(dice.oneOf({0.0, 0.3, 1.0})),
           recorded_(dice.chance(0.3)) {
         EXPECT_EQ(complaintAbout(physics_, "the test"), std::nullopt);
+        // From no spread steps to one sweep in a step: a step of 1/60 s has 8 ms for its sand.
+        server_.sweepNs = dice.chance(0.3) ? 0 : static_cast<std::int64_t>(dice.scaled(5e3, 2e7));
         server_.onStep = [this](const base::Bytes& message) {
             constexpr std::size_t kLength = 4;  // [byte], of the length of a message
             auto step = std::get<StepMessage>(decode(std::span(message).subspan(kLength))).step;
@@ -164,8 +166,12 @@ private:
             asked_.emplace(edit.number, edit);
             server_.edit(std::move(edit));
         }
-        if (dice_.chance(0.0007)) {
-            server_.share(randomShare());
+        if (dice_.chance(server_.hand().tripped() ? 0.005 : 0.0007)) {
+            const ForceShare share = randomShare();
+            server_.share(share);
+            if (share.byOperator && share.share > 0) {
+                check_.expectForce();
+            }
         }
         if (dice_.chance(0.0004 * trouble_)) {
             server_.unlink();

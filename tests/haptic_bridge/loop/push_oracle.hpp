@@ -26,21 +26,36 @@ public:
         const double span = first ? reading.time - reading.time : reading.time - time_;
         PushCheck::Asked asked;
         asked.time = reading.time;
-        asked.fault = hasFault(reading, span, first);
+        const bool late = !reading.present && reading.silent && mayBeLate(reading.time);
+        asked.fault = hasFault(reading, span, first, late);
+        asked.late = late && !asked.fault;
+        if (asked.late) {
+            const double before = silence_;
+            silence_ += span;
+            asked.left = silence_ < kLate - kRounding ? (kLate - silence_) / (kLate - before) : 0;
+        } else {
+            silence_ = 0;
+        }
+        heard_ = reading.present || asked.late;
         begun_ = true;
         time_ = reading.time;
-        place_ = reading.place;
+        place_ = late ? place_ : reading.place;
         const double passed = span > 0 ? span : 0;
         asked.share = shareAfter(passed, reading.share, first) * movingAfter(passed, reading.stepAge);
         const double soft = softnessAfter(passed, reading.stepAge);
-        if (!asked.fault) {
+        if (!asked.fault && !late) {
             const double limited = reading.engaged ? norm(limitedAt(reading, soft)) : 0;
             asked.contact = limited > 0;
             asked.edited = reading.edited;
+            asked.engaged = reading.engaged;
+            asked.place = reading.place;
             asked.whole = asked.share * std::min(limited, limits_.maxForce);
         }
         return asked;
     }
+    /// Returns whether a tick at `time` [s] without a reading may still get a part of the last force: within 10 ms of
+    /// silence.
+    [[nodiscard]] bool mayBeLate(double time) const { return heard_ && silence_ + (time - time_) <= kLate + kRounding; }
     /// Returns the force of the law that the device can bear, without slew.
     [[nodiscard]] Vec3 limitedAt(const Reading& reading, double soft) const {
         const auto& felt = reading.felt;
@@ -56,15 +71,18 @@ public:
     }
 
 private:
-    [[nodiscard]] bool hasFault(const Reading& reading, double span, bool first) const {
+    static constexpr double kLate = 0.01, kRounding = 1e-6;  // [s]
+
+    [[nodiscard]] bool hasFault(const Reading& reading, double span, bool first, bool late) const {
         const Vec3 law =
             reading.engaged ? sand::force::lawfulForce(reading.felt, (limits_.scale / 60) * reading.velocity) : Vec3{};
         const bool numbers = std::isfinite(norm(law)) && std::isfinite(norm(reading.place)) &&
                              std::isfinite(norm(reading.velocity)) && std::isfinite(reading.felt.stiffness) &&
                              std::isfinite(reading.talus) && std::isfinite(reading.share);
-        const double way = first ? 0 : norm(reading.place - place_);
-        const bool jumped = way > limits_.fastestThing * std::max(span, 0.001) + 2 * limits_.resolution;
-        return !numbers || !reading.present || !(reading.surfaceAge <= 0.05) || !(span >= 0 && span <= 0.01) || jumped;
+        const double way = first || late ? 0 : norm(reading.place - place_);
+        const bool jumped = way > limits_.fastestThing * std::max(silence_ + span, 0.001) + 2 * limits_.resolution;
+        return !numbers || (!reading.present && !late) || reading.tripped || !(reading.surfaceAge <= 0.05) ||
+               !(span >= 0 && span <= 0.01) || jumped;
     }
     /// The share of operators and clutch: half a second to grow, a twentieth to fall. It begins at once.
     double shareAfter(double passed, double wanted, bool first) {
@@ -103,6 +121,8 @@ private:
     haptic_bridge::ForceLimits limits_;
     bool begun_ = false;
     double time_ = 0;
+    bool heard_ = false;  // a reading came, and since then only silence
+    double silence_ = 0;  // [s], since the last reading
     Vec3 place_;
     double share_ = 0;
     double steady_ = 0, moving_ = 1;

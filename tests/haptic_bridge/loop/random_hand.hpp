@@ -113,7 +113,8 @@ public:
         place_.z += std::clamp(height_ - place_.z, -dive_, dive_);
         first_ = dice_.chance(0.003) ? !first_ : first_;
         clutch_ = dice_.chance(clutch_ ? 0.01 : 0.0005) ? !clutch_ : clutch_;
-        absent_ = dice_.chance(0.0005 * trouble_) ? 1 + dice_.below(50) : std::max(absent_ - 1, 0);
+        const bool goes = dice_.chance(0.002 * trouble_);
+        absent_ = goes ? 1 + dice_.below(dice_.oneOf({2, 10, 10, 50})) : std::max(absent_ - 1, 0);
         sand::force::Vec3 read = place_;
         if (dice_.chance(0.0005 * trouble_)) {
             read.y = dice_.odd();

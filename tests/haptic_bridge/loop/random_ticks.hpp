@@ -87,6 +87,11 @@ public:
     }
     [[nodiscard]] haptic_bridge::Guards::Reading next() {
         haptic_bridge::Guards::Reading reading = honest();
+        // A device that gives no reading for a while.
+        silent_ = dice_.chance(0.02) ? 1 + dice_.below(4) : std::max(silent_ - 1, 0);
+        reading.present = silent_ == 0;
+        reading.silent = silent_ > 0;
+        reading.edited = reading.edited && reading.present;
         if (dice_.chance(0.02)) {
             spoil(reading);
         }
@@ -118,7 +123,7 @@ private:
     }
     void spoil(haptic_bridge::Guards::Reading& reading) {
         const double odd = dice_.odd();
-        switch (dice_.below(12)) {
+        switch (dice_.below(13)) {
             case 0:
                 reading_.time = reading.time = odd;
                 break;
@@ -152,6 +157,9 @@ private:
             case 10:
                 reading.felt.stiffness = odd;
                 break;
+            case 11:
+                reading.tripped = true;
+                break;
             default:
                 reading.felt.drag = odd;
                 break;
@@ -162,6 +170,7 @@ private:
     const haptic_bridge::ForceLimits& limits_;
     double span_;  // [s]
     bool paused_ = false;
+    int silent_ = 0;  // [tick], until a reading comes
     haptic_bridge::Guards::Reading reading_;
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "tests/haptic_bridge/loop/fuzz_count.hpp"
 #include "tests/haptic_bridge/loop/push_oracle.hpp"
@@ -42,34 +43,53 @@ public:
             push_.start(tick.time);
             edit_ = 0;
         }
-        if (tick.edited != (edit_ != 0 && tick.surfaceStep >= edit_)) {
+        if (server.hand().lastInput().tripped != trips_) {
+            return trips_ ? "a fourth ramp is felt" : "the force is off although too few faults came";
+        }
+        const bool late = server.hand().lastInput().silent && oracle_.mayBeLate(tick.time);
+        if (tick.edited != (edit_ != 0 && tick.surfaceStep >= edit_ && !late)) {
             return "another tick than the first one after an edit feels it";
         }
         edit_ = tick.edited ? 0 : edit_;
-        PushCheck::Asked asked = oracle_.next(readingOf(tick, server));
-        const std::uint32_t faults = tick.guards & kFaults;
+        PushCheck::Asked asked = oracle_.next(readingOf(tick, server, late));
+        const std::uint32_t faults = tick.guards & haptic_bridge::kFaults;
+        countFault(tick.time, (faults & ~bit(haptic_bridge::Guard::tripped)) != 0);
         if (asked.fault != (faults != 0) && tick.engaged) {
             return asked.fault ? "no guard has acted at a fault" : "a guard has acted without a fault";
         }
         asked.fault = asked.fault || faults != 0;
+        asked.damped = (tick.guards & bit(haptic_bridge::Guard::passivity)) != 0;
         return push_.wrong(tick.sent, asked);
     }
 
     /// Tells that the step of this number has an edit.
     void expectEdit(std::uint64_t step) { edit_ = step; }
 
+    /// Tells that an operator has switched the force on.
+    void expectForce() {
+        trips_ = fault_ = false;
+        faults_.clear();
+    }
+
     ActedCounts counts;
 
 private:
-    static constexpr std::uint32_t kFaults = bit(haptic_bridge::Guard::notANumber) | bit(haptic_bridge::Guard::stale) |
-                                             bit(haptic_bridge::Guard::missed) | bit(haptic_bridge::Guard::lost) |
-                                             bit(haptic_bridge::Guard::jumped);
-
+    /// Counts ramps: three in ten seconds switch the force off.
+    void countFault(double time, bool fault) {
+        if (fault && !fault_) {
+            faults_.push_back(time);
+            trips_ = trips_ || (faults_.size() >= 3 && time - faults_[faults_.size() - 3] <= 10);
+        }
+        fault_ = fault;
+    }
     /// Makes the input of the guards again, with a law of its own.
-    [[nodiscard]] haptic_bridge::Guards::Reading readingOf(const haptic_bridge::Tick& tick, VirtualServer& server) {
+    [[nodiscard]] haptic_bridge::Guards::Reading readingOf(const haptic_bridge::Tick& tick, VirtualServer& server,
+                                                           bool late) {
         const haptic_bridge::TickInput& input = server.hand().lastInput();
         haptic_bridge::Guards::Reading reading{.time = tick.time,
                                                .present = input.reading.present,
+                                               .silent = input.silent,
+                                               .tripped = input.tripped,
                                                .engaged = tick.engaged,
                                                .edited = tick.edited,
                                                .surfaceAge = tick.surfaceAge,
@@ -79,7 +99,7 @@ private:
                                                .place = (1 / limits_.scale) * tick.place,
                                                .velocity = (1 / limits_.scale) * tick.velocity,
                                                .felt = {}};
-        if (tick.engaged) {
+        if (tick.engaged && !late) {
             const haptic_bridge::FeltSand& felt = server.felt();
             reading.felt = model_.at(felt.patch, felt.step, felt.tool, tick.place, tick.time, tick.edited);
         }
@@ -105,6 +125,8 @@ private:
     sand::force::ForceModel model_{scene_.force};
     std::size_t ticks_ = 1;  // the server has read its hand once
     std::uint32_t sitting_ = 0;
+    std::vector<double> faults_;  // [s], when faults began
+    bool fault_ = false, trips_ = false;
     std::uint64_t edit_ = 0;  // number of a step with an edit that no tick has felt yet, or 0
 };
 

@@ -63,7 +63,7 @@ protected:
                 ++ticks_;
                 const double turn = 1.2 + static_cast<double>(ticks_) * 0.004;
                 state_.reading.place = {0.05 * std::cos(turn), 0.05 * std::sin(turn), 0.01 * std::sin(3 * turn)};
-                state_.reading.present = ticks_ % 100 != 99;
+                state_.reading.present = ticks_ % 100 < 100 - lost_;
                 if (ticks_ % 130 == 0) {
                     state_.reading.place.z = std::nan("");
                 }
@@ -107,6 +107,7 @@ protected:
     std::vector<base::Bytes> pieces_;
     std::vector<std::string> printed_;
     std::int64_t ticks_ = 0;
+    int lost_ = 1;  // readings of a hundred
     int engaged_ = 0;
 };
 
@@ -123,6 +124,26 @@ TEST_F(Recorded, ReplaysToTheSameRowsByteForByte) {
     EXPECT_EQ(replay.left(), 0U);
     EXPECT_NE(rows.find(",1\n"), std::string::npos);
     EXPECT_TRUE(printed_.empty());
+}
+
+TEST_F(Recorded, ReplaysAForceThatThreeFaultsSwitchOff) {
+    open(folder_.file("ticks.csv"));
+    lost_ = 20;
+    sit(25);
+    EXPECT_TRUE(hand_->tripped());
+    lost_ = 5;
+    const std::uint64_t felt = hand_->handTicks().felt();
+    sit(10);  // another link does not switch it on
+    EXPECT_TRUE(hand_->tripped());
+    EXPECT_EQ(hand_->handTicks().felt(), felt);
+    hand_->switchOn();
+    sit(10);
+    EXPECT_FALSE(hand_->tripped());
+    EXPECT_GT(hand_->handTicks().felt(), felt);
+    recorder_.reset();
+    TickReplay replay(scene_, pieces_);
+    EXPECT_EQ(replayed(replay, steps_.size()), written());
+    EXPECT_EQ(replay.left(), 0U);
 }
 
 TEST_F(Recorded, LeavesOutTicksOfStepsThatWereNotShown) {
@@ -260,6 +281,21 @@ TEST(TickTrack, HasOneFormOfEachNumber) {
     const int refused =
         test::widenedNumbers(encode(piece), [](const base::Bytes& wide) { return encode(decodeTrackPiece(wide)); });
     EXPECT_EQ(refused, 1 + 3 * 4 + 2 * 2) << "their count, three times and a step of each, and two places";
+}
+
+TEST(TickTrack, KeepsLostReadingsAndForceThatIsOff) {
+    TrackPiece piece;
+    for (int flags = 0; flags < 4; ++flags) {
+        TickInput& tick = piece.ticks.emplace_back();
+        tick.silent = flags % 2 == 1;
+        tick.tripped = flags >= 2;
+        tick.reading.present = !tick.silent;
+    }
+    const TrackPiece read = decodeTrackPiece(encode(piece));
+    for (std::size_t i = 0; i < piece.ticks.size(); ++i) {
+        EXPECT_EQ(read.ticks[i].silent, piece.ticks[i].silent) << i;
+        EXPECT_EQ(read.ticks[i].tripped, piece.ticks[i].tripped) << i;
+    }
 }
 
 TEST(TickTrack, RefusesTimesThatNoClockShows) {

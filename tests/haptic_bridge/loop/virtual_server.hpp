@@ -33,14 +33,14 @@ public:
           maker_(scene, deviceHand_, output(), {}, [this] { return now_; }),
           sand_(scene),
           ceiling_(ceiling) {
-        share(std::nullopt);
+        setShare(std::nullopt);
         hand_->rest(0);
     }
 
     /// Links a master with the sand that the server has, or with `sand`.
     void link(const haptic_bridge::ForceShare& force = {}, std::optional<sand::Replica> sand = std::nullopt) {
         sand_ = sand ? *std::move(sand) : maker_.sand();
-        share(force);
+        setShare(force);
         maker_.start(++session_, {++epoch_, sand_.stepNumber(), sand_.stateHash(), force});
         if (!maker_.running()) {
             maker_.state(sand_.encodeState());
@@ -49,11 +49,15 @@ public:
     }
     /// Ends the link, as when a master leaves or dies.
     void unlink() {
-        share(std::nullopt);
+        setShare(std::nullopt);
         maker_.release();
     }
-    void share(const std::optional<haptic_bridge::ForceShare>& sent) {
-        hand_->shareForce(haptic_bridge::feltShare({ceiling_, forceUntilCtl}, sent));
+    /// Takes a ForceShare of the linked master, as Peer does.
+    void share(const haptic_bridge::ForceShare& sent) {
+        setShare(sent);
+        if (sent.byOperator && sent.share > 0) {
+            hand_->switchOn();
+        }
     }
     void edit(sand::Edit edit) { maker_.edit({std::move(edit)}); }
 
@@ -106,6 +110,7 @@ public:
     haptic_bridge::FrameCost cost;                       // of each frame
     bool forceUntilCtl = false;                          // the server was started with --force-until-ctl
     bool sandThreadHangs = false;                        // the thread that makes steps does nothing
+    std::int64_t sweepNs = 0;  // [ns], cost of a sweep and of a sub-step; 0: the frames of the wall have `cost`
     std::function<void(const base::Bytes& stepMessage)> onStep;
 
 private:
@@ -118,13 +123,32 @@ private:
                     }
                 }};
     }
+    void setShare(const std::optional<haptic_bridge::ForceShare>& sent) {
+        hand_->shareForce(haptic_bridge::feltShare({ceiling_, forceUntilCtl}, sent));
+    }
+    /// Returns the frame that shows the last step.
+    [[nodiscard]] haptic_bridge::Shown frame() const {
+        haptic_bridge::Shown shown{.stepNumber = maker_.sand().stepNumber(), .frameIntervalNs = 16'666'667};
+        if (sweepNs > 0) {
+            const sand::StepWork& work = maker_.sand().lastWork();
+            shown.cost.sweeps = work.sweeps;
+            shown.cost.sweepNs = work.sweeps * sweepNs;
+            shown.cost.substeps = work.substeps;
+            shown.cost.dragNs = work.substeps * sweepNs;
+        }
+        return shown;
+    }
     void runSand() {
         maker_.collect();
         if (maker_.running() && now_ >= maker_.due()) {
             maker_.makeStep();
             shown_ = sandIsStopped ? shown_ : maker_.sand().stepNumber();
             if (!sandIsStopped || held != haptic_bridge::Held::no) {
-                maker_.shown({shown_, 16'666'667, sandIsStopped ? held : haptic_bridge::Held::no, cost}, now_);
+                haptic_bridge::Shown shown = frame();
+                shown.stepNumber = shown_;
+                shown.held = sandIsStopped ? held : haptic_bridge::Held::no;
+                shown.cost = sweepNs > 0 ? shown.cost : cost;
+                maker_.shown(shown, now_);
             }
         }
         maker_.refresh();
