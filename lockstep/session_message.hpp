@@ -57,7 +57,8 @@ struct Readiness {
     // one. The rank has set it back. Empty if nothing was changed.
     std::string otherFloats{};
     std::string tile{};  // name of the tile that the rank draws; empty at the master
-    bool mayStillCome = false;  // whether `error` is about something that a later start may find (base::NotYetError)
+    // Whether `error` is about something that a later start may find (base::NotYetError).
+    bool mayStillCome = false;
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("host", base::text(it.host, kMostText));

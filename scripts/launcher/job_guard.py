@@ -4,7 +4,7 @@
 
     job_guard.py LIFE MPIRUN MARK [OUTPUT...]
 
-LIFE is a pipe that nobody writes: it ends with the launcher. The job ends in order by itself, because its input ends. This
+LIFE is a pipe that ends with the launcher. The job ends in order by itself, because its input ends. This
 process empties the pipes of its output meanwhile, and kills it if it does not end.
 """
 

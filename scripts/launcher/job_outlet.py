@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A pipe into which mpirun writes its output. Whatever happens to the disk or to the reader of the output, mpirun can go on.
+"""A pipe into which mpirun writes its output. So a full disk or a slow reader of the output cannot hinder mpirun.
 
 A thread empties the pipes, so that mpirun never keeps output in memory. If the launcher ends, job_guard.py empties them.
 """
@@ -15,8 +15,8 @@ import bounded_log
 PIPE_BYTES = 1 << 20
 PIECE = 1 << 20
 MOST_AT_ONCE = 4 << 20  # bytes that one call of pump() reads
-# Bytes that wait to be read as lines. Lines are slow to read: while they are, the thread below must still keep up with mpirun,
-# which would keep in memory what the pipe does not take.
+# Bytes that wait to be read as lines. Lines are slow to read, and the thread below must keep up with mpirun meanwhile. mpirun
+# keeps all output in memory that the pipe does not take.
 MOST_WAITING = 1 << 18
 LOOK_MILLISECONDS = 500
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What mpirun needs of a machine: the loopback interface, shared memory, and room for temporary files (docs/doctor.md).
+"""Checks the needs of mpirun on a machine: the loopback interface, shared memory, and room for temporary files (docs/doctor.md).
 
 Without one of them mpirun fails with text of its own, which does not always name the reason.
 """
@@ -30,7 +30,7 @@ class Need:
 
     name: str
     why: str
-    words: str = ""  # what was found, if it is met
+    words: str = ""  # the finding for a need that is met
     may_come: bool = True  # whether a wait may help
 
     def good(self):

@@ -44,7 +44,7 @@ class EndWatch:
     """Watches an mpirun for the deadlock that Open MPI 4.1 sometimes has when it ends after a rank has failed.
 
     The thread that frees PMIx then waits for another one, which waits for a lock of the first. All ranks have ended, and
-    mpirun sleeps for ever. An mpirun that could not write its temporary files may sleep for ever before its first rank.
+    mpirun sleeps for ever. An mpirun that could not write its temporary files may sleep before its first rank, without an end.
     """
 
     def __init__(self, pid, seconds=STUCK_SECONDS):

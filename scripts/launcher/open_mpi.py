@@ -22,8 +22,8 @@ ANSWER_SECONDS = 20
 CONNECT_SECONDS = 20  # for a connection of ssh; a host that is off does not refuse it
 VERSION = re.compile(r"^mpirun \(Open MPI\) (([0-9]{1,4})\.([0-9]{1,4})\S{0,40})$", re.MULTILINE)
 AGENTS = ("OMPI_MCA_plm_rsh_agent", "PRTE_MCA_plm_ssh_agent")  # each names a program in place of ssh
-# The launcher chooses the hosts. mpirun must not take them from the file of hosts or the default host of a user's or a site's Open MPI,
-# or from a scheduler, such as a shell of salloc or Grid Engine.
+# The launcher chooses the hosts. mpirun must not take them from the defaults of a user's or a site's Open MPI. In a shell of
+# salloc or Grid Engine, it must not take them from the scheduler.
 OWN_HOSTS_4 = {"orte_default_hostfile": "none", "orte_default_dash_host": "none", "ras": "^slurm,gridengine,tm,loadleveler,lsf,alps",
                "plm": "^slurm,tm,lsf,alps", "plm_rsh_disable_qrsh": "1", "plm_rsh_disable_llspawn": "1"}
 OWN_HOSTS_5 = {"PRTE_MCA_prte_default_hostfile": "none", "PRTE_MCA_prte_default_dash_host": "none"}

@@ -59,7 +59,7 @@ class StopSignals:
     """Counts the signals that ask the session to end. Create it before the first process is started.
 
     SIGHUP stays ignored if the launcher was started so, as nohup does. It is ignored too if no stream of the launcher is a
-    terminal, because then the end of a terminal ends no input and no output. `nohup timeout 8h sandwall run` needs this:
+    terminal, because the end of a terminal then changes nothing for it. `nohup timeout 8h sandwall run` needs this:
     timeout sets SIGHUP back. A shell without job control starts a command in the background with SIGINT ignored, so that
     SIGINT counts in any case.
     """

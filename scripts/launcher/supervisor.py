@@ -254,7 +254,7 @@ class Supervisor:
     def same_again(self, failure):
         """Ends the session if a try has failed before its first frame exactly as the try before. Another try would not help.
 
-        Returns whether it has. It goes on after a kill from outside, and where a spare may replace the host.
+        Returns whether it has. A kill from outside does not count, and neither does a failure on a host that a spare may replace.
         """
         before, self.before_frame = self.before_frame, failure if failure.frame is None else None
         if before is None or failure.frame is not None or failure.how in KILLS or (failure.rank and self.hosts.spares):

@@ -16,7 +16,7 @@ import open_mpi
 import reachable
 
 LONG = "x" * 10000
-# What a login prints before the command, and what it prints after it.
+# The text that a login prints before the command, and the text that it prints after the command.
 GREETINGS = {"nothing": ("", ""), "a line": ("*** Welcome, last login yesterday ***\n", ""), "two words": ("Good morning\n", ""),
              "10 kB without a line feed": (LONG, ""), "lines before and after": ("program yes\nmachine a b\n", "\nmachine c d\nbye\n"),
              "lines of a terminal": ("Good morning\r\n\r\n", "logout\r\n"), "a time": ("@ 3\n5.0\n", "")}

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that the output of a job stays small on the disk and hinders nobody, and that a job ends with its launcher."""
+"""Tests that the output of a job stays small on the disk and hinders no process, and that a job ends with its launcher."""
 
 import os
 import pathlib

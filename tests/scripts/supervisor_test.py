@@ -59,7 +59,7 @@ class Stopping(Supervised):
         self.assertEqual((process.returncode, len(self.commands())), (137, 1))
 
     def hung_up(self, command, terminal, types):
-        """Sends SIGHUP to a session that `command` starts. Then types a line that ends it, if the test expects it to go on.
+        """Sends SIGHUP to a session that `command` starts. Then types a line that ends it, if the test expects it to continue.
 
         Returns the line that has ended it, and what it has printed for a person.
         """
