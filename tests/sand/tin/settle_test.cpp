@@ -106,12 +106,11 @@ TEST(TinSettle, TheProjectionGrowsBeforeItsSand) {
 }
 
 TEST(TinSettle, EndsAtItsLimitWithSandThatSweepsBringToRest) {
-    VertexSand start = layerOf(Kind::jittered, 24);
-    fill(start, [](double x, double) { return x < 12 ? 4096.0 : -4096.0; });
-    const sand::tin::Wide volume = start.volume();
     bool ended = false;
     for (std::int64_t work = 1000; !ended; work *= 100) {
-        VertexSand layer = start;
+        VertexSand layer = layerOf(Kind::jittered, 24);
+        fill(layer, [](double x, double) { return x < 12 ? 4096.0 : -4096.0; });
+        const sand::tin::Wide volume = layer.volume();
         sand::WorkLimit limit(work);
         const auto settled = sand::tin::settle(layer, kTalus, kTalus, 1'000'000, sand::Rim::closed, &limit);
         ended = settled.atRest;
