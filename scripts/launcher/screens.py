@@ -9,11 +9,12 @@ MOST_OUTPUTS = 2  # [output] of a wall whose windows open by themselves
 PATIENCE_SECONDS = 2
 XWAYLAND = "on this Wayland desktop windows need Xwayland: install Xwayland (Debian's xwayland), and log in again"
 FIRST_PORT = 6000  # X display N listens at this port plus N, if it listens on TCP
+NAME = re.compile(r"(?:([^/]*)/)?([^/]*):0*(\d{1,5})(?:\.\d+)?")  # [PROTOCOL/][HOST]:NUMBER[.SCREEN]
 
 
 def present(name=None):
     """Returns whether an X server accepts connections at the display `name`, by default $DISPLAY: [PROTOCOL/][HOST]:NUMBER[.SCREEN]."""
-    found = re.fullmatch(r"(?:([^/]*)/)?([^/]*):0*(\d{1,5})(?:\.\d+)?", os.environ.get("DISPLAY", "") if name is None else name)
+    found = NAME.fullmatch(os.environ.get("DISPLAY", "") if name is None else name)
     if not found:
         return False
     protocol, host, number = found[1], found[2].strip("[]"), int(found[3])
@@ -43,6 +44,11 @@ def missing():
     if os.environ.get("WAYLAND_DISPLAY"):
         return f"no X display (DISPLAY is not set); {XWAYLAND}"
     return ""
+
+
+def may_come():
+    """Returns whether a display that is missing() may still come, as one whose X server still starts."""
+    return NAME.fullmatch(os.environ.get("DISPLAY", "")) is not None
 
 
 def backend(outputs, placed):

@@ -188,7 +188,6 @@ class LargeWall(DisplayTest):
         self.assertEqual(self.start(["-"]).stderr, line)
         self.assertEqual(self.start(["-"], "--gl", "osmesa").stderr, "")
 
-
     def test_a_large_wall_needs_no_display_that_answers(self):
         self.script("mpirun", "#!/bin/sh\n")
         self.environment.update(DISPLAY=":64999", MADE_UP_OUTPUTS="24 0")
@@ -197,9 +196,10 @@ class LargeWall(DisplayTest):
 
 class Refusals(LauncherTest):
     def test_a_display_that_does_not_answer_is_refused_because_nobody_would_see_the_wall(self):
-        for display in (":64999", "unix:64999", "no display", ":99999999", "127.0.0.1:59999", "[::1]:59999", "tcp/localhost:59999"):
+        for display, status in ((":64999", 75), ("unix:64999", 75), ("no display", 2), (":99999999", 2), ("127.0.0.1:59999", 75),
+                                ("[::1]:59999", 75), ("tcp/localhost:59999", 75)):
             self.environment["DISPLAY"] = display
-            self.assertEqual(self.refused(["-"]), f"sandwall: --gl auto: no X server accepts connections at DISPLAY={display}; start it, or "
+            self.assertEqual(self.refused(["-"], status=status), f"sandwall: --gl auto: no X server accepts connections at DISPLAY={display}; start it, or "
                              "correct or unset DISPLAY; --gl osmesa draws in memory\n")
 
     def test_a_wayland_desktop_without_xwayland_is_refused(self):
