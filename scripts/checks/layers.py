@@ -51,12 +51,13 @@ class Project:
             for source in compiled:
                 if source in sources and not (source in self.owner and target["type"] != "STATIC_LIBRARY"):
                     self.owner[source] = name
-        self.library = {}  # {folder: its library}: the library with the folder's name, or else the first
-        for source, name in sorted(self.owner.items()):
-            folder = os.path.dirname(source)
-            if self.targets[name]["type"] == "STATIC_LIBRARY":
-                if folder not in self.library or name == os.path.basename(folder):
-                    self.library[folder] = name
+        static = [(os.path.dirname(source), name) for source, name in sorted(self.owner.items())
+                  if self.targets[name]["type"] == "STATIC_LIBRARY"]
+        self.library = {}  # {folder: its library}: the library with the folder's name, or else the one with most of its sources
+        for folder, name in static:
+            best = self.library.setdefault(folder, name)
+            if best != os.path.basename(folder) and (name == os.path.basename(folder) or static.count((folder, name)) > static.count((folder, best))):
+                self.library[folder] = name
 
     @classmethod
     def of(cls, root, build):

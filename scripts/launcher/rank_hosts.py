@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Chooses the machine of each rank of a session."""
 
+import functools
 import ipaddress
 import pathlib
 import re
@@ -60,6 +61,7 @@ def is_address(host):
         return False
 
 
+@functools.cache  # a name that cannot be resolved may take seconds, and each rank asks for its host
 def addresses(host):
     """Returns the addresses of `host` as (family, address). It has none if the name cannot be resolved."""
     try:

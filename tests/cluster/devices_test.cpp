@@ -142,7 +142,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
 
 TEST_F(Force, FadesWhileTheMasterHangs) {
     const auto session = start({"--wall", wall(1, 1, "mono"), "--scene", scene(), "--device", device(), "--out", out(),
-                                "--no-pictures", "--force-scale", "0.5"});
+                                "--no-pictures", "--force-scale", "0.75"});
     expectHand(*session);
     ASSERT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
     strike(*session, "sandwall-master", SIGSTOP);

@@ -93,13 +93,13 @@ protected:
         EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << session->output();
         return {status.value_or(-1), session->output()};
     }
-    /// The session must have refused its input with status 2 and one line. The line contains `named`: the file and
-    /// line, the option or the value. On a busy machine ranks may also have reported that they wait for the master;
-    /// each such line comes with an event.
-    static void expectOneLine(const Ended& ended, const std::string& named) {
+    /// The session must have refused its input with `status` and one line. The line contains `named`: the file and line,
+    /// the option or the value. On a busy machine ranks may also have reported that they wait for the master; each such
+    /// line comes with an event.
+    static void expectOneLine(const Ended& ended, const std::string& named, int status = 2) {
         const std::string message = support::messagesIn(ended.output);
         const auto waits = static_cast<std::ptrdiff_t>(support::eventsIn(ended.output, "waiting").size());
-        EXPECT_EQ(ended.status, 2) << ended.output;
+        EXPECT_EQ(ended.status, status) << ended.output;
         EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1 + waits) << ended.output;
         EXPECT_TRUE(message.starts_with("sandwall")) << "a line must begin with its program's name: " << ended.output;
         EXPECT_NE(message.find(named), std::string::npos) << ended.output;

@@ -37,6 +37,7 @@ class ThisMachine(unittest.TestCase):
 
         def is_own(found):
             return found[1][0] in ("127.0.0.1", "127.0.1.1", own_address)
+        rank_hosts.addresses.cache_clear()
         with mock.patch("socket.gethostname", return_value=own), mock.patch("socket.getaddrinfo", resolve), \
                 mock.patch("rank_hosts.is_own", is_own):
             return rank_hosts.is_here(listed)

@@ -293,6 +293,12 @@ class Hands(Lines):
         self.only("force", BAD, "at least half of it in 65 of 18344 ticks that ask for force, of 18344 ticks", "the start of a link 1000, no steps 17279",
                   haptic__hand_ticks=18344, haptic__hand_seconds=19, haptic__asked_ticks=outcomes(half=65, start=1000, steps=17279))
 
+    def test_force_that_three_faults_have_switched_off_is_bad_for_an_arm_alone(self):
+        switched_off = {"haptic__asked_ticks": outcomes(half=100, tripped=9000), "haptic__guarded_ticks__tripped": 9000,
+                        "haptic__faulted_ticks": 9003, "haptic__faulted_seconds": 3}
+        self.only("force", BAD, "force stays off after three faults in ten seconds", **switched_off)
+        self.only("force", NOTE, "force stays off after three faults in ten seconds", haptic__arm=False, **switched_off)
+
     def test_slow_motion_is_a_note_however_little_the_hand_had(self):
         said = self.only("force", NOTE, "less because of: slow motion 9830", haptic__asked_ticks=outcomes(half=160, slow_motion=9830, steps=10))
         self.assertIn("at least half of it in 160 of 10000", said)

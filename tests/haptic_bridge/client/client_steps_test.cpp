@@ -114,6 +114,7 @@ TEST(Client, RefusesAPathThatTakesTooLong) {
         if (linkUp(connection)) {
             StepMessage message = stepOf(1, 1);
             message.step.engaged = true;
+            message.step.path.clear();
             for (std::size_t i = 0; i < sand::kMaxPathPoints; ++i) {
                 message.step.path.push_back({i % 2 == 0 ? -sand::kMaxProbe : sand::kMaxProbe, 0, 0});
                 if (message.step.path.size() == 2) {

@@ -280,7 +280,7 @@ TEST(TickTrack, HasOneFormOfEachNumber) {
     piece.ticks[2].surfaceProbe = {7, 9, 0};
     const int refused =
         test::widenedNumbers(encode(piece), [](const base::Bytes& wide) { return encode(decodeTrackPiece(wide)); });
-    EXPECT_EQ(refused, 1 + 3 * 4 + 2 * 2) << "their count, three times and a step of each, and two places";
+    EXPECT_EQ(refused, 1 + 3 * 5 + 2 * 2) << "their count; flags, three times and a step of each; and two places";
 }
 
 TEST(TickTrack, KeepsLostReadingsAndForceThatIsOff) {
