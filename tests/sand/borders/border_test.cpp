@@ -187,8 +187,10 @@ TEST(Settle, WithAToolHeldGoesOnInTheStepsAfter) {
     EXPECT_FALSE(loaded.settling());
     sand::Replica again = sand;
     Hand(again).hover(sand::Edit::settle);
-    EXPECT_FALSE(again.settling()) << "a settle without a tool ends in its step, and ends the other";
-    EXPECT_TRUE(again.settled());
+    for (int i = 0; i < 1000 && again.settling(); ++i) {
+        Hand(again).hover();
+    }
+    EXPECT_TRUE(again.settled()) << "a settle without a tool takes the place of the other";
 }
 
 // Such sand took two minutes in its step, and no wall has a frame meanwhile.
