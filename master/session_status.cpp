@@ -54,7 +54,7 @@ nlohmann::json Session::status() const {
     return status;
 }
 
-/// A wall that nobody touches must not fill its log. The launcher takes a haptic server for hung that has had no link
+/// The log of an untouched wall must stay short. The launcher takes a haptic server for hung that has had no link
 /// for 10 s, as far as it knows from the events.
 double Session::secondsToRepeat() const {
     constexpr double kRarely = 60, kOften = 5, kAlways = 1;

@@ -31,7 +31,7 @@ std::size_t OwnSteps::due(std::int64_t nowNs, const sand::Replica& sand, bool ed
     if (rests_) {
         return 0;
     }
-    // A rest is no time of steps. The step that ends it does not wait for its period.
+    // The time of a rest does not count for steps. The step that ends it does not wait for its period.
     owed_ = rested ? 1 : owed_ + static_cast<double>(nowNs - lastNs_) * 1e-9 * stepsPerSecond_;
     lastNs_ = nowNs;
     // A pointer is read once per frame. Rounding gives each frame its step, although frames are never quite punctual.

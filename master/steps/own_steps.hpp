@@ -16,7 +16,7 @@
 
 namespace master {
 
-/// What a session does while sand and hand are at rest. It makes steps if its steps are counted.
+/// Behaviour of a session while sand and hand are at rest. It makes steps if its steps are counted.
 enum class AtRest : std::uint8_t { makesSteps, makesNone };
 
 /// The steps that the master numbers itself: how many are due, and the path of their hand.

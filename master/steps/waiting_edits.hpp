@@ -15,7 +15,7 @@ class WaitingEdits {
 public:
     void add(sand::Edit edit) { edits_.push_back(std::move(edit)); }
     [[nodiscard]] bool any() const { return !edits_.empty(); }
-    /// Returns the oldest edit; no edit if none waits.
+    /// Returns the oldest waiting edit, or Edit::none.
     [[nodiscard]] sand::Edit next() const { return edits_.empty() ? sand::Edit() : edits_.front(); }
     /// Removes the edits whose numbers are in `steps`.
     void removeThoseIn(const std::vector<haptic_bridge::TimedStep>& steps) {

@@ -42,8 +42,8 @@ public:
     /// Writes the fluxes as two whole grids of a field of this size. The division into pieces makes no difference.
     void encode(int columns, int rows, base::ByteWriter& writer) const;
     /// Reads what encode() wrote. Throws base::FormatError for invalid bytes, and for a flux that no sweep of these
-    /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them:
-    /// another number would let sand vanish, or come from nowhere, in each sweep.
+    /// faces makes. A sweep takes the fluxes of closed rims from memory, where they are 0, and never computes them.
+    /// Another number would change the volume in each sweep.
     static Inertia decode(base::ByteReader& reader, const FieldFaces& faces);
 
 private:

@@ -39,7 +39,7 @@ constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "close
 /// costs more, because its outline goes into the mesh and out of it.
 inline constexpr std::int64_t kMostSubsteps = 1 << 21, kMostSubstepsOfTin = 1 << 14;
 
-/// What a step may state in bytes.
+/// Limits of the numbers that a step states in bytes.
 struct StepLimits {
     std::int32_t leastSweeps = 1, mostSweeps = kMostSweeps;
     std::int64_t mostSubsteps = kMostSubsteps;  // of its path

@@ -11,7 +11,8 @@ class WorkLimit {
 public:
     explicit WorkLimit(std::int64_t cells) : left_(cells) {}
 
-    /// Takes `cells` from what is left. If less is left, takes nothing more from now on, and returns false.
+    /// Subtracts `cells` from the work that is left. If less is left, subtracts nothing more from now on, and returns
+    /// false.
     [[nodiscard]] bool take(std::int64_t cells) {
         reached_ = reached_ || cells > left_;
         left_ -= reached_ ? 0 : cells;

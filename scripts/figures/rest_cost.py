@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Compares what a wall that nobody touches costs with several builds: growth of its journal and log, bytes written, processor time.
+"""Compares what an untouched wall costs with several builds: growth of its journal and log, bytes written, processor time.
 
 Runs one session of each build after the other, without a hand. BIN is a build's folder of programs; the scripts/sandwall of its
 own source folder starts them. Prints a table in Markdown. docs/figures.md has one.

@@ -75,7 +75,7 @@ def found(kind, named):
 def journal_at(named):
     """Returns the journal that a user has named: a file, or the journal in a session's folder.
 
-    If the name itself is a link to a file, returns that file, because nobody follows a link to a part of a journal.
+    If the name itself is a link to a file, returns that file, because links to parts of a journal are refused.
     """
     if os.path.isdir(named):
         return str(pathlib.Path(named) / JOURNAL)

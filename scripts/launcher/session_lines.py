@@ -134,7 +134,7 @@ def force(summary, _):
     outcomes, seconds, faulty = dict(haptic["asked_ticks"].items()), haptic["hand_seconds"], haptic["faulted_seconds"]
     asked, had = sum(outcomes.values()), outcomes["half"]
     not_chosen = asked - sum(outcomes[cause] for cause in CHOSEN)
-    # Force that three faults have switched off is no further fault, and nobody lacks that of a recording.
+    # Force that three faults have switched off does not count as another fault. A recording has no hand that lacks it.
     off = guards.get("tripped", 0)
     by_fault = sum(outcomes[cause] for cause in FAULTY if haptic["arm"] or cause != "tripped")
     words = f"at least half of it in {had} of {counted(asked, 'tick')} that ask for force, of {counted(ticks, 'tick')} {SERVER_START}"
@@ -151,7 +151,7 @@ def force(summary, _):
     if haptic["literal"]:
         words = f"guards literal, without force limits; {words}"
     often = faulty >= LEAST_SECONDS_FAULTED and faulty > BAD_SECONDS_FAULTED * seconds
-    if (faulted - off > BAD_TICKS_FAULTED * ticks or haptic["arm"] and often  # nobody feels the faults of a recording
+    if (faulted - off > BAD_TICKS_FAULTED * ticks or haptic["arm"] and often  # a recording has no hand that feels the faults
             or by_fault > MOST_TICKS_RAMPED and had < BAD_FORCE * (had + by_fault)):
         return BAD, words
     noted = (often or haptic["literal"] or guards.get("not_a_number") or faulted > MOST_TICKS_FAULTED * ticks or had < LEAST_FORCE * not_chosen)

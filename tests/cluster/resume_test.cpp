@@ -141,7 +141,7 @@ TEST_F(Resuming, ASessionGoesOnWhereItStopped) {
                   "other.toml: ");
 }
 
-/// Walls that nobody touches. The master numbers the steps, and makes none while nothing moves.
+/// Untouched walls. The master numbers the steps, and makes none while nothing moves.
 class Rest : public SessionTest {
 protected:
     /// Awaits the rest and returns the status that reports it.

@@ -174,7 +174,7 @@ private:
     std::int64_t nowNs_ = 1'000'000 * kMs;
 };
 
-// The log of a wall that nobody touches must not grow by a line each second.
+// The log of an untouched wall must not grow by a line each second.
 TEST(Measurements, PrintALineAMinuteWhileNeitherStepNorHandChanges) {
     Lines lines;
     std::ptrdiff_t moving = 0;

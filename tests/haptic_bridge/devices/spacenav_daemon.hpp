@@ -72,7 +72,7 @@ public:
     void push(int right, int up, int away) { send({kMotion, right, up, away, 0, 0, 0, 16}); }
     void button(int number, bool down) { send({down ? kPress : kRelease, number, down ? 1 : 0, 0, 0, 0, 0, 0}); }
     void unplug() { send({kDevice, 1, 0, 0, 0, 0, 0, 0}); }
-    /// Return the number of clients that have come, of those that got an answer, and of questions that were answered.
+    /// Return the number of clients, the number of clients that got an answer, and the number of answered questions.
     [[nodiscard]] int clients() const { return came_; }
     [[nodiscard]] int links() const { return links_; }
     [[nodiscard]] int answers() const { return answers_; }

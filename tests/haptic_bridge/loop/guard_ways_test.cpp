@@ -304,7 +304,7 @@ TEST_F(WayAround, AnArmThatComesBackIsFeltInTheRampOfTwoSeconds) {
     for (const double away : {0.0, std::nan("")}) {
         there = std::isnan(away);
         place = away;
-        server_->run(there ? 0.001 : 0.011);  // ten lost readings are no fault
+        server_->run(there ? 0.001 : 0.011);  // ten lost readings only fade the force
         EXPECT_EQ(force(), 0);
         there = true;
         place = 0;
