@@ -5,6 +5,7 @@ import contextlib
 import http.server
 import io
 import os
+import sys
 import threading
 import time
 
@@ -168,8 +169,10 @@ class Server(http.server.ThreadingHTTPServer):
         finally:
             self.places.release()
 
-    def handle_error(self, *_):
-        pass  # the client has gone, or was too slow
+    def handle_error(self, request, client_address):
+        # An OSError means that the client has gone, or was too slow. Everything else is a fault of ours.
+        if not isinstance(sys.exc_info()[1], OSError):
+            super().handle_error(request, client_address)
 
 
 def page_folder():
