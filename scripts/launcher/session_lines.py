@@ -151,7 +151,8 @@ def force(summary, _):
     if haptic["literal"]:
         words = f"guards literal, without force limits; {words}"
     often = faulty >= LEAST_SECONDS_FAULTED and faulty > BAD_SECONDS_FAULTED * seconds
-    if (faulted - off > BAD_TICKS_FAULTED * ticks or haptic["arm"] and often  # a recording has no hand that feels the faults
+    # Nobody feels the force of a recording or of a mouse.
+    if (haptic["arm"] and (often or faulted - off > BAD_TICKS_FAULTED * ticks)
             or by_fault > MOST_TICKS_RAMPED and had < BAD_FORCE * (had + by_fault)):
         return BAD, words
     noted = (often or haptic["literal"] or guards.get("not_a_number") or faulted > MOST_TICKS_FAULTED * ticks or had < LEAST_FORCE * not_chosen)

@@ -66,8 +66,8 @@ RULES = (
          f"half in at least {percent(lines.LEAST_FORCE)} of the ticks that neither a person nor the start explains; a fault in at most {percent(lines.MOST_TICKS_FAULTED)} of all ticks",
          "half in fewer ticks, more faults, a place or force that is not a number, or `--guards literal`",
          f"half in less than {percent(lines.BAD_FORCE)} of the ticks that have half or lack it because of the arm or the link, if more than {lines.MOST_TICKS_RAMPED} lack it; "
-         f"a fault of an arm in more than {percent(lines.BAD_SECONDS_FAULTED)} of the seconds, and in at least {lines.LEAST_SECONDS_FAULTED}; "
-         f"a fault in more than {percent(lines.BAD_TICKS_FAULTED)} of the ticks; or a device that answered in no tick",
+         f"a fault of an arm in more than {percent(lines.BAD_SECONDS_FAULTED)} of the seconds, and in at least {lines.LEAST_SECONDS_FAULTED}, "
+         f"or in more than {percent(lines.BAD_TICKS_FAULTED)} of the ticks; or a device that answered in no tick",
          "forces.md", ("hand.asked", "haptic.hand_ticks", "haptic.faulted_ticks", "haptic.hand_seconds", "haptic.faulted_seconds", "haptic.asked_ticks",
                        "haptic.guarded_ticks", "haptic.literal", "haptic.arm"), lines.force),
     Rule("strokes", "steps that the haptic server did not make, and samples of the hand that are in no step", "none because of wall or disk",

@@ -79,3 +79,18 @@ def film(**fields):
     """Returns the summary of a film, with other values."""
     return without_hand(**{"pace": "replay", "journal": {**SUMMARY["journal"], "policy": "off", "state": "off", "whole": False, "checkpoints": 0},
                            **fields})
+
+
+SERVER_DIED = {"what": "the haptic server was killed by SIGKILL", "restarted": False, "server": True, "now": True}
+# Summaries that give each line of the report.
+SAMPLES = (SUMMARY, without_hand(), film(), changed(per_rank=[{**rank(1), "views": {"skipped": 0, "in_part": 0, "whole": 0, "pixel_share": 0.0}}]),
+           changed(head_tracking={**HEAD, "lost": 2}, slowest={"rank": 2, "name": "rank 2", "share": 0.9, "wall_waited_ms": 20.0}),
+           changed(recoveries=[RECOVERY, {**RECOVERY, "seconds_to_next_frame": None, "seconds_to_link": 1.5}], held_seconds__pause=2.0, edits=2),
+           changed(divergences=3, healed=1, unhealed=2, master_healed=1, outvoted=1, compared__at_end=False, compared__first_difference=9),
+           changed(hand={**SUMMARY["hand"], "links": 0, "frames_with_hand": 0, "linked_at_end": False, "slow_motion": None, "last_refusal": "no answer"},
+                   compared__server_at_end=None),
+           changed(haptic__felt_ticks=0, haptic__faulted_ticks=10000, haptic__guarded_ticks__lost=10000),
+           changed(hand__frames_with_hand=0, hand__linked_at_end=False, haptic__refused_by_server={**REFUSALS, "secret": 2}),
+           changed(steps_unplaced=3, refused_press={"tool_shape": "sphere", "tool_radius": 0.6, "largest_radius": 0.5}),
+           changed(hand={**SUMMARY["hand"], "asked": "pointer"}), changed(dark=[DARK]),
+           changed(journal__state="no_room", journal__whole=False, journal__full_disk={"times": 1, "seconds": 2.0}))
