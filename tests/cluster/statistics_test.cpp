@@ -66,11 +66,11 @@ TEST_F(WallStatistics, ComeAndGoInThePicturesAtTheOperatorsWish) {
     }
 }
 
-// At six frames per second each frame takes as many steps as a frame may hold, even on a busy machine. So the frame
-// messages differ only by the statistics.
+// With a number of steps, a session makes them also at rest. At six frames per second each frame then takes as many steps
+// as a frame may hold, even on a busy machine. So the frame messages differ only by the statistics.
 TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
     const auto usualBytes = [this](std::vector<std::string> more) {
-        more.insert(more.end(), {"--frames", "9", "--refresh", "6", "--no-pictures"});
+        more.insert(more.end(), {"--steps", "80", "--refresh", "6", "--no-pictures"});
         const Ended ended = runToEnd(stillWall(1, 2, more));
         EXPECT_EQ(ended.status, 0) << ended.output;
         return summary()["broadcast_bytes"]["p50"].get<double>();

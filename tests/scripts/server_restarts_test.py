@@ -101,7 +101,9 @@ read -r line; kill $!; echo "told: $line"; exit 0""")
         self.assertEqual((status, len(self.servers())), (1, 3), error)
         self.assertIn("told: stop\n", printed)
         self.assertIn("sandwall: the session is given up", error)
-        self.assertEqual(error.count("the haptic server was killed by SIGKILL; shown: frame 5, step 4"), 3, error)
+        self.assertEqual(error.count("the haptic server was killed by SIGKILL; shown: "), 3, error)
+        # On a busy machine the first server may die before the launcher has read of a frame.
+        self.assertIn("the haptic server was killed by SIGKILL; shown: frame 5, step 4\n  output of all tries", error)
 
 
 class HungServer(unittest.TestCase):
