@@ -8,7 +8,9 @@
 namespace sand {
 namespace {
 
-constexpr std::int64_t kMostCells = std::int64_t{1} << 30;  // below the tool, summed over the sub-steps of one step
+// Cells below the tool, summed over the sub-steps of one step. A TIN costs more, because the outline goes into the mesh and
+// out of it.
+constexpr std::int64_t kMostCells = std::int64_t{1} << 27, kMostCellsOfTin = std::int64_t{1} << 25;
 
 }  // namespace
 
@@ -22,7 +24,8 @@ StepLimits Rules::stepLimits() const { return tin == 0 ? StepLimits{} : StepLimi
 std::int64_t Rules::mostSubsteps() const {
     const std::int64_t side = 2 * std::int64_t{tuning.tool.radius / kProbePerCell} + 2;  // [cell], with any heading
     const std::int64_t cells = std::min<std::int64_t>(side, columns) * std::min<std::int64_t>(side, rows);
-    return std::min(kMostCells / std::max<std::int64_t>(cells, 1), stepLimits().mostSubsteps);
+    const std::int64_t fit = (tin == 0 ? kMostCells : kMostCellsOfTin) / std::max<std::int64_t>(cells, 1);
+    return std::clamp<std::int64_t>(fit, 1, stepLimits().mostSubsteps);
 }
 
 }  // namespace sand

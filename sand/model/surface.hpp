@@ -101,8 +101,8 @@ public:
     [[nodiscard]] virtual bool settlesBySweeps() const { return false; }
     /// Returns the time of a sweep in which all sand moves, at least that of the field's cells [cell of a grid].
     [[nodiscard]] virtual std::int64_t sweepCost() const = 0;
-    /// Returns the work that settle() may take in a step [cell of a grid, in a sweep]. It is less than half a second
-    /// for 512 x 512 cells.
+    /// Returns the work that settle() may take in a step [cell of a grid, in a sweep]. It is about half a second for
+    /// 512 x 512 cells.
     [[nodiscard]] std::int64_t mostSettlingWork() const {
         constexpr std::int64_t kVisits = 1536, kLeastCells = 512 * 512;
         return kVisits * std::max(sweepCost(), kLeastCells);

@@ -65,7 +65,7 @@ TEST(HostileGrid, IsNotDraggedAlongAPathThatTakesHours) {
         return path;
     };
     // 64 points are 63 ways of 1023 sub-steps and more. A tool of 400 cells covers 802 x 802 cells. Together that is
-    // 4.1e10, and the limit is 2^30 = 1.1e9. Three points with 202 x 202 cells are 8.3e7.
+    // 4.1e10, and the limit is 2^27 = 1.3e8. Three points with 202 x 202 cells are 8.3e7.
     const auto apply = [&](double toolCells, const std::vector<sand::ProbePoint>& path) {
         Replica replica(samples::flatScene(1024, 1024, toolCells));
         replica.apply({.epoch = 1, .number = 1, .engaged = true, .path = path});
