@@ -67,7 +67,8 @@ TEST(Replica, AHeldToolComesToRest) {
     const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.tuning.tool).obstacle(rest, replica.probe());
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
-            EXPECT_LE(rest.height(x, y), ball.row(y)[x - ball.cells.x0]) << "sand inside the ball at " << x << ", " << y;
+            EXPECT_LE(rest.height(x, y), ball.row(y)[x - ball.cells.x0])
+                << "sand inside the ball at " << x << ", " << y;
         }
     }
 }

@@ -24,7 +24,14 @@ public:
     std::int64_t outflow = 0;                    // volume lost over an open rim [unit · cell]
 
     Sand(sand::HeightField start, const sand::Rules& laws, const sand::Ground* rock)
-        : field(std::move(start)), rules(laws), ground(rock), beyond(field.cells()), seen(beyond), layer(seen), room(seen), slid(seen) {
+        : field(std::move(start)),
+          rules(laws),
+          ground(rock),
+          beyond(field.cells()),
+          seen(beyond),
+          layer(seen),
+          room(seen),
+          slid(seen) {
         slid = sand::CellArray(field.columns(), field.rows());
         for (std::ptrdiff_t y = 0; y < field.rows(); ++y) {
             for (std::ptrdiff_t x = 0; x < field.columns(); ++x) {
@@ -110,9 +117,9 @@ private:
         const std::int32_t before = first ? after : step(cell, cell - along.side, along);
         return float((last ? before : after) + before);
     }
-    /// Returns by how much cell `c` is higher than cell `d`. A step counts at most the room in its lower cell. It counts
-    /// all sand of its upper cell, or up to the start threshold if this cell has a quarter of the sand that the face can
-    /// give; with less sand, less in proportion.
+    /// Returns by how much cell `c` is higher than cell `d`. A step counts at most the room in its lower cell. It
+    /// counts all sand of its upper cell, or up to the start threshold if this cell has a quarter of the sand that the
+    /// face can give; with less sand, less in proportion.
     [[nodiscard]] std::int32_t step(std::ptrdiff_t c, std::ptrdiff_t d, const Along& along) const {
         const std::int32_t height = seen.row(0)[c] - seen.row(0)[d];
         const bool up = height > 0;

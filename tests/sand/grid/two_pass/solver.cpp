@@ -62,7 +62,8 @@ private:
     static std::int32_t roomBelow(const sand::grid::Obstacle* tool, int x, int y, std::int32_t height) {
         const bool reaches = tool != nullptr && !sand::CellRect{x, y, x + 1, y + 1}.clippedTo(tool->cells).empty();
         const std::int32_t under = reaches ? tool->row(y)[x - tool->cells.x0] : sand::grid::Obstacle::kFree;
-        return under == sand::grid::Obstacle::kFree ? kEndless : std::max(std::min(under, sand::kMaxHeight) - height, 0);
+        return under == sand::grid::Obstacle::kFree ? kEndless
+                                                    : std::max(std::min(under, sand::kMaxHeight) - height, 0);
     }
 };
 
