@@ -163,7 +163,9 @@ private:
     /// Returns the room in the row that is `ahead` of the southern one.
     std::int32_t* roomOf(unsigned ahead) { return room_[(here_ + ahead) % 3].data(); }
     void findRoom(const Piece<Law>& piece, const LimitedRow& row, unsigned ahead) {
-        roomBelow(row.room + piece.from - 1, row.heights + piece.from - 1, piece.count() + 2, roomOf(ahead));
+        const int cells = piece.count() + 2;
+        roomBelow(row.room + piece.from - 1, row.heights + piece.from - 1, cells, roomOf(ahead));
+        std::fill_n(roomOf(ahead) + wholeVectors(cells), kVector, 0);  // loops over whole vectors read these numbers
     }
     LimitedRow rowOf(const Piece<Law>& piece, const LimitedRow& row, unsigned ahead) {
         if constexpr (kOnGround) {

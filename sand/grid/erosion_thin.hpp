@@ -153,8 +153,8 @@ private:
     /// Computes the step to each cell of a row, and to one more, from the west. Beyond the rim the last step continues.
     void findEastwards(const LimitedRow& row, ThinSteps& steps) const {
         const int count = piece_.count();
-        findThinSteps(row, row.movedBy(-1), static_cast<std::int32_t>(piece_.sweep.eastLaw.startThreshold), count + 1,
-                      steps);
+        findThinSteps(row, row.movedBy(-1), static_cast<std::int32_t>(piece_.sweep.eastLaw.startThreshold),
+                      wholeVectors(count) + 2, steps);
         if (piece_.from == 0) {
             steps.copy(1, 0);
         }
@@ -166,7 +166,7 @@ private:
     /// (second_). Beyond the rim the last step continues.
     void findNorthwards() {
         const auto highest = static_cast<std::int32_t>(piece_.sweep.northLaw.startThreshold);
-        const int count = piece_.count() + 1;
+        const int count = wholeVectors(piece_.count()) + 2;  // addUp() reads two numbers beyond its vectors
         const LimitedRow &south = piece_.isFirstRow() ? here_ : south_, &here = piece_.isFirstRow() ? north_ : here_;
         findThinSteps(here, south, highest, count, first_);
         const LimitedRow &above = piece_.isLastRow() ? here_ : north_, &below = piece_.isLastRow() ? south_ : here_;
