@@ -35,14 +35,8 @@ CellRect Erosion::blocksAround(const CellRect& cells) const {
 
 void Erosion::touch(const CellRect& cells) {
     if (!cells.empty()) {
-        wake(cells);
-        undisturbed_ = 0;
-    }
-}
-
-void Erosion::wake(const CellRect& cells) {
-    if (!cells.empty()) {
         marked_.add(blocksAround(cells));
+        undisturbed_ = 0;
     }
 }
 
