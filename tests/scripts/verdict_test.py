@@ -7,6 +7,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import time
 import unittest
 
 from schema_fixture import ROOT, SessionTest
@@ -49,6 +50,10 @@ class Verdict(SessionTest):
         self.await_event(session, "progress", hand="hand linked")
         os.kill(haptic_server_of(session.pid), signal.SIGKILL)
         self.await_event(session, "link", state="lost")
+        # The master sees the end of the link before the launcher sees the end of the process.
+        end = time.monotonic() + 30
+        while not (self.out / "failures.jsonl").exists() and time.monotonic() < end:
+            time.sleep(0.05)
         session.send_signal(signal.SIGINT)
         self.assertEqual(session.wait(120), 1, self.log.read_text())
         failure = json.loads((self.out / "failures.jsonl").read_text())
