@@ -8,8 +8,8 @@
 namespace sand {
 namespace {
 
-// Cells below the tool, summed over the sub-steps of one step. A TIN costs more, because the outline goes into the mesh and
-// out of it.
+// Cells below the tool, summed over the sub-steps of one step. A TIN costs more, because the outline goes into the mesh
+// and out of it.
 constexpr std::int64_t kMostCells = std::int64_t{1} << 27, kMostCellsOfTin = std::int64_t{1} << 25;
 
 }  // namespace
