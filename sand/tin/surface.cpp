@@ -206,7 +206,8 @@ bool TinSurface::settle() {
     if (erosion_.settled()) {
         return true;
     }
-    // A TIN may take twice the time of a grid. Its sweeps in steps leave more sand in the wrong place than a projection.
+    // A TIN may take twice the time of a grid. Its sweeps in steps leave more sand in the wrong place than a
+    // projection.
     WorkLimit limit(2 * mostSettlingWork());
     const Settled settled = tin::settle(layer_, threshold_, startThreshold_, kSweepsToRest, rim_, &limit);
     sandMoved(settled.moved);

@@ -93,9 +93,9 @@ protected:
         EXPECT_TRUE(status.has_value()) << "still running after " << seconds << " s:\n" << session->output();
         return {status.value_or(-1), session->output()};
     }
-    /// The session must have refused its input with `status` and one line. The line contains `named`: the file and line,
-    /// the option or the value. On a busy machine ranks may also have reported that they wait for the master; each such
-    /// line comes with an event.
+    /// The session must have refused its input with `status` and one line. The line contains `named`: the file and
+    /// line, the option or the value. On a busy machine ranks may also have reported that they wait for the master;
+    /// each such line comes with an event.
     static void expectOneLine(const Ended& ended, const std::string& named, int status = 2) {
         const std::string message = support::messagesIn(ended.output);
         const auto waits = static_cast<std::ptrdiff_t>(support::eventsIn(ended.output, "waiting").size());

@@ -66,8 +66,8 @@ TEST_F(WallStatistics, ComeAndGoInThePicturesAtTheOperatorsWish) {
     }
 }
 
-// With a number of steps, a session makes them also at rest. At six frames per second each frame then takes as many steps
-// as a frame may hold, even on a busy machine. So the frame messages differ only by the statistics.
+// With a number of steps, a session makes them also at rest. At six frames per second each frame then takes as many
+// steps as a frame may hold, even on a busy machine. So the frame messages differ only by the statistics.
 TEST_F(WallStatistics, TravelOnlyWhileTheyAreShown) {
     const auto usualBytes = [this](std::vector<std::string> more) {
         more.insert(more.end(), {"--steps", "80", "--refresh", "6", "--no-pictures"});
