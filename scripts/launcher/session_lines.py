@@ -151,8 +151,9 @@ def force(summary, _):
     if haptic["literal"]:
         words = f"guards literal, without force limits; {words}"
     often = faulty >= LEAST_SECONDS_FAULTED and faulty > BAD_SECONDS_FAULTED * seconds
-    # Nobody feels the force of a recording or of a mouse.
-    if (haptic["arm"] and (often or faulted - off > BAD_TICKS_FAULTED * ticks)
+    # Only an arm lacks force while it is away. A mouse has a line of its own for that (hand).
+    away = 0 if haptic["arm"] else guards.get("lost", 0)
+    if (faulted - off - away > BAD_TICKS_FAULTED * ticks or haptic["arm"] and often  # nobody feels the faults of a recording
             or by_fault > MOST_TICKS_RAMPED and had < BAD_FORCE * (had + by_fault)):
         return BAD, words
     noted = (often or haptic["literal"] or guards.get("not_a_number") or faulted > MOST_TICKS_FAULTED * ticks or had < LEAST_FORCE * not_chosen)

@@ -66,8 +66,8 @@ RULES = (
          f"half in at least {percent(lines.LEAST_FORCE)} of the ticks that neither a person nor the start explains; a fault in at most {percent(lines.MOST_TICKS_FAULTED)} of all ticks",
          "half in fewer ticks, more faults, a place or force that is not a number, or `--guards literal`",
          f"half in less than {percent(lines.BAD_FORCE)} of the ticks that have half or lack it because of the arm or the link, if more than {lines.MOST_TICKS_RAMPED} lack it; "
-         f"a fault of an arm in more than {percent(lines.BAD_SECONDS_FAULTED)} of the seconds, and in at least {lines.LEAST_SECONDS_FAULTED}, "
-         f"or in more than {percent(lines.BAD_TICKS_FAULTED)} of the ticks; or a device that answered in no tick",
+         f"a fault of an arm in more than {percent(lines.BAD_SECONDS_FAULTED)} of the seconds, and in at least {lines.LEAST_SECONDS_FAULTED}; "
+         f"a fault in more than {percent(lines.BAD_TICKS_FAULTED)} of the ticks, without those in which a device that is no arm is away; or a device that answered in no tick",
          "forces.md", ("hand.asked", "haptic.hand_ticks", "haptic.faulted_ticks", "haptic.hand_seconds", "haptic.faulted_seconds", "haptic.asked_ticks",
                        "haptic.guarded_ticks", "haptic.literal", "haptic.arm"), lines.force),
     Rule("strokes", "steps that the haptic server did not make, and samples of the hand that are in no step", "none because of wall or disk",
@@ -81,7 +81,7 @@ RULES = (
     Rule("steps", "steps of the sand, edits of an operator, pauses and rests", "none left out", "steps that all ranks left out", "", "journal.md",
          ("steps", "steps_before", "edits", "steps_left_out", "held_seconds.pause", "held_seconds.rest"), lines.steps),
     Rule("press", "steps whose sand no cell could take, so that the tool passed through it, and the largest radius with which the first "
-         "of these presses fits; left out if there was none", "", "any", "", "limits.md", ("steps_unplaced", "refused_press"), lines.press),
+         "of these presses fits; only if there was such a step", "", "any", "", "limits.md", ("steps_unplaced", "refused_press"), lines.press),
     Rule("sand", "whether all replicas had the same sand, and until which frame that was compared", "no difference, and all compared in the last frame",
          "a difference that was healed, or a majority that the journal outvoted", "a difference that was not healed, in a rank or in the haptic server",
          "healing.md", ("divergences", "server_divergences", "healed", "master_healed", "outvoted", "unhealed", "compared", "state_hash",
@@ -102,7 +102,7 @@ RULES = (
          ("head_tracking",), lines.head),
     Rule("skew", "time from the first swap of a frame to its last, on a wall of several ranks", "99 % up to a period", "more", "",
          "cluster.md", ("ranks", "frames", "frames_before", "pace", "refresh_hz", "skew_us.p99"), lines.skew),
-    Rule("monitors", "outputs whose monitor was off or had another size, and for how long; left out if there was none", "", "any", "",
+    Rule("monitors", "outputs whose monitor was off or had another size, and for how long; only if there was such an output", "", "any", "",
          "backends.md", ("dark[].output", "dark[].tile", "dark[].monitor", "dark[].times", "dark[].seconds", "dark[].at_end"), lines.monitors),
     Rule("slowest", "the rank for which the wall waited; left out if none stands out", "", "a rank stands out", "",
          "summary.md", ("slowest.name", "slowest.share"), lines.slowest),

@@ -158,7 +158,9 @@ class Hands(Lines):
     def test_faults_are_a_note_and_more_than_half_are_bad(self):
         for faulted, mark in ((100, GOOD), (101, NOTE), (5000, NOTE), (5001, BAD)):
             self.check("force", mark, f"a fault in {faulted}", haptic__faulted_ticks=faulted, haptic__guarded_ticks__missed=faulted)
-        self.check("force", NOTE, haptic__faulted_ticks=5001, haptic__arm=False)  # a mouse that was away
+        for away, mark in ((0, BAD), (1, NOTE), (5001, NOTE)):  # ticks in which a mouse was away
+            self.check("force", mark, haptic__faulted_ticks=5001, haptic__guarded_ticks__lost=away, haptic__arm=False)
+        self.check("force", BAD, haptic__faulted_ticks=5001, haptic__guarded_ticks__lost=5001)
         self.only("force", NOTE, "not_a_number 1", haptic__guarded_ticks__not_a_number=1)
         self.only("force", NOTE, "guards literal", haptic__literal=True)
         self.check("force", GOOD, "guards that acted: ramp 500", haptic__guarded_ticks__frozen=9000)
