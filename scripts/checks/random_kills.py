@@ -24,9 +24,12 @@ import events
 import layout
 import processes
 import session_control
+import session_report
 import session_results
+import session_rules
 from command_line import Parser, above
 from rank_hosts import BadInput
+from session_lines import BAD
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SIGNALS = ("KILL", "SEGV", "ABRT", "TERM", "BUS", "STOP")
@@ -145,9 +148,12 @@ def strike(session, which, name, chance):
 
 def check_end(session, status):
     """Throws Violation if the session failed, or if its last hash differs from that of an undisturbed replay."""
-    if status != 0:
+    if status not in (0, session_report.NOT_GOOD):
         raise Violation(f"the session ended with status {status}; see {session.log.name}")
     summary = session_results.read_summary(session.out)
+    # Without steps the hand has no force, and each restart is a time without steps.
+    if bad := [f"{name}: {words}" for mark, name, words in session_rules.lines_of(summary) if mark == BAD and name != "force"]:
+        raise Violation(f"the session is not good: {'; '.join(bad)}")
     replayed = subprocess.run([layout.bin_folder() / "sandwall-replay", session.out / "session.journal", "--hash"], capture_output=True, text=True)
     found = (replayed.stdout.split() or [""])[-1]
     if replayed.returncode != 0 or found != summary["state_hash"]:

@@ -8,6 +8,7 @@ import shlex
 
 import checked_json
 import console
+import events
 import layout
 import session_results
 import session_rules
@@ -148,4 +149,7 @@ class Report:
             console.OUT.line(json.dumps(json_of(lines, summary, self.out, status), indent=1))
         elif lines:
             console.OUT.line(text_of(title, lines, self.out, replay, status, console.colours()))
+        if lines:
+            named = {mark: [name for found, name, _ in lines if found == mark] for mark in (BAD, NOTE)}
+            events.emit("report", status=status, bad=named[BAD], notes=named[NOTE])
         return status

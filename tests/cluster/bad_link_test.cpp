@@ -35,7 +35,7 @@ TEST_F(BadLink, TheWallGoesOnOverDelayJitterStallsAndAReset) {
     const int linked = ask("status").value("step", 0);
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) >= linked + 60; });
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(link.resets(), 1);
     const nlohmann::json told = summary();
     EXPECT_EQ(told["divergences"], 0);

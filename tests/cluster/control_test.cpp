@@ -53,7 +53,7 @@ protected:
     /// Stops the session and replays its journal.
     void endAndReplay(int edits) {
         ask("stop");
-        EXPECT_EQ(session_->wait(kLong), 0) << session_->output();
+        expectInOrder(*session_);
         EXPECT_EQ(summary()["divergences"], 0);
         EXPECT_EQ(summary()["server_divergences"], 0);
         EXPECT_EQ(summary()["edits"], edits);
@@ -233,7 +233,7 @@ TEST_F(Operator, WithBestEffortAFolderThatFillsUpEndsTheJournalAndNotTheSession)
     EXPECT_FALSE(ask("status")["journal"]);
     EXPECT_EQ(ask("status")["journal_state"], "failed");
     ask("stop");
-    EXPECT_EQ(session_->wait(kLong), 0) << session_->output();
+    expectInOrder(*session_);
     EXPECT_EQ(summary()["divergences"], 0);
     const support::Ran replayed = support::runProgram("sandwall-replay", out() + "/session.journal");
     EXPECT_EQ(replayed.status, 0) << "the written part of the journal is damaged";

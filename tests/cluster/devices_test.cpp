@@ -135,7 +135,7 @@ TEST_F(Force, SwitchedOffByAnOperatorStaysOffWhenEveryProcessHasStartedAgain) {
     (void)ask("force on");
     EXPECT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(forces().back(), 0);
     EXPECT_GT(summary()["haptic"]["asked_ticks"]["off"], 1000);
 }
@@ -150,7 +150,7 @@ TEST_F(Force, FadesWhileTheMasterHangs) {
     strike(*session, "sandwall-master", SIGCONT);
     EXPECT_TRUE(session->waitUntil([&] { return lastAre(false); })) << session->output();
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_GT(summary()["haptic"]["guarded_ticks"]["frozen"], 0);
     EXPECT_GT(summary()["haptic"]["asked_ticks"]["steps"], 0);
     EXPECT_EQ(forces().back(), 0);

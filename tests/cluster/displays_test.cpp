@@ -80,7 +80,7 @@ TEST_F(Displays, TilesAreSeenWhereTheWallFileSaysAndKeysAreObeyedInAnyWindow) {
         EXPECT_TRUE(screen.comesToShow(left, 10, 20)) << "the sand does not come back";
         screen.type(windows[0], support::XScreen::kEscape);
     }
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(left.rgb, tile("r1c1_middle").rgb);
     EXPECT_EQ(right.rgb, tile("r1c2_middle").rgb);
     EXPECT_FALSE(left.rgb == right.rgb);
@@ -119,7 +119,7 @@ TEST_F(Displays, TwoWindowsShowEachEyeItsPictureInEveryModeOfTheirSize) {
         }
     }
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["divergences"], 0);
 }
 
@@ -147,7 +147,7 @@ TEST_F(Displays, AWindowShowsSwappedEyesAsSoonAsAnOperatorAsks) {
         }
     }
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["divergences"], 0) << "all ranks drew the same view";
 }
 
@@ -170,7 +170,7 @@ TEST_F(Displays, ADarkTileIsNamedUntilItsMonitorIsBack) {
     EXPECT_FALSE(session->waitForEvent("monitor", {{"state", "on"}}).is_null()) << session->output();
     EXPECT_EQ(ask("status")["dark"], nlohmann::json::array());
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     const nlohmann::json dark = summary()["dark"];
     ASSERT_EQ(dark.size(), 1U) << dark;
     EXPECT_EQ(dark[0]["output"], "r1c1");

@@ -81,7 +81,7 @@ TEST_F(Drill, AHapticLinkThatIsSilentOrGarbledComesBackByItself) {
     EXPECT_FALSE(session->waitForEvent("without_hand", {{"reason", "lost"}}).is_null()) << session->output();
     EXPECT_FALSE(session->waitForEvent("link", {{"state", "linked"}, {"epoch", 3}}).is_null()) << session->output();
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_GE(summary()["haptic"]["reconnects"], 1);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["server_divergences"], 0);

@@ -30,7 +30,7 @@ protected:
 TEST_F(Ending, CtrlCLeavesJournalAndSummaryWhole) {
     const auto session = runningSession();
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_FALSE(session->waitForEvent("stopping").is_null()) << session->output();
     expectNothingLeft();
     EXPECT_EQ(summary()["state_hash"], replayedHash());

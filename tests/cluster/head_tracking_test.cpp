@@ -81,7 +81,7 @@ TEST_F(HeadTracking, ATrackerThatFallsSilentIsReportedAndItsLastPoseHeld) {
     EXPECT_EQ(sent.status, 0) << sent.output;
     EXPECT_FALSE(session->waitForEvent("head_tracking", {{"state", "lost"}}).is_null()) << session->output();
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_GT(summary()["head_tracking"]["packets"], 0);
     EXPECT_GE(summary()["head_tracking"]["lost"], 1);
     const std::string held = firstTile();

@@ -45,7 +45,7 @@ TEST_F(Listening, NothingButMpirunItselfListensBeyondThisMachine) {
     EXPECT_TRUE(elsewhere.empty()) << *elsewhere.begin() << " listens on an address that other hosts can reach:\n"
                                    << text;
     EXPECT_TRUE(local.contains("sandwall-haptic")) << "this test must see at least the haptic server's port\n" << text;
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
 }
 
 }  // namespace

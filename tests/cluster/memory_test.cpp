@@ -84,7 +84,7 @@ TEST_P(Memory, OfARankIsSmallBesideItsFrameBuffersAndHoldsTheLibrariesOfItsBacke
     const std::set<std::string> drawing = librariesOf(*rank);
     const std::set<std::string> bridging = librariesOf(*master);
     session->type("stop");
-    ASSERT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     const auto report = summary()["per_rank"][0];
     const double frameBuffers = report["frame_buffer_bytes"];
     // Each eye has colour and depth, and in a window also a back buffer.

@@ -67,7 +67,7 @@ TEST_F(Recovery, KillsOfEveryProcessLoseNothing) {
     strike(*session, "sandwall-haptic-server", SIGTERM);
     EXPECT_TRUE(session->waitUntil([&] { return links() > before; })) << session->output();
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_GE(summary()["recoveries"].size(), 3U);
     EXPECT_GE(summary()["steps"], lastShown);
     EXPECT_EQ(summary()["divergences"], 0);
@@ -94,7 +94,7 @@ TEST_F(Recovery, ARankWithoutMemoryEndsAndTheSessionGoesOn) {
     (void)answer("load level");  // the session may end before it answers
     expectSteps(*session, "recovered", 1);
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_GE(summary()["recoveries"].size(), 1U);
     EXPECT_EQ(summary()["steps_left_out"], 0);
     EXPECT_EQ(summary()["divergences"], 0);
@@ -121,7 +121,7 @@ TEST_F(Recovery, AHapticServerThatHangsIsKilledAndStartedAgain) {
     // second.
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 150; });
     session->signal(SIGINT);
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["haptic"]["reconnects"], 1);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["server_divergences"], 0);

@@ -216,7 +216,7 @@ TEST_F(Rest, EndsWithNothingButAHandAnEditOrARestartWhichLosesNothing) {
     const nlohmann::json again = awaitRest();
     EXPECT_EQ(ask("settle")["step"], again.value("step", 0) + 1) << "the edit is in the next step";
     ask("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["edits"], 1);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
 }

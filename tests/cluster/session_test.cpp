@@ -48,7 +48,7 @@ TEST_F(Lockstep, AnOperatorSettlesTheSandOnEveryReplica) {
     EXPECT_FALSE(session->waitForEvent("command_refused").is_null()) << session->output();
     awaitStatus([](const nlohmann::json& now) { return now.value("edits", 0) == 1; });
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["edits"], 1);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["state_hash"], replayedHash());
@@ -58,7 +58,7 @@ TEST_F(Lockstep, ASessionLeavesItsPicturesAndItsFigures) {
     const auto began = std::chrono::steady_clock::now();
     const Ended ended =
         runToEnd({"--wall", wall(2, 2), "--scene", scene(), "--device", "script:gis", "--steps", "60", "--out", out()});
-    ASSERT_EQ(ended.status, 0) << ended.output;
+    expectInOrder(ended);
     for (const char* name : {"tile_r1c1_left.png", "tile_r1c1_right.png", "tile_r2c2_left.png", "tile_r2c2_right.png",
                              "wall_left.png", "wall_right.png", "wall_anaglyph.png", "session.journal"}) {
         EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
@@ -122,7 +122,7 @@ TEST_F(Lockstep, AHapticServerThatComesBackIsLinkedAgain) {
     const int linked = ask("status")["step"];
     awaitStatus([&](const nlohmann::json& now) { return now.value("step", 0) > linked + 30; });
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(summary()["divergences"], 0);
     EXPECT_EQ(summary()["server_divergences"], 0) << "the server must continue from the wall's sand";
     EXPECT_EQ(summary()["haptic"]["reconnects"], 1);

@@ -71,7 +71,7 @@ protected:
     }
     void expectOneSand(support::ChildProcess& session) const {
         session.signal(SIGINT);
-        EXPECT_EQ(session.wait(kLong), 0) << session.output();
+        expectInOrder(session);
         EXPECT_EQ(summary()["divergences"], 0);
         EXPECT_EQ(summary()["server_divergences"], 0);
         EXPECT_EQ(summary()["steps_left_out"], 0);

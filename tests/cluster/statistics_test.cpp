@@ -32,7 +32,7 @@ TEST_F(WallStatistics, NameTheRankThatIsSlowOnAStillWallNowAndInTheSummary) {
     });
     EXPECT_NE(slow["slowest"]["name"].get<std::string>().find("r2c1"), std::string::npos) << slow;
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     const nlohmann::json result = summary();
     EXPECT_EQ(result["slowest"]["rank"], 3);
     EXPECT_GE(result["per_rank"][2]["draw_ms"]["p50"], 150) << "the injected fault takes 150 ms per frame";
@@ -48,7 +48,7 @@ TEST_F(WallStatistics, ComeAndGoInThePicturesAtTheOperatorsWish) {
         ask(words);
     }
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     const auto picture = [this](int number) {
         return pictures::readPng(folder_ / "out" / ("capture_00" + std::to_string(number)) / "tile_r1c2_right.png");
     };
@@ -125,7 +125,7 @@ TEST_F(WallStatistics, AStillWallLeavesTheCoresIdle) {
     reached(first + 120);
     const auto after = threadTimes(processes);
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     double share = 0;
     for (const auto& [thread, times] : after) {
         if (const auto then = before.find(thread); then != before.end()) {
@@ -157,7 +157,7 @@ TEST_F(Clocks, ThatDifferChangeNoTimeOfTheSummary) {
     const Ended ended =
         runToEnd({"--wall", wall(1, 3, "mono"), "--scene", scene(), "--device", "script:gis", "--frames", "40",
                   "--no-pictures", "--inject", "slow:rank=1,ms=150,frame=2", "--out", out()});
-    ASSERT_EQ(ended.status, 0) << ended.output;
+    expectInOrder(ended);
     const nlohmann::json result = summary();
     EXPECT_LT(result["skew_us"]["max"], 1e6 * kAhead / 2) << "times of swaps";
     ASSERT_EQ(result["per_rank"].size(), 3U);
@@ -190,7 +190,7 @@ TEST_F(Clocks, ThatDifferChangeNoTimeOfAPointer) {
         });
     }
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     const double latency = summary()["latency_ms"]["p50"];
     EXPECT_GT(latency, 0) << "from the motion of the pointer to the picture";
     EXPECT_LT(latency, 1e3 * kAhead / 2);

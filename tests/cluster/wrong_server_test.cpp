@@ -33,7 +33,7 @@ TEST_F(WrongServer, WithOtherSandIsCountedAndStartsAgainFromTheWalls) {
     EXPECT_EQ(now["server_divergences"], 1);
     EXPECT_EQ(now["linked"], true);
     session->type("stop");
-    EXPECT_EQ(session->wait(kLong), 0) << session->output();
+    expectInOrder(*session);
     EXPECT_EQ(server.states(), 1) << "the server must get the wall's whole sand once";
     EXPECT_EQ(summary()["server_divergences"], 1);
     EXPECT_EQ(summary()["divergences"], 0) << "no rank has diverged";

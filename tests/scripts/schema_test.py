@@ -36,12 +36,12 @@ class RealSessions(SessionTest):
         session.stdin.flush()
         self.await_event(session, "command_refused")
         self.assertEqual(self.ctl("stop"), {"ok": True})
-        self.assertEqual(session.wait(120), 0, self.log.read_text())
+        self.in_order(session)
         summary = session_results.summary_of(self.out)
         self.valid("summary", summary)
         self.assertIn("head_tracking", summary)
         self.assertIn("force_us", summary["haptic"])
-        self.assertTrue({"progress", "link", "listening", "head_tracking", "command_refused"} <= set(self.events_by_name()))
+        self.assertTrue({"progress", "link", "listening", "head_tracking", "command_refused", "report"} <= set(self.events_by_name()))
         self.reject_all("summary", summary)
         self.reject_all("status", status)
 
@@ -60,7 +60,7 @@ class RealSessions(SessionTest):
         self.valid("summary", session_results.summary_of(film))
 
     def test_the_report_of_a_session(self):
-        ended = subprocess.run([*self.command("--frames", "20", "--device", "script:gis"), "--json"], capture_output=True, text=True,
+        ended = subprocess.run([*self.command("--frames", "20", "--device", "script:gis", "--pace", "fast"), "--json"], capture_output=True, text=True,
                                timeout=200, stdin=subprocess.DEVNULL)
         self.assertEqual(ended.returncode, 0, ended.stderr)
         report = json.loads(ended.stdout)

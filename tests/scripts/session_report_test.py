@@ -108,6 +108,14 @@ class Sessions(LauncherTest):
             else:
                 self.assertIn("dunes: NOT GOOD, exit status 1\n", ended.stdout)
 
+    def test_the_last_event_has_the_status_and_the_names_of_the_lines_with_a_mark(self):
+        self.environment["SANDWALL_EVENTS"] = "1"
+        for summary, status, bad in ((SUMMARY, 0, []), (WRONG, 1, ["volume"])):
+            self.prepare(summary)
+            for words in ((), ("--json",)):
+                last = self.start(["-"], "--gl", "osmesa", *words).stderr.splitlines()[-1]
+                self.assertEqual(last, f"@sandwall {json.dumps({'event': 'report', 'status': status, 'bad': bad, 'notes': []})}")
+
     def test_ctrl_c_of_a_good_session_has_status_0(self):
         self.environment["WAIT"] = "1"
         for summary, status in ((SUMMARY, 0), (WRONG, 1)):
