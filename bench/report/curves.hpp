@@ -13,6 +13,7 @@ void anisotropy(const Settings& settings, Csv& csv);
 void decay(const Settings& settings, Csv& csv);
 void heightBits(const Settings& settings, Csv& csv);
 void band(const Settings& settings, Csv& csv);
+void bounds(const Settings& settings, Csv& csv);
 void edit(const Settings& settings, Csv& csv);
 void dig(const Settings& settings, Csv& csv);
 void throughput(const Settings& settings, Csv& csv);

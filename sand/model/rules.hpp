@@ -36,7 +36,7 @@ enum class Rim : std::uint8_t {
 constexpr auto valuesOf(Rim) { return std::array{base::Named{Rim::closed, "closed"}, base::Named{Rim::open, "open"}}; }
 
 /// Most sub-steps in the path of a step with the smallest tool. They take about half a second. A tool of a TIN
-/// costs more, because its outline goes into the mesh and out of it. docs/security.md has figures.
+/// costs more, because its outline goes into the mesh and out of it. `sandwall-bench bounds` measures them.
 inline constexpr std::int64_t kMostSubsteps = 1 << 21, kMostSubstepsOfTin = 1 << 14;
 
 /// Limits of the numbers that a step states in bytes.

@@ -4,6 +4,7 @@
 
 import contextlib
 import http.client
+import io
 import os
 import pathlib
 import re
@@ -177,6 +178,16 @@ class WebPage(unittest.TestCase):
             with contextlib.suppress(OSError, http.client.HTTPException):
                 status = self.answer("/")[0]
         self.assertEqual(status, 200)
+
+    def test_a_fault_of_the_server_is_printed_and_one_of_a_client_is_not(self):
+        for error, lines in ((ConnectionResetError("gone"), 0), (TimeoutError("slow"), 0), (KeyError("a fault of ours"), 1)):
+            with self.subTest(error=error), contextlib.redirect_stderr(io.StringIO()) as said:
+                try:
+                    raise error
+                except type(error):
+                    self.server.handle_error(None, ("127.0.0.1", 1))
+            self.assertEqual(said.getvalue().count("a fault of ours"), lines, said.getvalue())
+            self.assertEqual(said.getvalue() == "", lines == 0, said.getvalue())
 
     def test_a_request_has_its_time_in_all_however_slowly_it_comes(self):
         self.addCleanup(setattr, web_page, "REQUEST_SECONDS", web_page.REQUEST_SECONDS)

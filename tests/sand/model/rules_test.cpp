@@ -72,4 +72,24 @@ TEST(Rules, ATunedToolKeepsTheHeadingOfTheHandUnlessTheOperatorTurnsIt) {
     EXPECT_EQ(headingAfter(kLeftFoot, turned, byHand), turned.heading);
 }
 
+// A step that a frame cannot divide must end soon. Each sub-step visits the cells below the tool, which are a square.
+TEST(Rules, APathHasSoManySubstepsThatItsCellsHaveALimit) {
+    struct Row {
+        std::int32_t radius, side;  // [cell]
+        std::uint64_t tin;
+        std::int64_t most;
+    };
+    constexpr std::int64_t kOfGrid = 1 << 27, kOfTin = 1 << 25;
+    for (const Row& row : {Row{0, 4096, 0, 1 << 21}, Row{3, 4096, 0, 1 << 21}, Row{12, 4096, 0, kOfGrid / (26 * 26)},
+                           Row{60, 4096, 0, kOfGrid / (122 * 122)}, Row{60, 100, 0, kOfGrid / (100 * 100)},
+                           Row{2048, 4096, 0, kOfGrid / (4096 * 4096)}, Row{2048, 16384, 0, kOfGrid / (4098 * 4098)},
+                           Row{12, 512, 1, 1 << 14}, Row{60, 512, 1, kOfTin / (122 * 122)}, Row{2048, 16384, 1, 1}}) {
+        Rules rules = someRules();
+        rules.columns = rules.rows = row.side;
+        rules.tuning.tool = {.radius = row.radius * sand::kProbePerCell};
+        rules.tin = row.tin;
+        EXPECT_EQ(rules.mostSubsteps(), row.most) << row.radius << " cells on " << row.side << ", TIN " << row.tin;
+    }
+}
+
 }  // namespace
