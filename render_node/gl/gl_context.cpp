@@ -7,7 +7,7 @@
 #include <array>
 #include <bit>
 
-#include "base/input_error.hpp"
+#include "base/not_yet_error.hpp"
 #include "render_node/gl/compiler_memory.hpp"
 #include "render_node/gl/gl_environment.hpp"
 #include "render_node/gl/gl_module.hpp"
@@ -50,6 +50,8 @@ std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& req
         } else {
             context = makeWindowContext(std::move(platform), request.windows);
         }
+    } catch (const base::NotYetError&) {
+        throw;  // a display or monitor is missing, which no variable of Mesa changes
     } catch (const base::InputError& error) {
         throw base::InputError(error.what() + environmentHint());
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "base/not_yet_error.hpp"
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
@@ -199,28 +200,30 @@ TEST_F(Displays, AnXServerThatGoesIsNamedAndTheJobEnds) {
     expectNothingLeft(family);
 }
 
-/// Faults of a display. Each is reported before the first frame, in one line with rank, host and cause, and with exit
-/// status 2. One session tests a display and one a shader. Monitors, devices and a missing DISPLAY are tested in
-/// tests/window.
+/// Faults of a display. Each is reported before the first frame, in one line with rank, host and cause. The exit status
+/// says whether a wait may help. One session tests a display and one a shader. Monitors, devices and a missing DISPLAY
+/// are tested in tests/window.
 class NoDisplay : public Displays {
 protected:
-    void expectNamed(const std::string& more, const std::vector<std::string>& arguments, const std::string& named) {
+    void expectNamed(const std::string& more, const std::vector<std::string>& arguments, const std::string& named,
+                     int status) {
         const std::string file = wall(1, 2, "mono");
         std::ofstream(file, std::ios::app) << more;
         std::vector<std::string> all{"--wall", file, "--scene", scene(), "--out", out(), "--frames", "3"};
         all.insert(all.end(), arguments.begin(), arguments.end());
         const Ended ended = runToEnd(all);
-        expectOneLine(ended, named);
-        expectOneLine(ended, "rank 2 (tile r1c2) on " + host() + ": ");
+        expectOneLine(ended, named, status);
+        expectOneLine(ended, "rank 2 (tile r1c2) on " + host() + ": ", status);
     }
 };
 
 TEST_F(NoDisplay, IsReportedOfOneThatCannotBeOpened) {
-    expectNamed("[[place]]\ntiles = [\"r1c2\"]\ndisplay = \":9876\"\n", {}, ":9876");
+    expectNamed("[[place]]\ntiles = [\"r1c2\"]\ndisplay = \":9876\"\n", {}, ":9876", base::kExitNotYet);
 }
 
 TEST_F(NoDisplay, IsReportedOfAShaderThatDoesNotCompile) {
-    expectNamed("", {"--gl", "osmesa", "--inject", "shader:rank=2"}, "render_node/shaders/sand.frag.glsl: ");
+    expectNamed("", {"--gl", "osmesa", "--inject", "shader:rank=2"},
+                "render_node/shaders/sand.frag.glsl: ", base::kExitBadInput);
 }
 
 }  // namespace

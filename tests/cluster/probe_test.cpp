@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include "base/not_yet_error.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/x_server.hpp"
@@ -29,10 +30,11 @@ protected:
         return support::runCommand(fmt::format("env -u DISPLAY timeout 120 {}/sandwall-render-node --probe {} < {}",
                                                SANDWALL_BIN_DIR, options, wallFile));
     }
-    Json doctor(const std::string& wallFile) {
-        const support::Ran ran =
-            support::runCommand(fmt::format("env -u DISPLAY timeout 250 {}/scripts/sandwall doctor {} --json --out {}",
-                                            SANDWALL_SOURCE_DIR, wallFile, folder_.string()));
+    /// `variable` is NAME=VALUE, or empty.
+    Json doctor(const std::string& wallFile, const std::string& variable = "") {
+        const support::Ran ran = support::runCommand(
+            fmt::format("env -u DISPLAY {} timeout 250 {}/scripts/sandwall doctor {} --json --out {}", variable,
+                        SANDWALL_SOURCE_DIR, wallFile, folder_.string()));
         return {ran.status, nlohmann::json::parse(ran.output)};
     }
     /// Returns the finding of the doctor for one check on one rank, or null if the doctor has no such finding.
@@ -93,9 +95,25 @@ TEST_F(Probe, WindowsThatAreNotAsWishedAreTold) {
     EXPECT_EQ(finding(ran, "gl", 2)["shortcomings"], shortcomings);
 
     const support::Ran refused = probe(placedWall(display + "monitors = [\"nowhere\"]"), "2");
-    EXPECT_EQ(refused.status, 2) << refused.output;
+    EXPECT_EQ(refused.status, base::kExitNotYet) << refused.output;
     EXPECT_NE(refused.output.find("nowhere"), std::string::npos) << refused.output;
     EXPECT_NE(refused.output.find(server.display()), std::string::npos) << refused.output;
+}
+
+// With these variables OSMesa would end a rank by SIGSEGV, or refuse OpenGL 3.3.
+TEST_F(Probe, AVariableOfMesaThatLeavesNoContextIsNamedByTheSessionAndByTheDoctor) {
+    const std::string file = wall(1, 1, "mono");
+    for (const std::string variable : {"GALLIUM_DRIVER=zink", "MESA_GL_VERSION_OVERRIDE=2.1"}) {
+        environment_ = {variable};
+        const Ended ended =
+            runToEnd({"--wall", file, "--scene", scene(), "--gl", "osmesa", "--out", out(), "--frames", "3"});
+        expectOneLine(ended, "rank 1 (tile r1c1) on " + host() + ": " + variable + ": ");
+        const Json ran = doctor(file, variable);
+        EXPECT_EQ(ran.status, 1) << ran.found;
+        const nlohmann::json gl = finding(ran, "gl", 1);
+        EXPECT_EQ(gl["good"], false) << ran.found;
+        EXPECT_NE(gl["message"].get<std::string>().find(variable + ": "), std::string::npos) << ran.found;
+    }
 }
 
 TEST_F(Probe, WhatCannotBeTriedIsOneLine) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/not_yet_error.hpp"
 #include "tests/support/x_screen.hpp"
 #include "tests/support/x_server.hpp"
 #include "tests/window/probe_fixture.hpp"
@@ -188,8 +189,8 @@ TEST_F(Window, HandsOverTheKeysThatArePressed) {
 
 TEST_F(Window, NamesTheMonitorsThereAreForOneThatIsNot) {
     start(words({"DP-7"}));
-    EXPECT_EQ(lastLine(2), "window_probe: output out1: no monitor DP-7 on display " + server_->display() +
-                               "; there is screen (800 x 600)\n");
+    EXPECT_EQ(lastLine(base::kExitNotYet), "window_probe: output out1: no monitor DP-7 on display " +
+                                               server_->display() + "; there is screen (800 x 600)\n");
 }
 
 TEST_F(Window, RefusesAMonitorOfAnotherSize) {
@@ -203,7 +204,14 @@ TEST_F(Window, NamesADisplayThatCannotBeOpened) {
     // Uses a display number that no test's server has. The number of a server that has ended may belong to the next
     // test's server, because numbers are given from 0 up.
     start({"--at", "0,0", "--display", ":9876"});
-    EXPECT_TRUE(lastLine(2).starts_with("window_probe: --gl glfw: cannot open X display :9876; is its server running"));
+    EXPECT_TRUE(lastLine(base::kExitNotYet)
+                    .starts_with("window_probe: --gl glfw: cannot open X display :9876; is its server running"));
+}
+
+TEST_F(Window, BlamesNoVariableOfMesaForADisplayThatMayStillCome) {
+    start({"--at", "0,0", "--display", ":9876"}, {"MESA_GL_VERSION_OVERRIDE=2.1"});
+    const std::string line = lastLine(base::kExitNotYet);
+    EXPECT_EQ(line.find("MESA_GL_VERSION_OVERRIDE"), std::string::npos) << line;
 }
 
 TEST_F(Window, SaysWhenThereIsNoDisplayAtAll) {
