@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Asks the hosts of a session, before it starts, whether they can run ranks, and for the identity of each machine."""
 
+import math
 import shlex
 import socket
 import subprocess
@@ -13,6 +14,7 @@ from rank_hosts import HERE, BadInput
 
 LOOK_SECONDS = 0.1
 REACH_SECONDS = 45  # a login may wait 30 s for a name or a folder
+SILENT_SECONDS = 10  # after which the hosts that have not answered are named
 # Machines may have the same name. Each start of a machine has another boot id.
 QUESTIONS = (marked_answer.SAY + '; test -x {node} && echo "program yes"; '
              'echo "machine $(uname -n) $(cat /proc/sys/kernel/random/boot_id)"; mpirun --version 2>/dev/null | say mpi')
@@ -45,16 +47,26 @@ class Answers:
         self.complaints, self.identities, self.absent = {}, {HERE: identity_here()}, set()
 
 
-def ask(hosts, node, version=None, stopped=lambda: False):
+def ask(hosts, node, version=None, stopped=lambda: False, say_silent=lambda hosts: None):
     """Asks all other hosts at once whether they have the program `node`, and an mpirun of the same `version`, if that is given.
 
-    Gives up the hosts that have not answered as soon as stopped() is true.
+    Gives up the hosts that have not answered as soon as stopped() is true. Calls say_silent() once, with the hosts that have
+    not answered after SILENT_SECONDS.
     """
     agent = open_mpi.remote_shell()
     others = sorted(set(hosts) - {HERE}, key=hosts.index)
     asked = []
     found = Answers()
-    deadline = time.monotonic() + REACH_SECONDS
+    began = time.monotonic()
+    say_at = began + SILENT_SECONDS
+
+    def goes_on():
+        nonlocal say_at
+        if time.monotonic() > say_at:
+            say_at = math.inf
+            say_silent([host for host, process in zip(others, asked) if process.poll() is None])
+        return not stopped() and time.monotonic() <= began + REACH_SECONDS
+
     command = marked_answer.marked(QUESTIONS.replace("{node}", shlex.quote(node)))
     try:
         for host in others:
@@ -62,7 +74,7 @@ def ask(hosts, node, version=None, stopped=lambda: False):
                                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
                                           start_new_session=True))
         for host, process in zip(others, asked):
-            complaint, answers = complaint_of(process, node, deadline, agent, stopped)
+            complaint, answers = complaint_of(process, node, agent, goes_on)
             if complaint:
                 found.absent.add(host)
             found.identities[host] = identity_of(answers.get("machine", ""))
@@ -83,20 +95,20 @@ def ask(hosts, node, version=None, stopped=lambda: False):
     return found
 
 
-def outputs_of(process, deadline, stopped):
-    """Returns (standard output, standard error) of a process that ends. Throws TimeoutExpired at `deadline`, or if stopped()."""
+def outputs_of(process, goes_on):
+    """Returns (standard output, standard error) of a process that ends. Throws TimeoutExpired as soon as goes_on() is false."""
     while True:
         try:
             return process.communicate(timeout=LOOK_SECONDS)
         except subprocess.TimeoutExpired:
-            if stopped() or time.monotonic() > deadline:
+            if not goes_on():
                 raise
 
 
-def complaint_of(process, node, deadline, agent, stopped):
+def complaint_of(process, node, agent, goes_on):
     """Returns (why the host that `process` asks cannot run a rank, or None if it can; its answers by their first words)."""
     try:
-        said, complained = outputs_of(process, deadline, stopped)
+        said, complained = outputs_of(process, goes_on)
     except subprocess.TimeoutExpired:
         return f"no answer within {REACH_SECONDS} s; docs/hosts.md", {}
     status, said, complained = marked_answer.of_both(process.returncode, said, complained)

@@ -7,6 +7,7 @@ import socket
 import events
 import rank_hosts
 import reachable
+from patience import Stopped
 from rank_hosts import BadInput, NotYet
 
 STRIKES = 2  # number of failures of a host's ranks after which a spare takes its place
@@ -24,6 +25,7 @@ class SessionHosts:
         self.names, self.spares, self.node, self.version = list(names), list(spares), node, version
         self.identities = {}  # of every host that has answered, as reachable.py reads them
         self.strikes = collections.Counter()
+        self.silent = set()  # hosts that a line has named because they did not answer for a while
 
     def host_of(self, rank):
         """Returns the name of a render rank's host for messages."""
@@ -39,9 +41,10 @@ class SessionHosts:
     def require_reachable(self, print_line):
         """Replaces hosts that cannot be reached or have failed too often by spares, and prints each replacement.
 
-        Throws BadInput if a host cannot run a rank and no spare can replace it: NotYet if the host may still come.
+        Throws BadInput if a host cannot run a rank and no spare can replace it: NotYet if the host may still come. Throws
+        Stopped if stopped() has ended the wait for answers.
         """
-        answers = self.ask(self.names)
+        answers = self.ask(self.names, print_line)
         complaints = answers.complaints
         for host in [host for host, strikes in self.strikes.items() if strikes >= STRIKES and host in self.names]:
             if not self.replace(host, complaints.pop(host, f"{host}: its ranks have failed too often"), print_line):
@@ -50,9 +53,16 @@ class SessionHosts:
             if host in self.names and not self.replace(host, complaint, print_line):
                 raise NotYet(complaint) if host in answers.absent else BadInput(complaint)
 
-    def ask(self, hosts):
-        """Returns the reachable.Answers of the hosts. Notes which machines they are."""
-        answers = reachable.ask(hosts, self.node, self.version, self.stopped)
+    def ask(self, hosts, print_line):
+        """Returns the reachable.Answers of the hosts. Notes which machines they are. Names each host that is silent, once."""
+        def say_silent(silent):
+            if names := [host for host in silent if host not in self.silent]:
+                print_line(f"waits up to {reachable.REACH_SECONDS} s for the answer of {', '.join(names)}; docs/hosts.md")
+                self.silent.update(names)
+
+        answers = reachable.ask(hosts, self.node, self.version, self.stopped, say_silent)
+        if answers.complaints and self.stopped():
+            raise Stopped
         self.identities.update(answers.identities)
         return answers
 
@@ -79,7 +89,7 @@ class SessionHosts:
             if slots < len(ranks):
                 continue
             self.spares.remove((spare, slots))
-            if self.ask([spare]).complaints:
+            if self.ask([spare], print_line).complaints:
                 print_line(f"spare {spare} cannot be reached either")
                 continue
             self.names = [spare if name == host else name for name in self.names]

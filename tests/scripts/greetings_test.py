@@ -24,6 +24,7 @@ AGENT = """#!/bin/sh
 shift
 printf '%s' "$BEFORE"; printf '%s' "$BEFORE" >&2
 sleep "${SILENT:-0}"
+while [ -n "$UNTIL" ] && [ ! -e "$UNTIL" ]; do sleep 0.05; done
 sh -c "$*"; status=$?
 printf '%s' "$AFTER"; printf '%s' "$AFTER" >&2
 exit $status
@@ -104,6 +105,19 @@ class Greetings(unittest.TestCase):
             self.assertEqual(reachable.ask(["host"], self.node).complaints, {})
         with mock.patch.dict(os.environ, SILENT="1000", BEFORE="Good morning\n"), mock.patch("reachable.REACH_SECONDS", 0.2):
             self.assertIn("no answer within 0.2 s", reachable.ask(["host"], self.node).complaints["host"])
+
+    def test_a_host_that_answers_after_a_silence_is_named_and_then_taken(self):
+        named, speaks = [], self.folder / "speaks"
+
+        def say_silent(hosts):
+            named.append(hosts)
+            speaks.touch()
+        for before in ("", LONG):
+            with mock.patch.dict(os.environ, UNTIL=str(speaks), BEFORE=before), mock.patch("reachable.SILENT_SECONDS", 0):
+                found = reachable.ask(["host"], self.node, say_silent=say_silent)
+            self.assertEqual((found.complaints, found.identities["host"]), ({}, reachable.identity_here()))
+            speaks.unlink()
+        self.assertEqual(named, [["host"]] * 2)
 
 
 class Marks(unittest.TestCase):

@@ -6,6 +6,7 @@ import re
 import shutil
 import signal
 import subprocess
+import sys
 import unittest
 
 from launcher_fixture import ROOT
@@ -22,9 +23,30 @@ n=$(($(cat "$folder/asked" 2>/dev/null || echo 0) + 1)); echo $n > "$folder/aske
 [ $n -ge "$(cat "$folder/comes")" ] || { echo "ssh: connect to host late1 port 22: Connection refused" >&2; exit 255; }
 exec sh -c "$*"
 """
+# A host that is silent until there is a file `speaks`, and then answers.
+SILENT = """#!/bin/sh
+folder=${0%/*}/..; shift
+echo asked >> "$folder/asked"
+until [ -e "$folder/speaks" ]; do sleep 0.05; done
+echo "Good morning"
+exec sh -c "$*"
+"""
+# A host that answers none of its first questions. The file `comes` has the number of the first that it answers.
+MUTE = LATE.replace('{ echo "ssh: connect to host late1 port 22: Connection refused" >&2; exit 255; }', "exec sleep 1000")
+# Runs the launcher with another limit, in a process of its own.
+WITH = "import runpy, sys, reachable; reachable.{}; sys.argv = sys.argv[1:]; runpy.run_path(sys.argv[0], run_name='__main__')"
 
 
 class WaitForWall(Supervised):
+    limit = None  # an assignment to a limit of reachable.py
+
+    def command(self, hosts, *options):
+        words = super().command(hosts, *options)
+        if self.limit is None:
+            return words
+        self.environment["PYTHONPATH"] = str(ROOT / "scripts" / "launcher")
+        return [sys.executable, "-c", WITH.format(self.limit), *words]
+
     def test_without_the_option_what_may_come_has_a_status_of_its_own(self):
         self.tries(NO_DISPLAY)
         self.assertEqual(self.ended(["-"]), (NOT_YET, "", f"sandwall-master: {MISSING}\n"))
@@ -69,13 +91,38 @@ class WaitForWall(Supervised):
             error = process.communicate(timeout=60)[1]
             self.assertEqual((process.returncode, error), (0, "sandwall: stopped while it waited for the wall\n"))
 
+    def test_a_host_that_answers_after_a_silence_is_named_and_then_taken(self):
+        self.limit = "SILENT_SECONDS = 0"
+        self.script("agent", SILENT)
+        self.tries(*["progress 1 1; exit 0"] * 2)
+        for options in ((), ("--wait-for-wall", "60")):
+            (self.folder / "speaks").unlink(missing_ok=True)
+            process = self.begin(["silent1", "silent1"], *options)
+            self.assertEqual(process.stderr.readline(), "sandwall: waits up to 45 s for the answer of silent1; docs/hosts.md\n")
+            self.write("speaks", "")
+            error = process.communicate(timeout=60)[1]
+            self.assertEqual((process.returncode, error), (0, ""), options)
+        self.assertEqual(len(self.commands()), 2)
+
+    def test_a_host_that_is_silent_for_too_long_is_asked_again(self):
+        self.limit = "REACH_SECONDS = 1"
+        self.script("agent", MUTE)
+        self.tries("progress 1 1; exit 0")
+        missing = "silent1 (rank 1): no answer within 1 s; docs/hosts.md"
+        self.write("comes", "2")
+        self.assertEqual(self.ended(["silent1"])[::2], (NOT_YET, f"sandwall: {missing}\n"))
+        self.write("comes", "3")
+        self.assertEqual(self.ended(["silent1"], "--wait-for-wall", "60")[::2], (0, f"sandwall: waits up to 60 s for this: {missing}\n"))
+
     def test_ctrl_c_ends_the_wait_for_a_host_that_is_silent(self):
-        self.script("agent", "#!/bin/sh\necho asked > \"${0%/*}/../asked\"\nexec sleep 1000\n")
-        process = self.begin(["silent1"], "--wait-for-wall", "86400")
-        self.wait_for("question", (self.folder / "asked").exists)
-        process.send_signal(signal.SIGINT)
-        process.communicate(timeout=60)
-        self.assertEqual(process.returncode, 0)
+        self.script("agent", SILENT)
+        for options in ((), ("--wait-for-wall", "86400")):
+            (self.folder / "asked").unlink(missing_ok=True)
+            process = self.begin(["silent1"], *options)
+            self.wait_for("question", (self.folder / "asked").exists)
+            process.send_signal(signal.SIGINT)
+            error = process.communicate(timeout=60)[1]
+            self.assertEqual((process.returncode, error), (0, "sandwall: stopped while it waited for the wall\n"), options)
 
     def test_a_display_that_goes_while_the_wall_is_shown_is_a_failure_like_others(self):
         self.tries("progress 7 6; dies 1 host 9", NO_DISPLAY, "progress 8 7; exit 0")
