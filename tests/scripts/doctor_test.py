@@ -9,9 +9,13 @@ import pty
 import re
 import socket
 import subprocess
+import time
 import unittest
+from unittest import mock
 
 from launcher_fixture import ROOT, LauncherTest
+import examined_host
+import first_frame
 
 # Every host is this machine. The name of a host selects its fault.
 AGENT = """#!/bin/sh
@@ -25,6 +29,7 @@ case $host in
     late*) export MADE_UP_SHIFT=3600 ;;
     greets*) echo "Good morning"; printf '%010000d' 7; echo "last login yesterday" >&2 ;;
     walled*) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22"; export MADE_UP_FIREWALL=1 ;;
+    silent*) echo asked >> "${0%/*}/asked"; until [ -e "${0%/*}/speaks" ]; do sleep 0.05; done ;;
     *) export SSH_CONNECTION="127.0.0.1 1 127.0.0.1 22" ;;
 esac
 exec sh -c "$*"
@@ -108,6 +113,26 @@ class Doctor(LauncherTest):
         status, found = self.examine(["greets1", "-", "greets1"])
         self.assertEqual((status, self.reds(found)), (0, 0), found)
         self.assertEqual(found["greets1", "mpi"][1], "mpirun (Open MPI) 4.1.4")
+
+    def test_a_host_that_is_silent_and_then_answers_is_green(self):
+        with subprocess.Popen(self.arguments(["silent1", "-"]), env=self.environment, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, stdin=subprocess.DEVNULL) as process:
+            while not (self.folder / "bin" / "asked").exists() and process.poll() is None:
+                time.sleep(0.01)
+            self.script("speaks", "")
+            said, complained = process.communicate(timeout=200)
+        self.assertEqual((process.returncode, said.splitlines()[-1], complained), (0, "all green", ""), said)
+
+    def test_a_session_on_other_hosts_has_time_for_two_silent_logins(self):
+        limits = []
+
+        def run(command, timeout, **_):
+            limits.append(timeout)
+            return subprocess.CompletedProcess(command, 0, "", "")
+        with mock.patch("subprocess.run", run):
+            for hosts in (["localhost", "localhost"], ["silent1", "localhost"]):
+                first_frame.check_hosts(examined_host.Host("localhost"), hosts, "wall.toml", "osmesa", ())
+        self.assertGreaterEqual(limits[1] - limits[0], 60, "each may take half a minute")
 
     def test_hosts_on_which_no_session_starts_are_red_at_the_end(self):
         self.environment["MPI_FAULT"] = "no daemon on sound1"
