@@ -60,7 +60,7 @@ class Layers(unittest.TestCase):
     def test_a_circle_of_benchmarks_is_named(self):
         found = changed(including("bench/report/csv.cpp", "bench/sand/piles.hpp"))
         self.assertEqual(found, ["bench/report -> bench/sand -> bench/report: a circle of folders, closed by "
-                                 "bench/sand/certificate.cpp that includes bench/report/curves.hpp"])
+                                 "bench/sand/bounds.cpp that includes bench/report/curves.hpp"])
 
     def test_a_circle_of_tests_is_named(self):
         found = changed(including("tests/support/seed.hpp", "tests/master/journal/keeper_fixture.hpp"))
