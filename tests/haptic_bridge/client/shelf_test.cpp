@@ -192,7 +192,7 @@ TEST(Grant, GivesAStepTheEditThatWasAskedFor) {
 
 TEST(Grant, TellsEqualEditsApart) {
     Grant grant({1, 0, 0}, {}, {});
-    for (const std::uint64_t number : {1, 2, 3}) {
+    for (const std::uint64_t number : {1U, 2U, 3U}) {
         grant.asked(withNumber(number, sand::Edit::loaded({1})));
     }
     EXPECT_EQ(arrival(grant, 1, withNumber(2, sand::Edit::loaded({1}))), Grant::Arrival::next);

@@ -45,7 +45,7 @@ protected:
     }
     [[nodiscard]] std::uint64_t losses() const { return device_->troubles()->losses(); }
 
-    const test::Folder folder_;
+    test::Folder folder_;
     std::optional<test::SpacenavDaemon> daemon_{std::in_place, folder_.file("spnav")};
     std::optional<SpacenavDevice> device_;
     double time_ = 0;

@@ -18,7 +18,7 @@ using haptic_bridge::SpacenavDevice;
 /// A daemon whose cap a test pushes, and the time of the hand.
 class Spacenav : public testing::Test {
 protected:
-    const test::Folder folder_;
+    test::Folder folder_;
     test::SpacenavDaemon daemon_{folder_.file("spnav")};
 };
 

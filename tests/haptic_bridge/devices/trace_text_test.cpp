@@ -91,7 +91,7 @@ TEST(StrokesText, IsReadInEveryForm) {
         EXPECT_EQ(strokes.strokes[0].points[0].y, 0.25) << form.name;
     }
     EXPECT_TRUE(test::refusalOf([] {
-                    (void)Strokes::parse(std::string_view("stroke\npoint 0 0\n\0point 1 0\n", 29), "s");
+                    (void)Strokes::parse(std::string_view("stroke\npoint 0 0\n\0point 1 0\n", 28), "s");
                 }).starts_with("s:3: a byte 0 is inside the text"));
 }
 
