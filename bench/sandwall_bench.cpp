@@ -42,6 +42,7 @@ std::vector<Curve> allCurves() {
          10,
          bench::edit},
         {"dig", "time per step of digging, and share of sand that has yet to move", {512, 2048}, 10, bench::dig},
+        {"held-tools", "sand that runs past a tool held on a slope, by run time", {96}, 1, bench::heldTools},
         {"throughput",
          "time per cell of a sweep, beside a copy of the same bytes",
          {64, 128, 256, 512, 1024, 2048, 4096},

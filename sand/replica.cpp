@@ -207,6 +207,9 @@ void Replica::applyToSand(const Step& step, const std::function<void()>& moved) 
         // Sand that the tool held back may flow now.
         surface_->release(toolBefore, before);
     }
+    if (engaged_ && (!wasEngaged || turned || probe_ != before)) {
+        surface_->arrive(tool(), probe_);
+    }
     if (wasEngaged && !engaged_) {
         surface_->leave(toolBefore);
     }

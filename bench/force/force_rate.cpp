@@ -27,9 +27,10 @@ struct ForceMethod {
     sand::Between between;
     double recovery;  // [s]
 };
-constexpr std::array kMethods{
-    ForceMethod{"eq. 9", sand::Between::interpolate, 0}, ForceMethod{"hold", sand::Between::hold, 0},
-    ForceMethod{"local", sand::Between::local, 0.05}, ForceMethod{"local at once", sand::Between::local, 0}};
+constexpr std::array kMethods{ForceMethod{"eq. 9", sand::Between::interpolate, 0},
+                              ForceMethod{"hold", sand::Between::hold, 0},
+                              ForceMethod{"local", sand::Between::local, sand::ForceConstants{}.recoveryTime},
+                              ForceMethod{"local at once", sand::Between::local, 0}};
 
 /// Returns the place of the hand at `time`. It writes a bent eight, and presses and lifts meanwhile: its depth is from
 /// a third of a radius to one radius. It moves by up to half a radius in a sixtieth of a second.

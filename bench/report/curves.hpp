@@ -14,6 +14,7 @@ void decay(const Settings& settings, Csv& csv);
 void heightBits(const Settings& settings, Csv& csv);
 void band(const Settings& settings, Csv& csv);
 void bounds(const Settings& settings, Csv& csv);
+void heldTools(const Settings& settings, Csv& csv);
 void edit(const Settings& settings, Csv& csv);
 void dig(const Settings& settings, Csv& csv);
 void throughput(const Settings& settings, Csv& csv);

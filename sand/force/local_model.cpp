@@ -12,6 +12,13 @@ constexpr double kMotion =
     0.003;  // [s], time over which motion is averaged; the motion of one tick is mostly resolution
 constexpr double kSlowest = 0.1;  // smallest rate of recovery, as a share of the full rate
 
+/// Returns the time constant of the recovery [s]. Control points lie where the tool cuts, and see every change of the
+/// sand there. With the time of `repulse` they keep a hand moving that rests on the sand with its weight.
+double recoveryTimeOf(const ForceConstants& constants) {
+    constexpr double kOfControlPoints = 1.6;  // [recovery time]
+    return (constants.law == ForceLaw::controlPoints ? kOfControlPoints : 1) * constants.recoveryTime;
+}
+
 }  // namespace
 
 Gauges LocalModel::at(const ForceConstants& constants, const SurfacePatch& surface, bool replaced, bool forget,
@@ -58,7 +65,7 @@ void LocalModel::recover(const ForceConstants& constants, const Contour& tool, d
     const Vec3 before = respond(constants, tool, carriedBy(step)).push;
     const auto owed = debt_;
     const auto pay = [&](double rate) {
-        const double kept = std::exp(-span * rate / constants.recoveryTime);
+        const double kept = std::exp(-span * rate / recoveryTimeOf(constants));
         for (std::size_t i = 0; i < debt_.size(); ++i) {
             debt_[i] = kept * owed[i];
         }

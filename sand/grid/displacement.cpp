@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
+#include <limits>
 
 #include "sand/grid/surroundings.hpp"
 #include "sand/model/tool_kernel.hpp"
@@ -295,16 +296,45 @@ Displacement::Work Displacement::drag(HeightField& field, Rim rim, const Ground*
 }
 
 Obstacle Displacement::obstacle(const HeightField& field, ProbePoint probe) const {
-    Obstacle result;
-    result.cells = cells(field, probe);
-    const auto across = static_cast<std::size_t>(std::max(result.cells.x1 - result.cells.x0, 0));
-    result.underside.resize(across * static_cast<std::size_t>(std::max(result.cells.y1 - result.cells.y0, 0)));
-    for (int y = result.cells.y0; y < result.cells.y1; ++y) {
-        const std::size_t first = static_cast<std::size_t>(y - result.cells.y0) * across;
-        shape_.undersides(probe.z, offsetOf(probe, result.cells.x0, y),
-                          std::span(result.underside).subspan(first, across));
+    Obstacle result{cells(field, probe), {}, {}};
+    if (result.cells.empty()) {
+        return result;
     }
+    const CellRect& below = result.cells;
+    const int rows = below.y1 - below.y0 + 2 * Obstacle::kRowsBeside;
+    result.underside.assign(static_cast<std::size_t>(result.stride()) * static_cast<std::size_t>(rows),
+                            Obstacle::kFree);
+    const auto across = static_cast<std::size_t>(below.x1 - below.x0);
+    for (int y = below.y0; y < below.y1; ++y) {
+        const auto first = static_cast<std::size_t>(result.row(y) - result.underside.data());
+        const std::span<std::int32_t> row = std::span(result.underside).subspan(first, across);
+        shape_.undersides(probe.z, offsetOf(probe, below.x0, y), row);
+        std::transform(row.begin(), row.end(), row.begin(), [](std::int32_t from) {
+            return from == TurnedShape::kFree ? Obstacle::kFree : std::min(from, kMaxHeight);
+        });
+    }
+    result.findReached();
     return result;
+}
+
+void Obstacle::findReached() {
+    reached.assign(static_cast<std::size_t>(cells.y1 - cells.y0) + 2, {std::numeric_limits<int>::max(), 0});
+    for (int y = cells.y0; y < cells.y1; ++y) {
+        const std::int32_t* const first = row(y);
+        const std::int32_t* const end = first + (cells.x1 - cells.x0);
+        const auto isHeld = [](std::int32_t under) { return under != kFree; };
+        const std::int32_t* const held = std::find_if(first, end, isHeld);
+        if (held == end) {
+            continue;
+        }
+        const auto last = std::find_if(std::reverse_iterator(end), std::reverse_iterator(first), isHeld).base();
+        const int x0 = cells.x0 + static_cast<int>(held - first) - 1,
+                  x1 = cells.x0 + static_cast<int>(last - first) + 1;
+        for (int beside = 0; beside < 3; ++beside) {
+            Columns& columns = reached[static_cast<std::size_t>(y - cells.y0 + beside)];
+            columns = {std::min(columns.x0, x0), std::max(columns.x1, x1)};
+        }
+    }
 }
 
 }  // namespace sand::grid

@@ -20,13 +20,31 @@ class Surroundings;
 
 /// Underside of the tool while it is in the sand. No flux may raise a cell above it.
 struct Obstacle {
-    CellRect cells;                       // cells for which the underside is defined
-    std::vector<std::int32_t> underside;  // [unit], row by row over `cells`; kFree beside the tool
-    static constexpr std::int32_t kFree = TurnedShape::kFree;
+    /// Far above every height: less a height, it is more than any two heights differ [unit].
+    static constexpr std::int32_t kFree = 1 << 30;
+    // A sweep reads beside the tool without a check, and by whole vectors.
+    static constexpr int kRowsBeside = 2, kColumnsBeside = 16;  // [cell], on each side
 
-    [[nodiscard]] const std::int32_t* row(int row) const {  // begins at column cells.x0
-        return underside.data() + std::ptrdiff_t{row - cells.y0} * (cells.x1 - cells.x0);
+    /// Columns [x0, x1).
+    struct Columns {
+        int x0, x1;
+        friend bool operator==(const Columns&, const Columns&) = default;
+    };
+
+    CellRect cells;  // cells of the field that may be below the tool
+    /// At most kMaxHeight [unit], row by row over `cells` and the cells beside them; kFree beside the tool.
+    std::vector<std::int32_t> underside;
+    /// The cells below the tool and those one beside them, by row from cells.y0 - 1 to cells.y1, both included.
+    std::vector<Columns> reached;
+
+    [[nodiscard]] std::ptrdiff_t stride() const { return cells.x1 - cells.x0 + std::ptrdiff_t{2} * kColumnsBeside; }
+    /// Returns the undersides of a row, which is in `cells` or at most kRowsBeside from them. They begin at column
+    /// cells.x0.
+    [[nodiscard]] const std::int32_t* row(int row) const {
+        return underside.data() + (row - cells.y0 + kRowsBeside) * stride() + kColumnsBeside;
     }
+    /// Fills `reached` from `underside`.
+    void findReached();
 };
 
 /// Moves a tool through the sand of a grid (Dorjgotov et al. 2007, section 3). Takes out the sand above the tool's

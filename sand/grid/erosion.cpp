@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "sand/model/momentum.hpp"
@@ -112,6 +113,8 @@ std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstac
         refreshGhosts(field, swept_.back());
     }
     const double ratio = static_cast<double>(rules_.aspect) / kUnitsPerCell;
+    const bool holds = obstacle != nullptr && !obstacle->cells.empty() && options_.ground == nullptr;
+    const std::optional<HeldFaces> held = holds ? std::optional(HeldFaces{*obstacle}) : std::nullopt;
     const Sweep sweep{
         .heights = field.row(0),
         .heightStride = field.stride(),
@@ -128,6 +131,7 @@ std::int64_t Erosion::sweepOnce(HeightField& field, float momentum, const Obstac
         .inertial = rules_.scheme == Scheme::isotropic,
         .band = rules_.tuning.startThreshold > rules_.tuning.threshold,
         .openRim = rules_.rim == Rim::open,
+        .held = held ? &*held : nullptr,
         .flowed = flowed_.row(0),
         .flowedStride = flowed_.stride()};
     return walk_.sweep(sweep, swept_,

@@ -81,6 +81,8 @@ public:
     /// Wakes the blocks of `cells` and their neighbours, and resets the age of the inertia. Call it after other code
     /// has changed heights in `cells`, or has removed an obstacle from them.
     void touch(const CellRect& cells);
+    /// Makes the next sweep visit the blocks of `cells` and their neighbours. Does not reset the age of the inertia.
+    void wake(const CellRect& cells);
 
     /// What sweeps have done.
     struct Swept {

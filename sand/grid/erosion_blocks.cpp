@@ -35,8 +35,14 @@ CellRect Erosion::blocksAround(const CellRect& cells) const {
 
 void Erosion::touch(const CellRect& cells) {
     if (!cells.empty()) {
-        marked_.add(blocksAround(cells));
+        wake(cells);
         undisturbed_ = 0;
+    }
+}
+
+void Erosion::wake(const CellRect& cells) {
+    if (!cells.empty()) {
+        marked_.add(blocksAround(cells));
     }
 }
 

@@ -7,6 +7,7 @@
 #include "sand/grid/erosion_fluxes.hpp"
 #include "sand/grid/erosion_report.hpp"
 #include "sand/grid/erosion_short_run.hpp"
+#include "sand/grid/erosion_thin.hpp"
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 bool isOdd(int y) { return (y & 1) != 0; }
 
 /// The sweep of one run of blocks.
-template <class Law, bool kSandAlong>
+template <class Law, bool kOnGround>
 class RunSweep {
 public:
     RunSweep(const Sweep& sweep, const RowBuffers& buffers, const BlockRow& blocks, const Run& run, const Law& east,
@@ -60,16 +61,11 @@ private:
 
     [[nodiscard]] CellRow rowAt(int y) const {
         CellRow row{.y = y,
-                    .south = oldHeights(y - 1),
-                    .here = oldHeights(y),
-                    .north = field(y + 1),
+                    .south = {oldHeights(y - 1), nullptr, nullptr},
+                    .here = {oldHeights(y), nullptr, nullptr},
+                    .north = {field(y + 1), nullptr, nullptr},
                     .sliding = buffers_.sliding[isOdd(y)],
                     .slidingAbove = buffers_.sliding[isOdd(y + 1)],
-                    .room = nullptr,
-                    .sand = nullptr,
-                    .limitStride = run_.x1 - run_.x0 + 2,
-                    .rise = buffers_.rise[isOdd(y)],
-                    .riseAbove = buffers_.rise[isOdd(y + 1)],
                     .oldAbove = buffers_.old[(y + 1) % 3]};
         if (y == blocks_.y0 && blocks_.slidingFirst != nullptr) {
             row.sliding = blocks_.slidingFirst;
@@ -77,33 +73,56 @@ private:
         if (y + 1 == blocks_.y1 && blocks_.slidingAbove != nullptr) {
             row.slidingAbove = blocks_.slidingAbove;
         }
-        const std::ptrdiff_t limits = (y - blocks_.y0 + 1) * row.limitStride + 1 - run_.x0;
-        row.room = run_.room != nullptr ? run_.room + limits : nullptr;
-        if constexpr (kSandAlong) {
-            row.sand = run_.sand + limits;
-            row.here = run_.heights + limits;
-            row.south = row.here - row.limitStride;
-            row.north = row.here + row.limitStride;
+        if constexpr (kOnGround) {
+            row.south = limitedRow(y - 1);
+            row.here = limitedRow(y);
+            row.north = limitedRow(y + 1);
         }
         return row;
+    }
+    /// Returns the row of the run's limits.
+    [[nodiscard]] LimitedRow limitedRow(int y) const {
+        const std::ptrdiff_t first = (y - blocks_.y0 + 1) * std::ptrdiff_t{run_.x1 - run_.x0 + 2} + 1 - run_.x0;
+        return {run_.heights + first, run_.sand + first, run_.room + first};
     }
 
     std::int64_t sweepRow(int y) const {
         const CellRow row = rowAt(y);
-        if (!kSandAlong && balances(y)) {
+        if (!kOnGround && balances(y)) {
             keepOldHeights(y);
         }
         std::int64_t outflow = 0;
-        for (int from = run_.x0; from < run_.x1; from += kPiece) {
-            const int end = std::min(from + kPiece, run_.x1);
+        for (int from = run_.x0, end = from; from < run_.x1; from = end) {
+            end = std::min(from + kPiece, run_.x1);
+            const bool held = !kOnGround && cutToHeld(sweep_.held, y, from, end);
             if constexpr (Law::kBand) {
                 markAbove(y, from, end);
             }
-            outflow +=
-                PieceFluxes<Law, kSandAlong>(sweep_, eastLaw_, northLaw_, row, from, end).compute(y == blocks_.y0);
+            outflow += fluxesOf({sweep_, eastLaw_, northLaw_, row, from, end}, held);
             useFluxes(y, from, end);
         }
         return outflow;
+    }
+
+    static std::int64_t fluxesOf(const Piece<Law>& piece, bool held) {
+        if constexpr (kOnGround) {
+            return hasThinSand(piece) ? ThinFluxes<Law>(piece).compute() : limitedFluxes(piece);
+        }
+        if (!held) {
+            return freeFluxes(piece);
+        }
+        if (!piece.isLastRow()) {
+            const std::int32_t* const north = piece.row.north.heights;
+            std::copy(north + piece.from, north + piece.end, piece.row.oldAbove + piece.from);
+        }
+        CellRow row = piece.row;
+        addUndersides(*piece.sweep.held, row);
+        return limitedFluxes({piece.sweep, piece.eastLaw, piece.northLaw, row, piece.from, piece.end});
+    }
+    static std::int64_t limitedFluxes(const Piece<Law>& piece) {
+        LimitedFluxes<Law, kOnGround> fluxes(piece.count());
+        fluxes.begin(piece);
+        return fluxes.compute(piece);
     }
 
     /// Keeps the heights of row y in a buffer. Those of the run's cells are there already, except in the first row.

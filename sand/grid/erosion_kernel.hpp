@@ -2,15 +2,18 @@
 // Private to this folder.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "sand/grid/displacement.hpp"
 #include "sand/model/cell_array.hpp"
 
 namespace sand::grid {
 
 inline constexpr int kMaxBlock = 128;  // [cell], side of the largest block
+inline constexpr int kVector = 8;      // [cell], of AVX2
 
 /// Mask of ones if sand slid in a cell, or 0 if it did not. Sand slid in a cell if some flowed through one of its faces
 /// in the last sweep. The mask is as wide as a height, so that a vector holds as many masks as heights.
@@ -24,22 +27,40 @@ struct AxisLaw {
     float along;  // factor from the sum of four differences along the face to their mean, in the unit across it
 };
 
+/// The cells at whose eastern and northern faces a tool limits slopes and fluxes, for a field without ground. A tool
+/// that is partly outside the field may have cells there.
+struct HeldFaces {
+    const Obstacle& obstacle;
+
+    [[nodiscard]] int y0() const { return obstacle.cells.y0 - 1; }
+    [[nodiscard]] int y1() const { return obstacle.cells.y1 + 1; }
+    /// Returns the cells of a row as whole vectors.
+    [[nodiscard]] Obstacle::Columns columns(int y) const {
+        if (y < y0() || y >= y1()) {
+            return {0, 0};
+        }
+        const auto [x0, x1] = obstacle.reached[static_cast<std::size_t>(y - y0())];
+        return {std::max(x0, 0) / kVector * kVector, (x1 + kVector - 1) / kVector * kVector};
+    }
+    /// Returns the undersides of a row, from column 0 on; Obstacle::kFree beside the tool [unit].
+    [[nodiscard]] const std::int32_t* undersides(int y) const { return obstacle.row(y) - obstacle.cells.x0; }
+};
+
 /// Run of active blocks: those of one row of blocks that touch each other. Two runs of a row of blocks have a block at
 /// rest between them, which is at least two cells wide. So neither reads a number that the other one writes.
 struct Run {
     int x0, x1;  // columns of its cells
-    // Limits over its cells and one more cell on every side, row by row; null without limits.
-    const std::int32_t* heights;  // [unit], heights before the sweep with walls raised; only with a ground
-    const std::int32_t* sand;     // thickness of the sand [unit]; a face gives at most a quarter; only with a ground
-    const std::int32_t* room;     // most that each cell may receive through one face [unit]
+    // Limits over its cells and one more cell on every side, row by row; null without ground.
+    const std::int32_t* heights;  // [unit], heights before the sweep with walls raised
+    const std::int32_t* sand;     // thickness of the sand [unit]; a face gives at most a quarter
+    const std::int32_t* room;     // what each cell may receive in the sweep [unit]; a face brings at most a quarter
 };
 
 /// Numbers of one cell row that a walk hands on to its next row. Each pointer is at column 0 of a row as long as the
 /// field's, with a margin.
 struct RowBuffers {
-    std::int32_t* old[3];   // heights before the sweep; row y is in old[y % 3] [unit]
-    std::int32_t* rise[2];  // sand that each cell's eastern neighbour is higher than its western one [unit]
-    Sliding* sliding[2];    // of an even and an odd row. In a short run the first of nine rows, from south to north.
+    std::int32_t* old[3];  // heights before the sweep; row y is in old[y % 3] [unit]
+    Sliding* sliding[2];   // of an even and an odd row. In a short run the first of nine rows, from south to north.
     std::ptrdiff_t slidingStride;  // between these rows [cell]
     std::int32_t* before;          // last sweep's fluxes to the north of the row below the run; 0 where no run is below
     std::int32_t* flowed[3];       // not 0 where sand flows: in a block's first row, between, and in its last two rows
@@ -60,6 +81,7 @@ struct Sweep {
     bool inertial;   // whether the law has inertia; false for plain G
     bool band;       // whether sand starts to slide beyond a higher threshold than the one at which it stops
     bool openRim;
+    const HeldFaces* held;        // null without a tool, and with ground
     std::uint8_t* flowed;         // bits of `flow` of block (0,0)
     std::ptrdiff_t flowedStride;  // [block]
 };

@@ -8,23 +8,6 @@
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 
-/// Computes the differences for the slope along a face. A step counts at most the sand of its upper cell. Otherwise a
-/// bare cliff would make stable sand beside it slide.
-inline void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                            const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
-                            std::int32_t* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = std::max(std::min(a[i] - b[i], sandA[i]), -sandB[i]);
-    }
-}
-
-inline void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count,
-                 std::int32_t* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = a[i] + b[i];
-    }
-}
-
 /// Masks of sliding cells in two parallel runs of cells. They have no meaning without a band.
 struct SlidingPair {
     const Sliding* behind;
@@ -92,20 +75,16 @@ void eastwardsAndNorthwards(const Law eastLaw, const Law northLaw, const std::in
 }
 #endif
 
-/// Limits each flux to the room of the cell that receives it.
-inline void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                        std::int32_t* __restrict flux) {
-    for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], ahead[i]), -behind[i]);
-    }
+/// Limits a flux to a quarter of `forth`, or of `back` in the other direction: the room of the cell that receives it,
+/// or the sand of the cell that gives it. The four faces of a cell then never bring more than fits, or take more than
+/// it has. Neither is below 0.
+inline std::int32_t limitedToQuarter(std::int32_t flux, std::int32_t forth, std::int32_t back) {
+    return std::max(std::min(flux, forth >> 2), -(back >> 2));
 }
-
-/// Limits each flux to a quarter of the sand in the cell that gives it. Its four faces then never take more than it
-/// has, so that the thickness never becomes negative.
-inline void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                        std::int32_t* __restrict flux) {
+inline void limitToQuarter(const std::int32_t* __restrict forth, const std::int32_t* __restrict back, int count,
+                           std::int32_t* __restrict flux) {
     for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], behind[i] / 4), -(ahead[i] / 4));
+        flux[i] = limitedToQuarter(flux[i], forth[i], back[i]);
     }
 }
 

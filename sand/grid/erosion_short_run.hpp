@@ -6,15 +6,12 @@
 #include <cstring>
 
 #include "sand/grid/block_marks.hpp"
-#include "sand/grid/erosion_loops.hpp"
-#if defined(__wasm_simd128__)
-#include "sand/grid/erosion_loops_wasm.hpp"
-#endif
+#include "sand/grid/erosion_fluxes.hpp"
 
 namespace sand::grid::SANDWALL_CODE_PATH {
 
-inline constexpr int kShortBlock = 8;  // [cell], side of the blocks of a short run: a vector of AVX2
-inline constexpr int kShortRun = 64;   // [cell], a longer run is faster row by row
+inline constexpr int kShortBlock = kVector;  // [cell], side of the blocks of a short run
+inline constexpr int kShortRun = 64;         // [cell], a longer run is faster row by row
 
 // The loops over a run go block by block. The loop over the eight columns of a block then becomes one or two vectors,
 // without a remainder and without a test of its length. All pointers are at the first cell of the first row.
@@ -48,6 +45,40 @@ void fluxesOfBlocks(const Law eastLaw, const Law northLaw, const std::int32_t* _
     }
 }
 #endif
+
+/// Does the same where a tool limits slopes and fluxes. `room` is what fits below the tool.
+template <class Law>
+void heldFluxesOfBlocks(const Law eastLaw, const Law northLaw, const std::int32_t* __restrict heights,
+                        std::ptrdiff_t heightStride, const std::int32_t* __restrict room, std::ptrdiff_t roomStride,
+                        const Sliding* __restrict sliding, std::ptrdiff_t slidingStride, int rows, int width,
+                        std::int32_t* __restrict east, std::int32_t* __restrict north, std::ptrdiff_t fluxStride) {
+    for (int x = 0; x < width; x += kShortBlock) {
+        for (int y = 0; y < rows; ++y) {
+            const LimitedRow row{heights + y * heightStride + x, nullptr, room + y * roomStride + x};
+            const LimitedRow above{row.heights + heightStride, nullptr, row.room + roomStride};
+            const LimitedRow below{row.heights - heightStride, nullptr, row.room - roomStride};
+            const Sliding* const slides = sliding + y * slidingStride + x;
+            std::int32_t* const toEast = east + y * fluxStride + x;
+            std::int32_t* const toNorth = north + y * fluxStride + x;
+            const auto riseNorth = [&](int i) {
+                return static_cast<float>(countedStep<false>(above, i, row, i) + countedStep<false>(row, i, below, i));
+            };
+            const auto riseEast = [](const LimitedRow& of, int i) {
+                return static_cast<float>(countedStep<false>(of, i, of, i - 1) + countedStep<false>(of, i + 1, of, i));
+            };
+            for (int i = 0; i < kShortBlock; ++i) {
+                const std::int32_t forthEast =
+                    eastLaw(row.heights[i] - row.heights[i + 1], riseNorth(i) + riseNorth(i + 1), toEast[i],
+                            eitherOf<Law>(slides, slides + 1, i));
+                const std::int32_t forthNorth =
+                    northLaw(row.heights[i] - above.heights[i], riseEast(row, i) + riseEast(above, i), toNorth[i],
+                             eitherOf<Law>(slides, slides + slidingStride, i));
+                toEast[i] = limitedToQuarter(forthEast, row.room[i + 1], row.room[i]);
+                toNorth[i] = limitedToQuarter(forthNorth, above.room[i], row.room[i]);
+            }
+        }
+    }
+}
 
 /// Does the same as markRow() for `rows` rows of cells.
 inline void markBlocks(const std::int32_t* __restrict east, const std::int32_t* __restrict north,
@@ -178,16 +209,49 @@ private:
         }
     }
 
-    /// Computes the fluxes of rows [from, end) of the blocks.
+    /// Computes the fluxes of rows [from, end) of the blocks. Rows in which the tool limits the same columns go
+    /// together.
     void computeFluxes(int from, int end) const {
-        fluxesOfBlocks(eastLaw_, northLaw_, heights(from), sweep_.heightStride, sliding(from), buffers_.slidingStride,
-                       end - from, width(), east(from), north(from), sweep_.fluxStride);
-        const int stride = width() + 2;
-        for (int y = from; run_.room != nullptr && y < end; ++y) {
-            const std::int32_t* const room = run_.room + (y + 1) * stride + 1;
-            limitToRoom(room, room + 1, width(), east(y));
-            limitToRoom(room, room + stride, width(), north(y));
+        while (from < end) {
+            const Obstacle::Columns held = heldColumns(from);
+            int to = from + 1;
+            while (to < end && heldColumns(to) == held) {
+                ++to;
+            }
+            computeFree({run_.x0, from, held.x0, to});
+            computeHeld({held.x0, from, held.x1, to});
+            computeFree({held.x1, from, run_.x1, to});
+            from = to;
         }
+    }
+    /// Returns the columns of the run whose fluxes the tool limits in row y of the blocks.
+    [[nodiscard]] Obstacle::Columns heldColumns(int y) const {
+        const Obstacle::Columns held =
+            sweep_.held == nullptr ? Obstacle::Columns{0, 0} : sweep_.held->columns(blocks_.y0 + y);
+        const Obstacle::Columns here{std::max(held.x0, run_.x0), std::min(held.x1, run_.x1)};
+        return here.x0 < here.x1 ? here : Obstacle::Columns{run_.x1, run_.x1};
+    }
+    void computeFree(const CellRect& cells) const {
+        const int x = cells.x0 - run_.x0, y = cells.y0;
+        fluxesOfBlocks(eastLaw_, northLaw_, heights(y) + x, sweep_.heightStride, sliding(y) + x, buffers_.slidingStride,
+                       cells.y1 - y, cells.x1 - cells.x0, east(y) + x, north(y) + x, sweep_.fluxStride);
+    }
+    void computeHeld(const CellRect& cells) const {
+        if (cells.empty()) {
+            return;
+        }
+        constexpr std::ptrdiff_t kStride = kShortRun + 2 * kVector;
+        std::array<std::int32_t, (kShortBlock + 2) * kStride>
+            room;  // uninitialised: of the cells and one more on each side
+        std::int32_t* row = room.data();
+        for (int y = cells.y0 - 1; y <= cells.y1; ++y, row += kStride) {
+            const int x = cells.x0 - 1;
+            roomBelow(sweep_.held->undersides(blocks_.y0 + y) + x, heights(y) + (x - run_.x0), cells.x1 - x + 1, row);
+        }
+        const int x = cells.x0 - run_.x0, y = cells.y0;
+        heldFluxesOfBlocks(eastLaw_, northLaw_, heights(y) + x, sweep_.heightStride, room.data() + kStride + 1, kStride,
+                           sliding(y) + x, buffers_.slidingStride, cells.y1 - y, cells.x1 - cells.x0, east(y) + x,
+                           north(y) + x, sweep_.fluxStride);
     }
 
     const Sweep& sweep_;

@@ -13,8 +13,7 @@ enum : int {
     kBefore,
     kOld,
     kSliding = kOld + 3,
-    kRise = kSliding + 9,  // a short run marks nine rows
-    kFlowed = kRise + 2,
+    kFlowed = kSliding + 9,  // a short run marks nine rows
     kRows = kFlowed + 3
 };
 
@@ -118,7 +117,6 @@ void ErosionWalk::divide(const Sweep& sweep, bool shared) {
 RowBuffers ErosionWalk::buffersOf(std::size_t strip) {
     CellArray& rows = buffers_[strip];
     return {.old = {rows.row(kOld), rows.row(kOld + 1), rows.row(kOld + 2)},
-            .rise = {rows.row(kRise), rows.row(kRise + 1)},
             .sliding = {rows.row(kSliding), rows.row(kSliding + 1)},
             .slidingStride = rows.stride(),
             .before = rows.row(kBefore),
@@ -135,9 +133,7 @@ bool ErosionWalk::continues(std::size_t row) const {
 }
 
 void ErosionWalk::limit(std::size_t row, const Surroundings& surroundings, std::vector<FluxLimits>& limits) {
-    const Ground* const ground = surroundings.ground;
-    const Obstacle* const obstacle = surroundings.obstacle;
-    if (ground == nullptr && obstacle == nullptr) {
+    if (surroundings.ground == nullptr) {
         return;
     }
     const Row& blocks = rows_[row];
@@ -145,17 +141,14 @@ void ErosionWalk::limit(std::size_t row, const Surroundings& surroundings, std::
     for (std::size_t i = blocks.first; i < blocks.end; ++i) {
         Run& run = runs_[i];
         const CellRect cells{run.x0, blocks.y0, run.x1, blocks.y1};
+        const Obstacle* const obstacle = surroundings.obstacle;
         const bool toolNear = obstacle != nullptr && !obstacle->cells.clippedTo(cells.grownBy(1)).empty();
-        if (ground == nullptr && !toolNear) {
-            continue;
-        }
         // Moving a vector does not move its numbers.
-        const FluxLimits& made = limits.emplace_back(surroundings.field, cells, ground, toolNear ? obstacle : nullptr);
+        const FluxLimits& made =
+            limits.emplace_back(surroundings.field, cells, *surroundings.ground, toolNear ? obstacle : nullptr);
+        run.heights = made.heights.data();
+        run.sand = made.sand.data();
         run.room = made.room.data();
-        if (ground != nullptr) {
-            run.heights = made.heights.data();
-            run.sand = made.sand.data();
-        }
     }
 }
 

@@ -23,11 +23,11 @@ namespace sand::grid {
 /// result does not depend on the division. Not thread-safe.
 class ErosionWalk {
 public:
-    /// Limits of the fluxes, and means of the sweep.
+    /// Limits of the fluxes on ground, and means of the sweep.
     struct Surroundings {
         const HeightField& field;        // the heights of the sweep
         const Ground* ground;            // null without rock and wall cells
-        const Obstacle* obstacle;        // null without a tool
+        const Obstacle* obstacle;        // null without a tool. Without ground, Sweep::held limits the fluxes.
         const base::Executor* executor;  // null: the calling thread does all work
         base::CodePath path;
     };
@@ -52,7 +52,7 @@ private:
     /// Returns the buffers of a strip.
     [[nodiscard]] RowBuffers buffersOf(std::size_t strip);
     [[nodiscard]] std::span<const Run> runsOf(std::size_t row) const;
-    /// Limits the fluxes of the runs of a row. The limits must live as long as the row is swept.
+    /// Limits the fluxes of the runs of a row on ground. The limits must live as long as the row is swept.
     void limit(std::size_t row, const Surroundings& surroundings, std::vector<FluxLimits>& limits);
     /// Returns whether the row of blocks that begins where row `row` ends has active blocks, too.
     [[nodiscard]] bool continues(std::size_t row) const;

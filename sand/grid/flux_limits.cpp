@@ -3,25 +3,12 @@
 
 #include <algorithm>
 
+#include "sand/grid/erosion_kernel.hpp"
+
 namespace sand::grid {
 namespace {
 
-/// Returns the height that the slope law uses for a cell. Beyond the rim the slope of the ground continues. There a
-/// step counts at most the sand of its upper cell, so that the ground behind a cliff continues level. A wall continues
-/// as a wall.
-std::int32_t seenHeight(const HeightField& field, const Ground& ground, int x, int y) {
-    const int edgeX = std::clamp(x, 0, field.columns() - 1);
-    const int edgeY = std::clamp(y, 0, field.rows() - 1);
-    if (ground.isWall(edgeX, edgeY)) {
-        return kMaxHeight;
-    }
-    const int innerX = std::clamp(2 * edgeX - x, 0, field.columns() - 1);
-    const int innerY = std::clamp(2 * edgeY - y, 0, field.rows() - 1);
-    const std::int32_t edge = field.height(edgeX, edgeY);
-    const std::int32_t inner = field.height(innerX, innerY);
-    const std::int32_t least = -ground.sand(innerX, innerY, inner), most = ground.sand(edgeX, edgeY, edge);
-    return ground.isWall(innerX, innerY) ? edge : edge + std::clamp(edge - inner, least, most);
-}
+constexpr std::size_t kReadBeyond = 2 * kVector;  // [cell], by a loop over whole vectors
 
 /// Copies the cells of a row that lie in the field. The loop has no branch, because with rock it is most of a sweep's
 /// cost.
@@ -35,31 +22,29 @@ void copyRow(const std::int32_t* __restrict field, const std::int32_t* __restric
     }
 }
 
-/// Limits the room of the cells below the tool. Each of a cell's four faces may bring a quarter of what fits under the
-/// tool. Cells beside the tool have no limit. The loop has no branch, because with rock it is most of a sweep's cost.
+/// Limits the room of the cells below the tool. Cells beside the tool have no limit. The loop has no branch, because
+/// with rock it is most of a sweep's cost.
 void keepRowBelow(const std::int32_t* __restrict undersides, const std::int32_t* __restrict heights, int count,
                   std::int32_t* __restrict room) {
     for (int i = 0; i < count; ++i) {
-        const std::int32_t fits = std::max(std::min(undersides[i], kMaxHeight) - heights[i], 0) / 4;
-        room[i] = std::min(room[i], undersides[i] == Obstacle::kFree ? Obstacle::kFree : fits);
+        room[i] = std::min(room[i], std::max(undersides[i] - heights[i], 0));
     }
 }
 
 }  // namespace
 
-FluxLimits::FluxLimits(const HeightField& field, const CellRect& cells, const Ground* ground, const Obstacle* obstacle)
+FluxLimits::FluxLimits(const HeightField& field, const CellRect& cells, const Ground& ground, const Obstacle* obstacle)
     : grown_(cells.grownBy(1)) {
-    room.assign(static_cast<std::size_t>(grown_.x1 - grown_.x0) * static_cast<std::size_t>(grown_.y1 - grown_.y0),
-                Obstacle::kFree);
-    if (ground != nullptr) {
-        heights.resize(room.size());
-        sand.resize(room.size());
-        copyField(field, *ground);
-        extendBeyondRim(field, *ground);
-    }
+    const std::size_t cellCount =
+        static_cast<std::size_t>(grown_.x1 - grown_.x0) * static_cast<std::size_t>(grown_.y1 - grown_.y0);
+    room.resize(cellCount + kReadBeyond);
+    heights.resize(room.size());
+    sand.resize(room.size());
+    copyField(field, ground);
     if (obstacle != nullptr) {
         keepBelow(field, *obstacle);
     }
+    extendBeyondRim(field);
 }
 
 std::size_t FluxLimits::index(int column, int row) const {
@@ -76,7 +61,7 @@ void FluxLimits::copyField(const HeightField& field, const Ground& ground) {
     }
 }
 
-void FluxLimits::extendBeyondRim(const HeightField& field, const Ground& ground) {
+void FluxLimits::extendBeyondRim(const HeightField& field) {
     for (int y = grown_.y0; y < grown_.y1; ++y) {
         const bool rowInside = y >= 0 && y < field.rows();
         for (int x = grown_.x0; x < grown_.x1; ++x) {
@@ -84,11 +69,11 @@ void FluxLimits::extendBeyondRim(const HeightField& field, const Ground& ground)
                 x = std::min(grown_.x1, field.columns()) - 1;  // the last cell that copyField() has copied
                 continue;
             }
-            const int edgeX = std::clamp(x, 0, field.columns() - 1);
-            const int edgeY = std::clamp(y, 0, field.rows() - 1);
-            heights[index(x, y)] = seenHeight(field, ground, x, y);
-            sand[index(x, y)] = ground.sand(edgeX, edgeY, field.height(edgeX, edgeY));
-            room[index(x, y)] = ground.isWall(edgeX, edgeY) ? 0 : Obstacle::kFree;
+            const std::size_t nearest =
+                index(std::clamp(x, 0, field.columns() - 1), std::clamp(y, 0, field.rows() - 1));
+            heights[index(x, y)] = heights[nearest];
+            sand[index(x, y)] = sand[nearest];
+            room[index(x, y)] = room[nearest];
         }
     }
 }

@@ -87,6 +87,10 @@ void GridSurface::release(const Tool& tool, const ProbePoint& probe) {
     erosion_.touch(Displacement(tool).cells(field_, probe));
 }
 
+void GridSurface::arrive(const Tool& tool, const ProbePoint& probe) {
+    erosion_.wake(Displacement(tool).cells(field_, probe));
+}
+
 Swept GridSurface::sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) {
     const Obstacle here = tool == nullptr ? Obstacle{} : Displacement(*tool).obstacle(field_, probe);
     const std::int64_t before = erosion_.sweepsDone();

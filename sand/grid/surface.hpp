@@ -27,6 +27,7 @@ public:
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
     [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
     void release(const Tool& tool, const ProbePoint& probe) override;
+    void arrive(const Tool& tool, const ProbePoint& probe) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;
     void changeRules(const Rules& rules) override;
     [[nodiscard]] bool settle() override;

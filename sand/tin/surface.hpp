@@ -32,8 +32,9 @@ public:
 
     void drag(const Tool& tool, std::span<const ProbePoint> path) override;
     [[nodiscard]] const RefusedPresses& refusedPresses() const override { return refused_; }
-    /// Does nothing, because Erosion itself finds the sand that the tool held back.
+    // These do nothing, because Erosion itself finds the sand that the tool holds back.
     void release(const Tool&, const ProbePoint&) override {}
+    void arrive(const Tool&, const ProbePoint&) override {}
     void hold(const Tool& tool, const ProbePoint& probe) override;
     void leave(const Tool& tool) override;
     Swept sweep(const SweepPart& part, const Tool* tool, const ProbePoint& probe) override;

@@ -17,7 +17,7 @@ KEYS = {"pile", "method", "N", "bits", "band", "variant", "threads", "blocks", "
         "state", "field", "part", "kind", "what", "tool", "refined", "columns", "rows", "terrain", "mesh", "scheme",
         "code_path", "block", "compiler", "flags", "wall", "link", "load", "nodes", "eye_pixels", "sand", "samples", "unit",
         "used", "why", "world", "integers", "measure", "stays", "talus"}
-MORE_KEYS = {"work-precision": {"sweeps"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
+MORE_KEYS = {"work-precision": {"sweeps"}, "held-tools": {"seconds"}, "decay": {"sweeps"}, "mass-drift": {"sweeps"}, "detail": {"bound"}, "tin-simplify": {"share"},
              "ranks": {"ranks"}, "tin-active": {"raised"}}
 
 

@@ -50,6 +50,20 @@ def dig(table):
     return figure
 
 
+def held_tools(table):
+    figure, axes = panels(3)
+    slope = max(table.values("slope"))
+    tools = {tool: place for place, tool in enumerate(table.distinct("tool"))}
+    for axis, sand in zip(axes, table.distinct("sand")):
+        for tool in table.distinct("tool", sand=sand):
+            rows = table.where(sand=sand, tool=tool, slope=slope)
+            axis.plot([row["ms"] for row in rows], [max(row["past"], 1e-4) for row in rows], color=SERIES[tools[tool] % len(SERIES)],
+                      marker=MARKERS[tools[tool] % len(MARKERS)], linestyle="--" if tool == "wall" else "-", label=tool)
+        label(axis, "run time of the steps [ms]", "sand that has run past [cell³]", f"{sand}, slope {slope:g}")
+    legend_below(figure, axes, 5)
+    return figure
+
+
 def throughput(table):
     figure, axes = panels(1, 4.2)
     axis = axes[0]

@@ -61,6 +61,25 @@ def best_in_time(table, of_kind, size, radius):
     return f"{tool}, {percent(best['misplaced_held'])} with {best['sweeps_per_step']} sweeps per step"
 
 
+def held_tools(tables):
+    table = tables["held-tools"]
+    steepest, longest = max(table.values("slope")), max(table.values("seconds"))
+    lines = []
+    for sand, tool in dict.fromkeys((row["sand"], row["tool"]) for row in table.rows):
+        rows = [row for row in table.some(sand=sand, tool=tool) if row["seconds"] == longest]
+        rested = [row["seconds"] for row in table.some(sand=sand, tool=tool, slope=steepest) if row["at_rest"]]
+        lines.append([sand, tool] + [f"{row['past']:.3g}" for row in rows] +
+                     [f"{rested[0]:g} s" if rested else "no", f"{max(row['ms'] for row in rows):.0f}"])
+    most = max((row for row in table.rows if row["tool"] != "wall"), key=lambda row: row["past"])
+    slopes = [f"slope {slope:g} [cell³]" for slope in table.distinct("slope")]
+    return ("A tool of 6 cells is pressed into a slope and held. How much sand runs past it? The figure has the steepest slope, "
+            f"{steepest:g}, where the talus is 0.6745. The volume counts from a second after the press, when the sand that the press "
+            f"has thrown up lies. A wall in the place of the circle is the reference. After {longest:g} s at most "
+            f"{most['past']:.3g} cell³ have run past a tool ({most['tool']}, {most['sand']}, slope {most['slope']:g}). The last two "
+            "columns have the time until rest on the steepest slope, and the longest run time of the steps:\n\n" +
+            markdown(["sand", "tool", *slopes, "at rest", "run time [ms]"], lines))
+
+
 def throughput(tables):
     table = tables["throughput"]
     sizes = table.distinct("N")

@@ -41,6 +41,7 @@ SECTIONS = [
     Section("The hysteresis band", "band", ["band"], piles.band),
     Section("One edit", "edit", ["edit"], steps.edit),
     Section("Digging", "dig", ["dig"], steps.dig),
+    Section("Held tools", "held_tools", ["held-tools"], steps.held_tools),
     Section("Throughput", "throughput", ["throughput"], steps.throughput),
     Section("Mass", "mass_drift", ["mass-drift"], piles.mass_drift),
     Section("The certificate", "certificate", ["certificate"], piles.certificate),

@@ -65,10 +65,10 @@ TEST(Replica, AHeldToolComesToRest) {
     replica.apply({1, ++number, true, {}});
     EXPECT_TRUE(sameHeights(samples::fieldOf(replica), rest));
     const sand::grid::Obstacle ball = sand::grid::Displacement(scene.rules.tuning.tool).obstacle(rest, replica.probe());
-    std::size_t next = 0;
     for (int y = ball.cells.y0; y < ball.cells.y1; ++y) {
         for (int x = ball.cells.x0; x < ball.cells.x1; ++x) {
-            EXPECT_LE(rest.height(x, y), ball.underside[next++]) << "sand inside the ball at " << x << ", " << y;
+            EXPECT_LE(rest.height(x, y), ball.row(y)[x - ball.cells.x0])
+                << "sand inside the ball at " << x << ", " << y;
         }
     }
 }

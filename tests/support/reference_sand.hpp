@@ -24,7 +24,14 @@ public:
     std::int64_t outflow = 0;                    // volume lost over an open rim [unit · cell]
 
     Sand(sand::HeightField start, const sand::Rules& laws, const sand::Ground* rock)
-        : field(std::move(start)), rules(laws), ground(rock), seen(field.cells()), layer(seen), room(seen), slid(seen) {
+        : field(std::move(start)),
+          rules(laws),
+          ground(rock),
+          beyond(field.cells()),
+          seen(beyond),
+          layer(seen),
+          room(seen),
+          slid(seen) {
         slid = sand::CellArray(field.columns(), field.rows());
         for (std::ptrdiff_t y = 0; y < field.rows(); ++y) {
             for (std::ptrdiff_t x = 0; x < field.columns(); ++x) {
@@ -77,7 +84,11 @@ private:
         const auto p = float(0.225 * std::min(1.0, 1 / (ratio * ratio)));
         const auto t = float(rules.tuning.threshold * length), start = float(rules.tuning.startThreshold * length);
         const auto a = float(face.overRim ? std::max(seen.row(0)[i], 0) : seen.row(0)[i] - seen.row(0)[j]);
-        const float b = float(0.25 * ratio) * (rise(i, face.side) + rise(j, face.side));
+        const std::int32_t giver = layer.row(0)[face.overRim || seen.row(0)[i] > seen.row(0)[j] ? i : j];
+        const double lengthAlong = face.side == 1 ? 1 : north;
+        const Along along{face.side, std::int32_t(float(rules.tuning.startThreshold * lengthAlong)),
+                          4.0F / float(std::max(giver, 1))};
+        const float b = float(0.25 * ratio) * (rise(i, along) + rise(j, along));
         const float square = a * a + b * b, m = std::sqrt(square);
         if ((slid.row(0)[i] | slid.row(0)[j]) == 0 && !(inertia ? square > start * start : m > start)) {
             return 0;
@@ -87,44 +98,60 @@ private:
                              : m > t ? k * (1 - t / m) * a
                                      : 0;
         const auto q = std::int32_t(std::clamp((inertia ? std::clamp(last, back, forth) : 0) + driven, back, forth));
-        return std::clamp(q, -std::min(room.row(0)[i], layer.row(0)[j] / 4),
-                          std::min(face.overRim ? q : room.row(0)[j], layer.row(0)[i] / 4));
+        return std::clamp(q, -std::min(room.row(0)[i], layer.row(0)[j]) / 4,
+                          std::min(face.overRim ? kEndless : room.row(0)[j], layer.row(0)[i]) / 4);
     }
-    /// Returns the height of the cell after `cell` minus the height of the cell before it. A step counts at most the
-    /// sand of its upper cell.
-    [[nodiscard]] float rise(std::ptrdiff_t cell, std::ptrdiff_t side) const {
-        const auto step = [h = seen.row(0), s = layer.row(0)](std::ptrdiff_t c, std::ptrdiff_t d) {
-            return std::clamp(h[c] - h[d], -s[d], s[c]);
-        };
-        return float(step(cell + side, cell) + step(cell, cell - side));
+    struct Along {
+        std::ptrdiff_t side;
+        std::int32_t start;  // [unit], the start threshold along this side
+        float share;         // 4 divided by the sand of the face's upper cell
+    };
+    /// Returns the height of the cell after `cell` minus the height of the cell before it, as a face counts it. Beyond
+    /// the rim the step before it continues.
+    [[nodiscard]] float rise(std::ptrdiff_t cell, const Along& along) const {
+        const bool last = beyond.row(0)[cell + along.side] != 0, first = beyond.row(0)[cell - along.side] != 0;
+        if (last && first) {
+            return 0;
+        }
+        const std::int32_t after = last ? 0 : step(cell + along.side, cell, along);
+        const std::int32_t before = first ? after : step(cell, cell - along.side, along);
+        return float((last ? before : after) + before);
     }
-    /// Finds heights, sand and room. A wall cell is higher than all sand. Beyond the rim the slope of the ground
-    /// continues, where a step counts at most the sand of its upper cell.
+    /// Returns by how much cell `c` is higher than cell `d`. A step counts at most the room in its lower cell. It
+    /// counts all sand of its upper cell, or up to the start threshold if this cell has a quarter of the sand that the
+    /// face can give; with less sand, less in proportion.
+    [[nodiscard]] std::int32_t step(std::ptrdiff_t c, std::ptrdiff_t d, const Along& along) const {
+        const std::int32_t height = seen.row(0)[c] - seen.row(0)[d];
+        const bool up = height > 0;
+        const std::int32_t most = std::min(std::abs(height), room.row(0)[up ? d : c]);
+        const std::int32_t sand = layer.row(0)[up ? c : d];
+        const auto thin = std::int32_t(float(std::min(most, along.start)) * std::min(float(sand) * along.share, 1.0F));
+        const std::int32_t counted = std::max(std::min(most, sand), thin);
+        return up ? counted : -counted;
+    }
+    /// Finds heights, sand and room. A wall cell is higher than all sand.
     void look() {
         for (int y = -1; y <= field.rows(); ++y) {
             for (int x = -1; x <= field.columns(); ++x) {
                 const int u = std::clamp(x, 0, field.columns() - 1), v = std::clamp(y, 0, field.rows() - 1);
-                const int s = std::clamp(2 * u - x, 0, field.columns() - 1),
-                          t = std::clamp(2 * v - y, 0, field.rows() - 1);
                 const bool wall = ground != nullptr && ground->isWall(u, v);
-                const bool end = wall || (ground != nullptr && ground->isWall(s, t));
                 const std::int32_t h = wall ? sand::kMaxHeight : field.height(u, v);
-                const auto sandIn = [this](int column, int row) {
-                    return ground == nullptr ? 1 << 30 : ground->sand(column, row, field.height(column, row));
-                };
-                const std::int32_t came = std::clamp(h - field.height(s, t), -sandIn(s, t), sandIn(u, v));
-                seen.row(y)[x] = (x == u && y == v) || end ? h : h + came;
-                layer.row(y)[x] = sandIn(u, v);
+                beyond.row(y)[x] = x != u || y != v;
+                seen.row(y)[x] = h;
+                layer.row(y)[x] = ground == nullptr ? kEndless : ground->sand(u, v, field.height(u, v));
                 const bool below =
                     tool != nullptr && !sand::CellRect{u, v, u + 1, v + 1}.clippedTo(tool->cells).empty();
                 const std::int32_t underside = below ? tool->row(v)[u - tool->cells.x0] : sand::grid::Obstacle::kFree;
-                const std::int32_t fits = std::max(std::min(underside, sand::kMaxHeight) - h, 0) / 4;
-                room.row(y)[x] = wall ? 0 : underside == sand::grid::Obstacle::kFree ? underside : fits;
+                const std::int32_t fits = std::max(std::min(underside, sand::kMaxHeight) - h, 0);
+                room.row(y)[x] = wall ? 0 : underside == sand::grid::Obstacle::kFree ? kEndless : fits;
             }
         }
     }
 
-    sand::CellArray seen, layer, room;  // [unit]: heights for slopes, sand, and the most that a face may bring
+    static constexpr std::int32_t kEndless = 1 << 30;  // [unit], more than any flux or step needs
+
+    sand::CellArray beyond;             // not 0 beyond the rim
+    sand::CellArray seen, layer, room;  // [unit]: heights for slopes, sand, and what fits below the tool
     sand::CellArray slid;               // not 0: sand went through a face of the cell in the last sweep
     std::vector<Face> faces;
 };

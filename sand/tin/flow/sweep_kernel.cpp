@@ -54,8 +54,10 @@ Number valuesFrom(const double* values) {
 /// common function, a linker would keep one of them for both.
 template <class Number>
 Number raised(Number height, Number underside, Number flattest) {
-    const Number leans = flattest > height ? flattest : height;
-    return height > underside - 1 ? leans : height;
+    const Number below = underside - 1 - height, none{};
+    const Number room = below > none ? below : none;
+    const Number leans = flattest - room;
+    return leans > height ? leans : height;
 }
 
 using Bits [[gnu::vector_size(4 * sizeof(std::int64_t))]] = std::int64_t;  // as many elements as Four

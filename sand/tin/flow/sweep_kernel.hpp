@@ -2,6 +2,7 @@
 // Private to this folder.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -73,17 +74,18 @@ struct SweepSand {
     Level* levels;            // by vertex
 };
 
-/// Raises the corners of a facet that lean on an obstacle. Sand that fills the room below the obstacle leans on it, so
-/// that no sand flows there. Such a corner counts as high as makes the facet flattest, but never below its own height.
-/// Otherwise the sand beside the obstacle would flow along it without end. `squared`, `mixed` and `squaredAcross` are
-/// first, mixed and second of the corners' Facet, times any common factor.
+/// Raises the corners of a facet below an obstacle. Sand that fills the room below the obstacle leans on it, so that no
+/// sand flows there. Such a corner counts as high as makes the facet flattest. A corner with more room counts that much
+/// less, but never less than its own height. Otherwise the sand beside the obstacle would flow along it without end.
+/// `squared`, `mixed` and `squaredAcross` are first, mixed and second of the corners' Facet, times any common factor.
 ///
 /// Goes from corner to corner, so that the facet becomes flatter with each.
 inline void lean(std::array<double, 3>& heights, const std::array<double, 3>& undersides, double squared, double mixed,
                  double squaredAcross) {
     const auto raise = [&](std::size_t corner, double flattest) {
         double& height = heights[corner];
-        height = height > undersides[corner] - 1 && flattest > height ? flattest : height;
+        const double room = std::max(undersides[corner] - 1 - height, 0.0);
+        height = std::max(flattest - room, height);
     };
     raise(0, ((2 * squared + mixed) * heights[1] + (2 * squaredAcross + mixed) * heights[2]) /
                  (2 * (squared + mixed + squaredAcross)));

@@ -78,18 +78,18 @@ struct Jump {
     double leastPush, mostPush;  // [N]
     double local, hold;          // [N], at an update
 };
-constexpr std::array kJumps{Jump{sand::ForceLaw::repulse, 0.3, 0.1, 1.56, 1.72, 0.001, 0.019},
-                            Jump{sand::ForceLaw::repulse, 0.3, 0.3, 1.55, 1.73, 0.003, 0.042},
-                            Jump{sand::ForceLaw::repulse, 0.3, 1.0, 1.48, 1.66, 0.014, 0.075},
-                            Jump{sand::ForceLaw::repulse, 1.0, 0.1, 5.90, 6.47, 0.003, 0.041},
-                            Jump{sand::ForceLaw::repulse, 1.0, 0.3, 5.89, 6.58, 0.006, 0.084},
-                            Jump{sand::ForceLaw::repulse, 1.0, 1.0, 4.95, 6.20, 0.040, 0.300},
+constexpr std::array kJumps{Jump{sand::ForceLaw::repulse, 0.3, 0.1, 1.56, 1.73, 0.001, 0.018},
+                            Jump{sand::ForceLaw::repulse, 0.3, 0.3, 1.55, 1.73, 0.002, 0.042},
+                            Jump{sand::ForceLaw::repulse, 0.3, 1.0, 1.48, 1.66, 0.014, 0.076},
+                            Jump{sand::ForceLaw::repulse, 1.0, 0.1, 5.90, 6.48, 0.002, 0.039},
+                            Jump{sand::ForceLaw::repulse, 1.0, 0.3, 5.90, 6.59, 0.006, 0.084},
+                            Jump{sand::ForceLaw::repulse, 1.0, 1.0, 4.93, 6.20, 0.036, 0.300},
                             Jump{sand::ForceLaw::controlPoints, 0.3, 0.1, 0.15, 0.19, 0.001, 0.014},
                             Jump{sand::ForceLaw::controlPoints, 0.3, 0.3, 0.13, 0.19, 0.001, 0.023},
-                            Jump{sand::ForceLaw::controlPoints, 0.3, 1.0, 0.13, 0.16, 0.001, 0.025},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.1, 0.41, 0.48, 0.002, 0.048},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.3, 0.42, 0.54, 0.003, 0.061},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 1.0, 0.40, 0.46, 0.005, 0.113}};
+                            Jump{sand::ForceLaw::controlPoints, 0.3, 1.0, 0.13, 0.15, 0.001, 0.025},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.1, 0.42, 0.50, 0.002, 0.058},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.3, 0.44, 0.58, 0.003, 0.067},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 1.0, 0.39, 0.47, 0.006, 0.114}};
 
 // Every machine computes the same sand. Forces differ only in the last digits of a library's functions. A figure of the
 // table is exact to half of its last digit, plus a tenth of that digit for the number that was rounded.

@@ -66,11 +66,10 @@ struct Session {
 };
 
 constexpr double kMetres = 0.08;  // of a scene unit: the field of Dorjgotov et al. 2007 is two units and 0.16 m wide
-constexpr double kWeight = 0.3;   // [N]
 constexpr int kPulled = 2000, kReleased = 3000;  // [tick]
 
-/// Pulls a weighted device to and fro for two seconds while it digs, then releases it.
-Session pulledAndReleased(const sand::ForceConstants& constants) {
+/// Pulls a device with a weight [N] to and fro for two seconds while it digs, then releases it.
+Session pulledAndReleased(const sand::ForceConstants& constants, double weight) {
     sand::Replica replica(levelScene());
     ForceModel model(constants);
     const Contour tool = Contour::sphere(kRadius);
@@ -92,7 +91,7 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
         }
         const Response felt = model.at(patch, replica.stepNumber(), tool, place, tick * kTick);
         const Vec3 sand = lawfulForce(felt, (1 / (60 * kMetres)) * mass.velocity);
-        Vec3 hand{0, 0, -kWeight};
+        Vec3 hand{0, 0, -weight};
         if (tick < kPulled) {
             hand.x = 0.012 * std::sin(2 * std::numbers::pi * tick * kTick);
         }
@@ -123,31 +122,41 @@ Session pulledAndReleased(const sand::ForceConstants& constants) {
 // The stiffness is 400 N/m. A device with b = 0.5 bears 1000 N/m, and half of that is 500 N/m. Sand that a press has
 // raised answers a frame later. If it acts at once, as a held or an exact force on each surface does, that delay alone
 // shakes the mass forever (docs/figures.md).
+sand::ForceConstants constantsOfLoop(sand::ForceLaw law) {
+    sand::ForceConstants constants;
+    constants.law = law;
+    constants.stiffness = 64;  // 400 N/m at a half k_c
+    constants.unitLength = kSide * kCell;
+    constants.maxForce = 400 * kMetres * constants.unitLength;
+    return constants;
+}
+
+// If control points recover in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s, and the sand
+// gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than its radius.
 TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
-        sand::ForceConstants constants;
-        constants.law = law;
-        constants.stiffness = 64;  // 400 N/m at a half k_c
-        constants.unitLength = kSide * kCell;
-        constants.maxForce = 400 * kMetres * constants.unitLength;
-        const Session session = pulledAndReleased(constants);
-        std::printf("sand gave %.3g mJ (at most %.3g), hand and weight %.3g, damping took %.3g; speeds after release:",
-                    1e3 * session.given, 1e3 * session.mostGiven, 1e3 * session.handWork, 1e3 * session.loss);
-        for (const double speed : session.fastest) {
-            std::printf(" %.3g", speed);
+        for (const double weight : {0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4}) {  // [N]
+            SCOPED_TRACE(weight);
+            const Session session = pulledAndReleased(constantsOfLoop(law), weight);
+            std::printf("%.2f N: sand gave %.3g mJ (at most %.3g), hand and weight %.3g, damping took %.3g; ", weight,
+                        1e3 * session.given, 1e3 * session.mostGiven, 1e3 * session.handWork, 1e3 * session.loss);
+            std::printf("%.3g, then %.3g mm/s; sand moved %.3g\n", 1e3 * session.fastest[0],
+                        1e3 * session.fastest.back(), session.sandMoved);
+            EXPECT_GT(session.sandMoved, kRadius / 2) << "the tool did not move the sand";
+            EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9)
+                << "the energies must add up";
+            EXPECT_LT(session.given, 0.3 * session.handWork) << "the sand must not drive the mass";
+            EXPECT_LT(session.mostGiven, 0.45 * session.loss) << "the sand must give back little at any time";
+            EXPECT_LT(session.fastest.back(), 2e-4);
         }
-        std::printf(" m/s; sand moved %.3g\n", session.sandMoved);
-        EXPECT_GT(session.sandMoved, kRadius / 2) << "the tool did not move the sand";
-        EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9)
-            << "the energies must add up";
-        EXPECT_LT(session.given, 0.05 * session.handWork) << "the sand must not drive the mass";
-        EXPECT_LT(session.mostGiven, 0.3 * session.loss) << "the sand must give back little at any time";
-        EXPECT_LT(session.fastest.back(), 1e-3);
-        for (std::size_t i = 1; i < session.fastest.size(); ++i) {
-            EXPECT_LT(session.fastest[i], std::max(session.fastest[i - 1], 1e-4)) << "quarter " << i << ": growth";
-        }
-        constants.recoveryTime = 0;  // every surface acts at once
-        const Session shaken = pulledAndReleased(constants);
+    }
+}
+
+TEST(SampledLoop, ShakesIfEverySurfaceActsAtOnce) {
+    for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
+        sand::ForceConstants constants = constantsOfLoop(law);
+        constants.recoveryTime = 0;
+        const Session shaken = pulledAndReleased(constants, 0.3);
         std::printf("at once: sand gave %.3g mJ, hand and weight %.3g, damping took %.3g; at the end %.3g m/s\n",
                     1e3 * shaken.given, 1e3 * shaken.handWork, 1e3 * shaken.loss, shaken.fastest.back());
         EXPECT_GT(shaken.fastest.back(), 1e-2)

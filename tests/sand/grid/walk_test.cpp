@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr int kSweeps = samples::kSlowBuild ? 500 : 10000;
+constexpr int kSweeps = samples::kSlowBuild ? 500 : 4000;
 constexpr int kFew = kSweeps / 10;  // in large worlds
 
 /// Executor that calls the tasks one after the other, and the last one first. It shows a strip that depends on another

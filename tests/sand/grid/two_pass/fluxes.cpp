@@ -1,35 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
+#include <cstdlib>
 
 #include "tests/sand/grid/two_pass/laws.hpp"
 
 namespace two_pass {
 namespace {
-
-/// Buffer of one number per cell of a patch's row, and one more before and behind. It is left uninitialised, because
-/// rows are long.
-template <class Number>
-struct alignas(64) Row {
-    std::array<Number, kMaxPatch + 2 * kKernelMargin> values;
-    Number* data() { return values.data() + kKernelMargin; }
-};
-
-/// Computes the differences for the slope along a face. A step counts at most the sand of its upper cell. Otherwise a
-/// bare cliff would make stable sand beside it slide.
-void sandDifferences(const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                     const std::int32_t* __restrict sandA, const std::int32_t* __restrict sandB, int count,
-                     std::int32_t* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = std::max(std::min(a[i] - b[i], sandA[i]), -sandB[i]);
-    }
-}
-
-void sums(const std::int32_t* __restrict a, const std::int32_t* __restrict b, int count, float* __restrict result) {
-    for (int i = 0; i < count; ++i) {
-        result[i] = static_cast<float>(a[i] + b[i]);
-    }
-}
 
 /// Masks of sliding cells in two parallel runs of cells; null without a band.
 struct SlidingPair {
@@ -43,19 +19,6 @@ std::int32_t eitherOf(const Sliding* behind, const Sliding* ahead, int i) {
         return behind[i] | ahead[i];
     }
     return 0;
-}
-
-/// Computes the fluxes between two parallel runs of cells. `alongA` and `alongB` hold each cell's sum of two
-/// differences along the faces.
-template <class Law>
-void fluxesBetween(const Law law, const std::int32_t* __restrict a, const std::int32_t* __restrict b,
-                   const float* __restrict alongA, const float* __restrict alongB, const SlidingPair& sliding,
-                   int count, std::int32_t* __restrict flux) {
-    const Sliding* __restrict behind = sliding.behind;
-    const Sliding* __restrict ahead = sliding.ahead;
-    for (int i = 0; i < count; ++i) {
-        flux[i] = law(a[i] - b[i], alongA[i] + alongB[i], flux[i], eitherOf<Law>(behind, ahead, i));
-    }
 }
 
 /// Computes the fluxes from a row of cells to their eastern neighbours. `south` and `north` are the rows beside it.
@@ -85,34 +48,15 @@ void northwards(const Law law, const std::int32_t* __restrict row, const std::in
     }
 }
 
-/// Limits each flux to the room of the cell that receives it.
-void limitToRoom(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                 std::int32_t* __restrict flux) {
-    for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], ahead[i]), -behind[i]);
-    }
-}
-
-/// Limits each flux to a quarter of the sand in the cell that gives it. Its four faces then never take more than it
-/// has, so that the thickness never becomes negative.
-void limitToSand(const std::int32_t* __restrict behind, const std::int32_t* __restrict ahead, int count,
-                 std::int32_t* __restrict flux) {
-    for (int i = 0; i < count; ++i) {
-        flux[i] = std::max(std::min(flux[i], behind[i] / 4), -(ahead[i] / 4));
-    }
-}
-
-/// Fluxes of one patch. With `kSandAlong`, the slope along a face counts only the sand and not the ground below it.
-template <class Law, bool kSandAlong>
+/// Fluxes of one patch. With `kLimited`, each face is computed by itself: the slope along it counts what its steps
+/// count, and its flux has limits.
+template <class Law, bool kLimited>
 class Fluxes {
 public:
     Fluxes(const FluxPatch& patch, const Law& east, const Law& north)
         : patch_(patch), eastLaw_(east), northLaw_(north), width_(patch.cells.x1 - patch.cells.x0) {}
 
     std::int64_t run() {
-        if constexpr (kSandAlong) {
-            riseEast(patch_.cells.y0);
-        }
         if (patch_.cells.y0 == 0) {
             rimNorth(-1);
         }
@@ -134,112 +78,117 @@ private:
     [[nodiscard]] const Sliding* sliding(int y, int ahead = 0) const {
         return Law::kBand ? patch_.sliding + y * patch_.slidingStride + patch_.cells.x0 + ahead : nullptr;
     }
-    /// Returns a pointer to the patch's first cell in row y of `room` or `sand`.
-    [[nodiscard]] const std::int32_t* held(const std::int32_t* numbers, int y) const {
-        return numbers + (y - patch_.cells.y0 + 1) * (width_ + 2) + 1;
+    /// Returns a number of cell i of row y, counted from the patch's first cell.
+    [[nodiscard]] std::int32_t held(const std::int32_t* numbers, int y, int i) const {
+        return numbers[(y - patch_.cells.y0 + 1) * (width_ + 2) + 1 + i];
     }
 
-    /// Computes for each cell of row y how much higher its eastern neighbour is than its western one, counting only
-    /// sand.
-    void riseEast(int y) {
-        const std::int32_t* sand = held(patch_.sand, y) - 1;
-        sandDifferences(heights(y), heights(y) - 1, sand + 1, sand, width_ + 1, steps_[0].data());
-        sums(steps_[0].data(), steps_[0].data() + 1, width_, riseEast_[static_cast<unsigned>(y) % 2].data());
+    struct Cell {
+        int y, i;
+    };
+    /// Returns the sand of the cell from which a face takes sand. `b` is another cell or, at a rim, the same one.
+    [[nodiscard]] std::int32_t giverOf(const Cell& a, const Cell& b) const {
+        const bool gives = heights(a.y)[a.i] > heights(b.y)[b.i];
+        return gives ? held(patch_.sand, a.y, a.i) : held(patch_.sand, b.y, b.i);
     }
-    /// Computes for each cell of row y, and for one more, how much higher its northern neighbour is than its southern
-    /// one, counting only sand.
-    void riseNorth(int y) {
-        const int count = width_ + 1;
-        const std::int32_t* sand = held(patch_.sand, y);
-        const int up = width_ + 2;
-        sandDifferences(heights(y), heights(y - 1), sand, sand - up, count, steps_[0].data());
-        sandDifferences(heights(y + 1), heights(y), sand + up, sand, count, steps_[1].data());
-        sums(steps_[0].data(), steps_[1].data(), count, riseNorth_.data());
+    /// Returns by how much `c` is higher than `d`, as a face counts it. docs/sand.md has the rule.
+    [[nodiscard]] std::int32_t step(const Cell& c, const Cell& d, float start, std::int32_t giver) const {
+        const std::int32_t height = heights(c.y)[c.i] - heights(d.y)[d.i];
+        const Cell& upper = height > 0 ? c : d;
+        const Cell& lower = height > 0 ? d : c;
+        const std::int32_t fits = std::min(std::abs(height), held(patch_.room, lower.y, lower.i));
+        const std::int32_t sand = held(patch_.sand, upper.y, upper.i);
+        const auto up = static_cast<float>(std::min(fits, static_cast<std::int32_t>(start)));
+        const float share = 4.0F / static_cast<float>(std::max(giver, 1));
+        const auto thin = static_cast<std::int32_t>(up * std::min(static_cast<float>(sand) * share, 1.0F));
+        const std::int32_t counted = std::max(std::min(fits, sand), thin);
+        return height > 0 ? counted : -counted;
     }
-
-    /// Limits the fluxes from the cells of row y to the cells that are `ahead` places further in `room` and `sand`.
-    void hold(int y, int ahead, std::int32_t* flux) const {
-        if (patch_.room != nullptr) {
-            limitToRoom(held(patch_.room, y), held(patch_.room, y) + ahead, width_, flux);
+    /// Returns how much higher the cell after `cell` is than the cell before it, to the east or to the north. Beyond
+    /// the rim the step before it continues.
+    [[nodiscard]] std::int32_t rise(const Cell& cell, bool toEast, std::int32_t giver) const {
+        const int place = toEast ? patch_.cells.x0 + cell.i : cell.y, end = toEast ? patch_.columns : patch_.rows;
+        if (end == 1) {
+            return 0;
         }
-        if (patch_.sand != nullptr) {
-            limitToSand(held(patch_.sand, y), held(patch_.sand, y) + ahead, width_, flux);
-        }
+        const float start = (toEast ? patch_.eastLaw : patch_.northLaw).startThreshold;
+        const auto moved = [&](int by) { return toEast ? Cell{cell.y, cell.i + by} : Cell{cell.y + by, cell.i}; };
+        const auto stepTo = [&](int by) { return step(moved(by), moved(by - 1), start, giver); };
+        return place == 0 ? 2 * stepTo(1) : place == end - 1 ? 2 * stepTo(0) : stepTo(0) + stepTo(1);
+    }
+    /// Returns the flux from `a` to `b`.
+    template <class AxisLaw>
+    [[nodiscard]] std::int32_t between(const AxisLaw& law, const Cell& a, const Cell& b, bool toEast, std::int32_t last,
+                                       std::int32_t slides) const {
+        const std::int32_t giver = giverOf(a, b);
+        const float along = static_cast<float>(rise(a, !toEast, giver)) + static_cast<float>(rise(b, !toEast, giver));
+        const std::int32_t flux = law(heights(a.y)[a.i] - heights(b.y)[b.i], along, last, slides);
+        const std::int32_t forth = std::min(held(patch_.room, b.y, b.i), held(patch_.sand, a.y, a.i)) / 4;
+        const std::int32_t back = std::min(held(patch_.room, a.y, a.i), held(patch_.sand, b.y, b.i)) / 4;
+        return std::max(std::min(flux, forth), -back);
     }
 
     /// Computes the fluxes from row y to row y + 1.
     void northFluxes(int y) {
-        if constexpr (kSandAlong) {
-            riseEast(y + 1);
-            fluxesBetween(northLaw_, heights(y), heights(y + 1), riseEast_[static_cast<unsigned>(y) % 2].data(),
-                          riseEast_[static_cast<unsigned>(y + 1) % 2].data(), {sliding(y), sliding(y + 1)}, width_,
-                          north(y));
+        const SlidingPair slides{sliding(y), sliding(y + 1)};
+        if constexpr (kLimited) {
+            for (int i = 0; i < width_; ++i) {
+                north(y)[i] = between(northLaw_, {y, i}, {y + 1, i}, false, north(y)[i],
+                                      eitherOf<Law>(slides.behind, slides.ahead, i));
+            }
         } else {
-            northwards(northLaw_, heights(y), heights(y + 1), {sliding(y), sliding(y + 1)}, width_, north(y));
+            northwards(northLaw_, heights(y), heights(y + 1), slides, width_, north(y));
         }
-        hold(y, width_ + 2, north(y));
     }
 
     /// Computes the fluxes from the cells of row y to their eastern neighbours, and over the rims at the row's ends.
     void eastFluxes(int y) {
         std::int32_t* flux = east(y);
-        // The face at the rim is computed like the others and corrected below. A row whose number of faces is a
-        // multiple of eight then has no remainder, which would take longer than all other faces.
-        const std::int32_t lastAtRim = flux[width_ - 1];
-        if constexpr (kSandAlong) {
-            riseNorth(y);
-            fluxesBetween(eastLaw_, heights(y), heights(y) + 1, riseNorth_.data(), riseNorth_.data() + 1,
-                          {sliding(y), sliding(y, 1)}, width_, flux);
+        const int last = width_ - 1;
+        const bool endsAtRim = patch_.cells.x1 == patch_.columns;
+        const std::int32_t lastAtRim = flux[last];
+        const SlidingPair slides{sliding(y), sliding(y, 1)};
+        if constexpr (kLimited) {
+            for (int i = 0; i < width_ - (endsAtRim ? 1 : 0); ++i) {
+                flux[i] =
+                    between(eastLaw_, {y, i}, {y, i + 1}, true, flux[i], eitherOf<Law>(slides.behind, slides.ahead, i));
+            }
         } else {
-            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), {sliding(y), sliding(y, 1)}, width_, flux);
+            eastwards(eastLaw_, heights(y - 1), heights(y), heights(y + 1), slides, width_, flux);
         }
-        hold(y, 1, flux);
         if (patch_.openRim && patch_.cells.x0 == 0) {
-            flux[-1] = -overRim(eastLaw_, y, 0, riseNorthOf(y, 0), -flux[-1]);
+            flux[-1] = -overRim(eastLaw_, {y, 0}, false, -flux[-1]);
         }
-        if (patch_.cells.x1 == patch_.columns) {
-            const int last = width_ - 1;
-            flux[last] = patch_.openRim ? overRim(eastLaw_, y, last, riseNorthOf(y, last), lastAtRim) : 0;
+        if (endsAtRim) {
+            flux[last] = patch_.openRim ? overRim(eastLaw_, {y, last}, false, lastAtRim) : 0;
         }
     }
 
     void rimNorth(int y) {
-        if (!patch_.openRim) {
-            return;
-        }
-        const int inner = std::max(y, 0);
         std::int32_t* flux = north(y);
-        for (int i = 0; i < width_; ++i) {
-            const float along = riseEastOf(inner, i);
-            flux[i] =
-                y < 0 ? -overRim(northLaw_, inner, i, along, -flux[i]) : overRim(northLaw_, inner, i, along, flux[i]);
+        for (int i = 0; patch_.openRim && i < width_; ++i) {
+            const Cell cell{std::max(y, 0), i};
+            flux[i] = y < 0 ? -overRim(northLaw_, cell, true, -flux[i]) : overRim(northLaw_, cell, true, flux[i]);
         }
     }
 
-    /// Returns for one cell the number that riseEast() computes for all cells of a row.
-    [[nodiscard]] float riseEastOf(int y, int i) const {
-        if constexpr (kSandAlong) {
-            return riseEast_[static_cast<unsigned>(y) % 2].values[static_cast<unsigned>(i + kKernelMargin)];
+    /// Returns the difference along the rim beside a cell.
+    [[nodiscard]] std::int32_t riseAtRim(const Cell& cell, bool toEast) const {
+        if constexpr (kLimited) {
+            return rise(cell, toEast, giverOf(cell, cell));
         } else {
-            return static_cast<float>(heights(y)[i + 1] - heights(y)[i - 1]);
+            return toEast ? heights(cell.y)[cell.i + 1] - heights(cell.y)[cell.i - 1]
+                          : heights(cell.y + 1)[cell.i] - heights(cell.y - 1)[cell.i];
         }
     }
-    /// Returns for one cell the number that riseNorth() computes for all cells of a row.
-    [[nodiscard]] float riseNorthOf(int y, int i) const {
-        if constexpr (kSandAlong) {
-            return riseNorth_[static_cast<unsigned>(i)];
-        } else {
-            return static_cast<float>(heights(y + 1)[i] - heights(y - 1)[i]);
-        }
-    }
-
-    /// Returns the flux over an open rim, where sand falls to height 0 and never comes back. `rise` is the difference
-    /// along the rim beside the cell.
-    std::int32_t overRim(const Law& law, int y, int i, float rise, std::int32_t last) {
-        const std::int32_t slides = Law::kBand ? sliding(y)[i] : 0;
-        std::int32_t flux = std::max(law(heights(y)[i], 2 * rise, last, slides), 0);
-        if (patch_.sand != nullptr) {
-            flux = std::min(flux, held(patch_.sand, y)[i] / 4);
+    /// Returns the flux over an open rim, where sand falls to height 0 and never comes back. `toEast` is the direction
+    /// along the rim.
+    std::int32_t overRim(const Law& law, const Cell& cell, bool toEast, std::int32_t last) {
+        const std::int32_t slides = Law::kBand ? sliding(cell.y)[cell.i] : 0;
+        const float along = 2 * static_cast<float>(riseAtRim(cell, toEast));
+        std::int32_t flux = std::max(law(heights(cell.y)[cell.i], along, last, slides), 0);
+        if constexpr (kLimited) {
+            flux = std::min(flux, held(patch_.sand, cell.y, cell.i) / 4);
         }
         outflow_ += flux;
         return flux;
@@ -249,10 +198,6 @@ private:
     const Law eastLaw_, northLaw_;
     const int width_;
     std::int64_t outflow_ = 0;
-    // Numbers for even and odd rows. The arrays are empty if slopes are taken from the heights themselves.
-    std::array<Row<float>, kSandAlong ? 2 : 0> riseEast_;
-    std::array<Row<std::int32_t>, kSandAlong ? 2 : 0> steps_;
-    std::array<float, kSandAlong ? kMaxPatch + 2 * kKernelMargin : 0> riseNorth_;
 };
 
 template <class Law>

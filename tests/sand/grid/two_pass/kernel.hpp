@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernel of the sweeps as it was before it walked over the rows. One pass computes all fluxes of a patch. A second
-// one applies them. It is kept as it was, and shares no loop and no law with sand/grid. The walk must give the
+// one applies them. It shares no loop and no law with sand/grid. The walk must give the
 // same heights bit for bit (walk_test.cpp).
 #pragma once
 
@@ -46,7 +46,7 @@ struct FluxPatch {
     const Sliding* sliding;        // at cell (0,0) of the field, with ghost cells around; null without a band
     std::ptrdiff_t slidingStride;  // [cell]
     // Limits over `cells` and one more cell on every side, row by row; null without limits.
-    const std::int32_t* room;  // most that each cell may receive through one face [unit]
+    const std::int32_t* room;  // what each cell may receive [unit]; a face brings at most a quarter
     const std::int32_t* sand;  // thickness of the sand in each cell [unit]; a face gives at most a quarter
 };
 

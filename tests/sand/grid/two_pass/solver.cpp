@@ -2,9 +2,8 @@
 #include "tests/sand/grid/two_pass/solver.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <vector>
 
-#include "sand/grid/flux_limits.hpp"
 #include "sand/model/momentum.hpp"
 #include "tests/sand/grid/two_pass/kernel.hpp"
 
@@ -39,6 +38,35 @@ void refreshGhosts(sand::HeightField& field) {
     }
 }
 
+constexpr std::int32_t kEndless = 1 << 30;  // [unit], more than any flux or step needs
+
+/// Heights, sand and room of a patch and of one more cell on every side, row by row.
+struct LimitedPatch {
+    std::vector<std::int32_t> heights, sand, room;  // [unit]
+
+    LimitedPatch(const sand::HeightField& field, const sand::CellRect& cells, const sand::Ground* ground,
+                 const sand::grid::Obstacle* tool) {
+        for (int y = cells.y0 - 1; y <= cells.y1; ++y) {
+            for (int x = cells.x0 - 1; x <= cells.x1; ++x) {
+                const int u = std::clamp(x, 0, field.columns() - 1), v = std::clamp(y, 0, field.rows() - 1);
+                const bool wall = ground != nullptr && ground->isWall(u, v);
+                const std::int32_t height = field.height(u, v);
+                heights.push_back(wall ? sand::kMaxHeight : height);
+                sand.push_back(ground == nullptr ? kEndless : ground->sand(u, v, height));
+                room.push_back(wall ? 0 : roomBelow(tool, u, v, height));
+            }
+        }
+    }
+
+private:
+    static std::int32_t roomBelow(const sand::grid::Obstacle* tool, int x, int y, std::int32_t height) {
+        const bool reaches = tool != nullptr && !sand::CellRect{x, y, x + 1, y + 1}.clippedTo(tool->cells).empty();
+        const std::int32_t under = reaches ? tool->row(y)[x - tool->cells.x0] : sand::grid::Obstacle::kFree;
+        return under == sand::grid::Obstacle::kFree ? kEndless
+                                                    : std::max(std::min(under, sand::kMaxHeight) - height, 0);
+    }
+};
+
 bool hasBand(const sand::Rules& rules) { return rules.tuning.startThreshold > rules.tuning.threshold; }
 
 }  // namespace
@@ -67,16 +95,16 @@ void Solver::forEachPatch(const Task& task) const {
 }
 
 void Solver::sweepFluxes(const sand::CellRect& cells, float momentum) {
-    std::optional<sand::grid::FluxLimits> limits;
-    if (tool != nullptr || ground_ != nullptr) {
-        limits.emplace(field, cells, ground_, tool);
+    const bool limited = tool != nullptr || ground_ != nullptr;
+    std::vector<LimitedPatch> limits;
+    if (limited) {
+        limits.emplace_back(field, cells, ground_, tool);
     }
-    const bool grounded = ground_ != nullptr;
     const int limitsWidth = cells.x1 - cells.x0 + 2;
     const double ratio = static_cast<double>(rules.aspect) / sand::kUnitsPerCell;
     outflow += two_pass::sweepFluxes(
-        {.heights = grounded ? limits->heights.data() + limitsWidth + 1 : field.row(cells.y0) + cells.x0,
-         .heightStride = grounded ? limitsWidth : field.stride(),
+        {.heights = limited ? limits[0].heights.data() + limitsWidth + 1 : field.row(cells.y0) + cells.x0,
+         .heightStride = limited ? limitsWidth : field.stride(),
          .east = east_.row(0),
          .north = north_.row(0),
          .fluxStride = east_.stride(),
@@ -90,8 +118,8 @@ void Solver::sweepFluxes(const sand::CellRect& cells, float momentum) {
          .openRim = rules.rim == sand::Rim::open,
          .sliding = hasBand(rules) ? sliding_.row(0) : nullptr,
          .slidingStride = sliding_.stride(),
-         .room = limits ? limits->room.data() : nullptr,
-         .sand = grounded ? limits->sand.data() : nullptr});
+         .room = limited ? limits[0].room.data() : nullptr,
+         .sand = limited ? limits[0].sand.data() : nullptr});
 }
 
 bool Solver::balance(const sand::CellRect& cells) {
