@@ -49,7 +49,7 @@ struct ForceConstants {
     bool literal = false;  // whether formulas are computed as printed, with their jumps; for comparison
     Between between = Between::local;
     double validity = 0.5;       // [tool reach], distance over which the local model is valid
-    double recoveryTime = 0.05;  // with which a new local model takes over; control points take 1.6 times as long [s]
+    double recoveryTime = 0.05;  // time constant with which a new local model takes over [s]
 
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit);

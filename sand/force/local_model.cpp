@@ -12,11 +12,15 @@ constexpr double kMotion =
     0.003;  // [s], time over which motion is averaged; the motion of one tick is mostly resolution
 constexpr double kSlowest = 0.1;  // smallest rate of recovery, as a share of the full rate
 
-/// Returns the time constant of the recovery [s]. Control points lie where the tool cuts, and see every change of the
-/// sand there. With the time of `repulse` they keep a hand moving that rests on the sand with its weight.
-double recoveryTimeOf(const ForceConstants& constants) {
-    constexpr double kOfControlPoints = 1.6;  // [recovery time]
-    return (constants.law == ForceLaw::controlPoints ? kOfControlPoints : 1) * constants.recoveryTime;
+/// Returns the time constant of the recovery [s] for a hand that moves along `motion`. Control points lie where the
+/// tool cuts, and see every change of the sand there. With the time of `repulse` they keep a hand moving up and down
+/// that rests on the sand with its weight. A hand that moves across is not slowed down, because new sand comes all the
+/// time.
+double recoveryTimeOf(const ForceConstants& constants, Vec3 motion) {
+    constexpr double kUpAndDown = 2;  // [recovery time], of control points
+    const double across = motion.x * motion.x + motion.y * motion.y, all = across + motion.z * motion.z;
+    const double share = constants.law != ForceLaw::controlPoints ? 1 : all > 0 ? across / all : 0;
+    return (kUpAndDown + share * (1 - kUpAndDown)) * constants.recoveryTime;
 }
 
 }  // namespace
@@ -65,7 +69,7 @@ void LocalModel::recover(const ForceConstants& constants, const Contour& tool, d
     const Vec3 before = respond(constants, tool, carriedBy(step)).push;
     const auto owed = debt_;
     const auto pay = [&](double rate) {
-        const double kept = std::exp(-span * rate / recoveryTimeOf(constants));
+        const double kept = std::exp(-span * rate / recoveryTimeOf(constants, motion_));
         for (std::size_t i = 0; i < debt_.size(); ++i) {
             debt_[i] = kept * owed[i];
         }

@@ -15,7 +15,8 @@ namespace sand::force {
 /// the tangent across it predicts. The share of the tangent that came true on the last part of the way is assumed for
 /// the next part. Second, a surface may be replaced, or the tool may leave the radius in which the tangent is valid.
 /// The new tangent then takes over with the time constant ForceConstants::recoveryTime, as if the sand had moved that
-/// slowly. With control points it takes 1.6 times as long. The force therefore does not jump.
+/// slowly. With control points it takes twice as long while the hand moves up and down. The force therefore does not
+/// jump.
 ///
 /// Sand that a press has raised answers a frame late. It acts as a spring with a delay, which gives energy to the hand
 /// because it pushes back late. A change of the force along the tool's motion therefore takes up to ten times as

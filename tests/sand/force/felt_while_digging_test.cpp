@@ -86,10 +86,10 @@ constexpr std::array kJumps{Jump{sand::ForceLaw::repulse, 0.3, 0.1, 1.56, 1.73, 
                             Jump{sand::ForceLaw::repulse, 1.0, 1.0, 4.93, 6.20, 0.036, 0.300},
                             Jump{sand::ForceLaw::controlPoints, 0.3, 0.1, 0.15, 0.19, 0.001, 0.014},
                             Jump{sand::ForceLaw::controlPoints, 0.3, 0.3, 0.13, 0.19, 0.001, 0.023},
-                            Jump{sand::ForceLaw::controlPoints, 0.3, 1.0, 0.13, 0.15, 0.001, 0.025},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.1, 0.42, 0.50, 0.002, 0.058},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.3, 0.44, 0.58, 0.003, 0.067},
-                            Jump{sand::ForceLaw::controlPoints, 1.0, 1.0, 0.39, 0.47, 0.006, 0.114}};
+                            Jump{sand::ForceLaw::controlPoints, 0.3, 1.0, 0.12, 0.16, 0.002, 0.025},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.1, 0.41, 0.48, 0.002, 0.058},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 0.3, 0.43, 0.54, 0.003, 0.067},
+                            Jump{sand::ForceLaw::controlPoints, 1.0, 1.0, 0.40, 0.47, 0.006, 0.114}};
 
 // Every machine computes the same sand. Forces differ only in the last digits of a library's functions. A figure of the
 // table is exact to half of its last digit, plus a tenth of that digit for the number that was rounded.

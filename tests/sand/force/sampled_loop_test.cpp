@@ -131,8 +131,9 @@ sand::ForceConstants constantsOfLoop(sand::ForceLaw law) {
     return constants;
 }
 
-// If control points recover in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s, and the sand
-// gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than its radius.
+// If control points recover up and down in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s,
+// and the sand gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than
+// its radius.
 TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
         for (const double weight : {0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4}) {  // [N]
