@@ -96,8 +96,8 @@ inline void markBlocks(const std::int32_t* __restrict east, const std::int32_t* 
     }
 }
 
-/// One number of each column of a block. It is a vector of the compiler: in a loop over the columns, g++ would compute
-/// the flux from the west once for two columns, and then keep the loop scalar.
+/// One number of each column of a block. It is a vector of the compiler. In a loop over the columns, g++ would share
+/// the flux from the west between two columns, and keep the loop scalar.
 using Columns [[gnu::vector_size(4 * kShortBlock)]] = std::int32_t;
 
 inline Columns columnsAt(const std::int32_t* first) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to the kernel of the sweeps, which is compiled once per code path: the steps along a face, as the slope of
-// the face counts them beside a tool and on rock. docs/sand.md has the rules and the reason for each.
+// The steps along a face, as the slope of the face counts them beside a tool and on rock. docs/sand.md has the rules
+// and the reason for each. Private to the kernel of the sweeps, which is compiled once per code path.
 #pragma once
 
 #include <algorithm>

@@ -71,8 +71,8 @@ inline float shareOf(std::int32_t sand) { return 4.0F / static_cast<float>(std::
 /// Adds up the pairs from `from` on, one for each of `count` faces between the cells of `a` and `b`.
 ///
 /// A thin layer on a diagonal slope must slide as on a slope along an axis. So a step counts the height difference up
-/// to the start threshold, if its upper cell has at least a quarter of the sand of the face's upper cell. With less
-/// sand it counts less in proportion: a bare cliff, or dust on one, then makes no stable sand beside it slide.
+/// to the start threshold. Its upper cell must have a quarter of the sand of the face's upper cell. With less sand it
+/// counts less in proportion. A bare cliff, or dust on one, then makes no stable sand beside it slide.
 inline void addUp(const LimitedRow a, const LimitedRow b, const ThinPairs& pairs, int from, int count,
                   std::int32_t* __restrict sums) {
     const std::int32_t* const counted = pairs.first.counted.data() + from;

@@ -85,7 +85,7 @@ public:
     /// Wakes the sand that `tool` held back while its centre was at `probe`.
     virtual void release(const Tool& tool, const ProbePoint& probe) = 0;
     /// Wakes the sand that `tool` reaches, whose centre has come to `probe`. A tool can make a slope steeper without
-    /// cutting sand: two opposite steps beside a face cancel each other, until the tool limits one of them.
+    /// cutting sand. Two opposite steps beside a face cancel each other until the tool limits one of them.
     virtual void arrive(const Tool& tool, const ProbePoint& probe) = 0;
     /// Called before the sweeps of a step in which a tool that is in the sand, or above it, does not move.
     virtual void hold(const Tool&, const ProbePoint&) {}

@@ -67,7 +67,7 @@ private:
         const double thin = std::min(std::abs(step), start) * std::min(1.0, 4 * thickness / std::max(giving, 1.0));
         return std::copysign(std::max(std::min(std::abs(step), thickness), thin), step);
     }
-    // How much higher the next cell is than the one before. Beyond the rim the last rise continues.
+    // Returns how much higher the next cell is than the one before. Beyond the rim the last rise continues.
     [[nodiscard]] double riseEast(const Cell& cell, double giving) const {
         const auto rises = [&](int x) { return rise({x - 1, cell.y}, {x, cell.y}, start_, giving); };
         return bothOf(cell.x, field_.columns(), rises);

@@ -118,8 +118,8 @@ private:
         return float((last ? before : after) + before);
     }
     /// Returns by how much cell `c` is higher than cell `d`. A step counts at most the room in its lower cell. It
-    /// counts all sand of its upper cell, or up to the start threshold if this cell has a quarter of the sand that the
-    /// face can give; with less sand, less in proportion.
+    /// counts all sand of its upper cell. If this cell has a quarter of the sand that the face can give, it counts up
+    /// to the start threshold. With less sand it counts less in proportion.
     [[nodiscard]] std::int32_t step(std::ptrdiff_t c, std::ptrdiff_t d, const Along& along) const {
         const std::int32_t height = seen.row(0)[c] - seen.row(0)[d];
         const bool up = height > 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tool that is held on a slope is an obstacle like a wall: the sand comes to rest around it, and no slope
-// runs past it.
+// A tool that is held on a slope is an obstacle like a wall. The sand comes to rest around it, and no slope runs past
+// it.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -142,8 +142,8 @@ sand::ProbePoint lowestPlace(const sand::Replica& sand, double x, double y, doub
 }
 
 // Two opposite steps beside a face cancel each other. A tool that limits one of them makes the face steeper, although
-// it cuts nothing. A replica that visits only the blocks that something has woken must find that, as one does that
-// joins before each step and looks at all blocks.
+// it cuts nothing. A replica visits only the blocks that something has woken, and must find that. A replica that joins
+// before each step looks at all blocks.
 TEST(HeldOnSlope, AnArrivingToolWakesTheSandThatItReaches) {
     std::mt19937 random(test::randomSeed());
     constexpr int n = 48;

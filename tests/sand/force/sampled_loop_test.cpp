@@ -131,8 +131,8 @@ sand::ForceConstants constantsOfLoop(sand::ForceLaw law) {
     return constants;
 }
 
-// If control points recover up and down in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s,
-// and the sand gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than
+// If control points recover up and down in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s.
+// The sand then gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than
 // its radius.
 TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
