@@ -98,7 +98,7 @@ TEST_F(LostReading, ElevenAreAFaultWithARampOfTwoSeconds) {
         server_->run(1);
         EXPECT_NEAR(force(), whole / 2, 0.1 * whole);
         server_->run(1.1);
-        EXPECT_NEAR(force(), whole, 0.1 * whole) << "the tool was lifted and put down again";
+        EXPECT_NEAR(force(), whole, 0.15 * whole) << "the tool was lifted, and put down again in other sand";
     });
 }
 
