@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tools that arrive and are held in random scenes: on slopes, rock, walls, holes and open rims, up to extreme taluses.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
