@@ -79,7 +79,7 @@ void DugSession::ask(sand::Edit edit, std::optional<scene::Material> material) {
         throw base::InputError(fmt::format("{} edits wait for their steps already", asked_.size()));
     }
     edit.number = ++lastEdit_;
-    asked_.push_back({std::move(edit), std::move(material)});
+    asked_.push_back({std::move(edit), material});
 }
 
 void DugSession::takePointer() {
