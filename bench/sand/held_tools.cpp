@@ -10,8 +10,9 @@ namespace bench {
 namespace {
 
 constexpr int kStepsPerSecond = 60, kHeldSweeps = 16;
+constexpr int kSlidingSeconds = 4;                             // in which the sand that the press has thrown up slides
 constexpr double kHeldRadius = 6;                              // [cell]
-constexpr std::array kHeldSeconds{1, 2, 3, 5, 8, 15, 30, 60};  // of the hand's time, after the press
+constexpr std::array kHeldSeconds{1, 2, 3, 5, 8, 15, 30, 60};  // of the hand's time
 constexpr std::array kHeldSlopes{0.3, 0.5, 0.62, 0.67};        // the talus is 0.6745
 
 /// An obstacle on the slope.
@@ -31,28 +32,9 @@ borders::Case slopeOf(const Holder& holder, int side, double slope) {
     return given;
 }
 
-std::vector<double> heightsOf(const sand::Replica& sand, int side) {
-    std::vector<double> heights;
-    for (int y = 0; y < side; ++y) {
-        for (int x = 0; x < side; ++x) {
-            heights.push_back(borders::heightAt(sand, x + 0.5, y + 0.5));
-        }
-    }
-    return heights;
-}
-
-/// Returns half the sum of |change| [cell³].
-double moved(const std::vector<double>& from, const std::vector<double>& to) {
-    double sum = 0;
-    for (std::size_t i = 0; i < from.size(); ++i) {
-        sum += std::abs(to[i] - from[i]) / 2;
-    }
-    return sum;
-}
-
 /// Returns the scene of the sand that a press has left, with walls below the tool.
 borders::Case walledIn(const sand::Replica& pressed, borders::Case given, int side) {
-    const std::vector<double> heights = heightsOf(pressed, side);
+    const std::vector<double> heights = borders::heightsOf(pressed);
     const sand::TurnedShape shape(pressed.tool());
     const sand::ProbePoint at = pressed.probe();
     given.height = [=](double x, double y) {
@@ -78,10 +60,11 @@ void measure(const Holder& holder, int side, double slope, Csv& csv) {
     }
     borders::Hand holding(sand);
     const auto step = [&] { holder.wall ? holding.hover() : hand.hold(); };
-    for (int i = 0; i < kStepsPerSecond; ++i) {  // the sand that the press has thrown up slides
+    const std::vector<double> pressed = borders::heightsOf(sand);
+    for (int i = 0; i < kSlidingSeconds * kStepsPerSecond; ++i) {
         step();
     }
-    const std::vector<double> pressed = heightsOf(sand, side);
+    const std::vector<double> slid = borders::heightsOf(sand);
     double seconds = 0;
     int done = 0;
     for (const int until : kHeldSeconds) {
@@ -91,7 +74,7 @@ void measure(const Holder& holder, int side, double slope, Csv& csv) {
             }
         });
         csv.row(holder.sand, holder.wall ? "wall" : base::nameOf(holder.tool), side, slope, until, 1e3 * seconds,
-                moved(pressed, heightsOf(sand, side)), sand.settled() ? 1 : 0);
+                borders::moved(pressed, slid), borders::moved(slid, borders::heightsOf(sand)), sand.settled() ? 1 : 0);
     }
 }
 
@@ -104,10 +87,12 @@ void heldTools(const Settings& settings, Csv& csv) {
         "talus {:.4f}, {} sweeps a step, {} steps a second",
         kHeldRadius, borders::kTalus, kHeldSweeps, kStepsPerSecond));
     csv.note("wall: cells without ground in the place of a circle, after its press");
-    csv.note("seconds: time that the hand has held the tool, from a second after the press on");
+    csv.note(
+        fmt::format("seconds: time that the hand has held the tool, from {} s after the press on", kSlidingSeconds));
     csv.note("ms: CPU time of the steps of these seconds");
-    csv.note("past: half the sum of |change of a height| in this time [cell³]");
-    csv.columns("sand,tool,N,slope,seconds,ms,past,at_rest");
+    csv.note(fmt::format("slid, past: half the sum of |change of a height| in the first {} s, and in `seconds` [cell³]",
+                         kSlidingSeconds));
+    csv.columns("sand,tool,N,slope,seconds,ms,slid,past,at_rest");
     const std::vector<Holder> holders{{"grid", borders::kGrid, circle, true}, {"grid", borders::kGrid, circle},
                                       {"grid", borders::kGrid, sphere},       {"grid", borders::kGrid, ellipsoid},
                                       {"grid", borders::kGrid, footprint},    {"TIN", borders::kCoarse, circle, true},

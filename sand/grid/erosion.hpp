@@ -84,7 +84,7 @@ public:
     /// Makes the next sweep visit the blocks of `cells` and their neighbours. Does not reset the age of the inertia.
     void wake(const CellRect& cells);
 
-    /// What sweeps have done.
+    /// The result of sweeps.
     struct Swept {
         std::int64_t outflow = 0;  // volume that fell over an open rim [unit · cell]
         /// Whether the last sweep moved no sand. It does not depend on which blocks were visited.

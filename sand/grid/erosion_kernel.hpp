@@ -27,8 +27,8 @@ struct AxisLaw {
     float along;  // factor from the sum of four differences along the face to their mean, in the unit across it
 };
 
-/// The cells at whose eastern and northern faces a tool limits slopes and fluxes, for a field without ground. A tool
-/// that is partly outside the field may have cells there.
+/// The cells at whose eastern and northern faces a tool limits slopes and fluxes. The field has no ground. A tool that
+/// is partly outside the field may have cells there.
 struct HeldFaces {
     const Obstacle& obstacle;
 

@@ -77,7 +77,7 @@ void eastwardsAndNorthwards(const Law eastLaw, const Law northLaw, const std::in
 
 /// Limits a flux to a quarter of `forth`, or of `back` in the other direction: the room of the cell that receives it,
 /// or the sand of the cell that gives it. The four faces of a cell then never bring more than fits, or take more than
-/// it has. Neither is below 0.
+/// it has. `forth` and `back` are at least 0.
 inline std::int32_t limitedToQuarter(std::int32_t flux, std::int32_t forth, std::int32_t back) {
     return std::max(std::min(flux, forth >> 2), -(back >> 2));
 }

@@ -105,11 +105,11 @@ public:
     void next() { now_ ^= 1U; }
 
     // Each sum is that of one cell [unit]. A face adds up the sums of its two cells.
-    /// Along the eastern faces, for the cells of the piece and one more in the east.
+    /// Along the eastern faces: the cells of the piece and one more in the east.
     [[nodiscard]] const std::int32_t* alongEast() const { return alongEast_.data(); }
-    /// Along the northern faces, for the cells of the row.
+    /// Along the northern faces: the cells of the row.
     [[nodiscard]] const std::int32_t* alongNorth() const { return alongRow_[now_].data(); }
-    /// Along the northern faces, for the cells of the row in the north.
+    /// Along the northern faces: the cells of the row in the north.
     [[nodiscard]] const std::int32_t* alongNorthAhead() const { return alongRow_[now_ ^ 1U].data(); }
 
 private:

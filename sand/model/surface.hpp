@@ -51,7 +51,7 @@ public:
     [[nodiscard]] virtual base::Bytes encode() const = 0;
 };
 
-/// What sweeps have done.
+/// The result of sweeps.
 struct Swept {
     std::int64_t sweeps = 0;  // that have run. A replica that was healed may run one more, which moves no sand
     bool still = false;       // whether the last sweep moved no sand. All replicas agree about it

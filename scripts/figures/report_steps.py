@@ -68,16 +68,18 @@ def held_tools(tables):
     for sand, tool in dict.fromkeys((row["sand"], row["tool"]) for row in table.rows):
         rows = [row for row in table.some(sand=sand, tool=tool) if row["seconds"] == longest]
         rested = [row["seconds"] for row in table.some(sand=sand, tool=tool, slope=steepest) if row["at_rest"]]
-        lines.append([sand, tool] + [f"{row['past']:.3g}" for row in rows] +
+        lines.append([sand, tool] + [f"{row['past']:.3g}" for row in rows] + [f"{max(row['slid'] for row in rows):.3g}"] +
                      [f"{rested[0]:g} s" if rested else "no", f"{max(row['ms'] for row in rows):.0f}"])
     most = max((row for row in table.rows if row["tool"] != "wall"), key=lambda row: row["past"])
+    wall = max(row["past"] for row in table.some(sand=most["sand"], tool="wall"))
     slopes = [f"slope {slope:g} [cell³]" for slope in table.distinct("slope")]
     return ("A tool of 6 cells is pressed into a slope and held. How much sand runs past it? The figure has the steepest slope, "
-            f"{steepest:g}, where the talus is 0.6745. The volume counts from a second after the press, when the sand that the press "
-            f"has thrown up lies. A wall in the place of the circle is the reference. After {longest:g} s at most "
-            f"{most['past']:.3g} cell³ have run past a tool ({most['tool']}, {most['sand']}, slope {most['slope']:g}). The last two "
-            "columns have the time until rest on the steepest slope, and the longest run time of the steps:\n\n" +
-            markdown(["sand", "tool", *slopes, "at rest", "run time [ms]"], lines))
+            f"{steepest:g}, where the talus is 0.6745. In the first four seconds the sand slides that "
+            "the press has thrown up. The volume counts from then on. A wall in the place of the circle is the reference. After "
+            f"{longest:g} s at most {most['past']:.3g} cell³ have run past a tool ({most['tool']}, {most['sand']}, slope "
+            f"{most['slope']:g}), and {wall:.3g} cell³ past the wall there. The last three columns have the most that slid in the first "
+            "four seconds, the time from then until rest on the steepest slope, and the longest run time of the steps:\n\n" +
+            markdown(["sand", "tool", *slopes, "slid before [cell³]", "at rest", "run time [ms]"], lines))
 
 
 def throughput(tables):

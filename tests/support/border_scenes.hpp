@@ -133,6 +133,26 @@ inline double heightAt(const sand::Replica& sand, double x, double y) {
     return sand.surface().height(x * sand::kProbePerCell, y * sand::kProbePerCell) / sand::kUnitsPerCell;
 }
 
+/// Returns the heights at the middles of all cells, row by row.
+inline std::vector<double> heightsOf(const sand::Replica& sand) {
+    std::vector<double> heights;
+    for (int y = 0; y < sand.rules().rows; ++y) {
+        for (int x = 0; x < sand.rules().columns; ++x) {
+            heights.push_back(heightAt(sand, x + 0.5, y + 0.5));
+        }
+    }
+    return heights;
+}
+
+/// Returns half the sum of |change|, from one result of heightsOf() to another [cell³].
+inline double moved(const std::vector<double>& from, const std::vector<double>& to) {
+    double sum = 0;
+    for (std::size_t i = 0; i < from.size(); ++i) {
+        sum += std::abs(to[i] - from[i]) / 2;
+    }
+    return sum;
+}
+
 /// Returns the volume between the surface and `right(x, y)` [cell³], from the heights at the middles of the cells.
 /// Counts only cells for which `counts(x, y)` is true.
 template <class Right, class Counts>

@@ -98,7 +98,12 @@ TEST_F(LostReading, ElevenAreAFaultWithARampOfTwoSeconds) {
         server_->run(1);
         EXPECT_NEAR(force(), whole / 2, 0.1 * whole);
         server_->run(1.1);
-        EXPECT_NEAR(force(), whole, 0.15 * whole) << "the tool was lifted, and put down again in other sand";
+        const std::uint64_t ramped = server_->counted(Guard::ramp);
+        server_->run(0.5);
+        EXPECT_EQ(server_->counted(Guard::ramp), ramped) << "the ramp has ended";
+        // The fault has lifted the tool and put it down again. Sand has slid below it meanwhile. Control points feel
+        // that, because they lie where the tool cuts.
+        EXPECT_NEAR(force(), whole, (scene_.force.law == sand::ForceLaw::repulse ? 0.02 : 0.12) * whole);
     });
 }
 

@@ -15,16 +15,6 @@ using borders::Case;
 using borders::Hand;
 using enum sand::ToolKind;
 
-std::vector<double> heightsOf(const sand::Replica& sand, int n) {
-    std::vector<double> heights;
-    for (int y = 0; y < n; ++y) {
-        for (int x = 0; x < n; ++x) {
-            heights.push_back(borders::heightAt(sand, x + 0.5, y + 0.5));
-        }
-    }
-    return heights;
-}
-
 struct HeldSlope {
     double ranPast = 0;  // volume that moved after the press had ended [cell³]
     bool atRest = false;
@@ -51,16 +41,11 @@ HeldSlope holdOnSlope(const borders::Ground& ground, sand::ToolKind kind, double
     for (int i = 0; i < pressing; ++i) {
         hand.hold();
     }
-    const std::vector<double> pressed = heightsOf(sand, n);
+    const std::vector<double> pressed = borders::heightsOf(sand);
     for (int i = 0; i < 30 * kSecond && !sand.settled(); ++i) {
         hand.hold();
     }
-    HeldSlope result{0, sand.settled()};
-    const std::vector<double> held = heightsOf(sand, n);
-    for (std::size_t i = 0; i < held.size(); ++i) {
-        result.ranPast += std::abs(held[i] - pressed[i]) / 2;
-    }
-    return result;
+    return {borders::moved(pressed, borders::heightsOf(sand)), sand.settled()};
 }
 
 // A wall in the tool's place lets 1.6 cell³ run past. Before steps counted only the room in their lower cell, a circle
@@ -86,14 +71,16 @@ TEST(HeldOnSlope, RestsWithAnyBand) {
     }
 }
 
-// The sand that a press has thrown up slides for longer on a TIN. A tool that sand touches on one side alone may drain
-// a little for longer still (docs/limits.md).
+// On a TIN the sand that a press has thrown up slides for up to four seconds. A bowl that sand touches on one side
+// alone leaves a little room below it elsewhere. Before a corner with room leaned on the tool, up to 137 cell³ ran past
+// there.
 TEST(HeldOnSlope, OfAFineTinLetsNoSlopeRunPast) {
     for (const sand::ToolKind kind : {circle, sphere, ellipsoid}) {
         for (const double higher : {0.0, 2.0, 4.0, 5.0}) {
             const HeldSlope held = holdOnSlope(borders::kTin, kind, 0.67, 0, 0, higher, 4 * kSecond);
             EXPECT_TRUE(held.atRest || higher == 5) << base::nameOf(kind) << ", " << higher << " cells above the sand";
-            EXPECT_LT(held.ranPast, 10) << base::nameOf(kind) << ", " << higher << " cells above the sand";
+            const double most = kind == circle ? 10 : higher == 0 ? 5 : 2;  // [cell³]
+            EXPECT_LT(held.ranPast, most) << base::nameOf(kind) << ", " << higher << " cells above the sand";
         }
     }
 }
@@ -159,7 +146,7 @@ TEST(HeldOnSlope, AnArrivingToolWakesTheSandThatItReaches) {
         for (int i = 0; i < 40; ++i) {
             const auto place = [&random] { return 4 + static_cast<double>(random() % (256 * (n - 8))) / 256; };
             const sand::ProbePoint above = lowestPlace(sand, place(), place(), given.radius, n);
-            const std::vector<double> heights = heightsOf(sand, n);
+            const std::vector<double> heights = borders::heightsOf(sand);
             for (const bool engaged : {true, true, false}) {
                 const sand::Step step{.epoch = 1, .number = ++number, .engaged = engaged, .path = {above}};
                 joining.decodeState(sand.encodeState());
@@ -167,7 +154,7 @@ TEST(HeldOnSlope, AnArrivingToolWakesTheSandThatItReaches) {
                 joining.apply(step);
                 ASSERT_EQ(joining.stateHash(), sand.stateHash()) << "trial " << trial << ", step " << number;
             }
-            moved += heightsOf(sand, n) != heights ? 1 : 0;
+            moved += borders::heightsOf(sand) != heights ? 1 : 0;
         }
     }
     EXPECT_GT(moved, 0) << "no tool moves sand, so the test shows nothing";
@@ -213,9 +200,9 @@ TEST(ThinSand, OfDustOnACliffMovesNoStableSandBesideIt) {
     given.rock = [=](double x, double) { return x < kCliff ? kHigh : 0; };
     given.height = [=](double x, double y) { return x < kCliff ? kHigh + kDust : 5 + 0.9 * borders::kTalus * y; };
     sand::Replica sand(borders::sceneOf(given));
-    const std::vector<double> before = heightsOf(sand, n);
+    const std::vector<double> before = borders::heightsOf(sand);
     ASSERT_TRUE(Hand(sand).rest());
-    const std::vector<double> after = heightsOf(sand, n);
+    const std::vector<double> after = borders::heightsOf(sand);
     for (std::size_t i = 0; i < after.size(); ++i) {
         if (i % n >= kCliff) {
             ASSERT_NEAR(after[i], before[i], kCliff * n * kDust) << "at cell " << i;

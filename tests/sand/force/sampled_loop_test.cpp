@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "sand/force/law.hpp"
@@ -119,9 +121,7 @@ Session pulledAndReleased(const sand::ForceConstants& constants, double weight) 
     return session;
 }
 
-// The stiffness is 400 N/m. A device with b = 0.5 bears 1000 N/m, and half of that is 500 N/m. Sand that a press has
-// raised answers a frame later. If it acts at once, as a held or an exact force on each surface does, that delay alone
-// shakes the mass forever (docs/figures.md).
+// The stiffness is 400 N/m. A device with b = 0.5 bears 1000 N/m, and half of that is 500 N/m.
 sand::ForceConstants constantsOfLoop(sand::ForceLaw law) {
     sand::ForceConstants constants;
     constants.law = law;
@@ -131,26 +131,49 @@ sand::ForceConstants constantsOfLoop(sand::ForceLaw law) {
     return constants;
 }
 
-// If control points recover up and down in the time of `repulse`, two of these weights keep moving with 5 to 7 mm/s.
-// The sand then gives up to 2.7 times as much as hand and weight. The heaviest weight presses the tool in by more than
-// its radius.
-TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
+/// Runs a session with each law, and checks that its energies add up. `check` gets the law, the weight [N] and the
+/// session.
+template <class Check>
+void withEachLaw(std::initializer_list<double> weights, const Check& check) {
     for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
-        for (const double weight : {0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4}) {  // [N]
-            SCOPED_TRACE(weight);
+        for (const double weight : weights) {
+            const std::string what = std::string(base::nameOf(law)) + ", " + std::to_string(weight) + " N";
+            SCOPED_TRACE(what);
             const Session session = pulledAndReleased(constantsOfLoop(law), weight);
-            std::printf("%.2f N: sand gave %.3g mJ (at most %.3g), hand and weight %.3g, damping took %.3g; ", weight,
+            std::printf("%s: sand gave %.3g mJ (at most %.3g), hand and weight %.3g, damping took %.3g; ", what.c_str(),
                         1e3 * session.given, 1e3 * session.mostGiven, 1e3 * session.handWork, 1e3 * session.loss);
             std::printf("%.3g, then %.3g mm/s; sand moved %.3g\n", 1e3 * session.fastest[0],
                         1e3 * session.fastest.back(), session.sandMoved);
             EXPECT_GT(session.sandMoved, kRadius / 2) << "the tool did not move the sand";
             EXPECT_NEAR(session.given + session.handWork, session.loss + session.energy, 1e-9)
                 << "the energies must add up";
-            EXPECT_LT(session.given, 0.3 * session.handWork) << "the sand must not drive the mass";
-            EXPECT_LT(session.mostGiven, 0.45 * session.loss) << "the sand must give back little at any time";
-            EXPECT_LT(session.fastest.back(), 2e-4);
+            check(law, weight, session);
         }
     }
+}
+
+// Sand that a press has raised answers a frame later. If it acts at once, as a held or an exact force on each surface
+// does, that delay alone shakes the mass forever (docs/figures.md). If control points recover up and down in the time
+// of `repulse`, two of these weights keep moving.
+TEST(SampledLoop, NeverGainsFromSandThatIsDisplacedAndSlidesUnderIt) {
+    withEachLaw({0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4}, [](sand::ForceLaw, double weight, const Session& session) {
+        // The weight of docs/figures.md has the narrow bounds. With some others the sand gives more while the tool is
+        // pulled, and all of them come to rest.
+        const bool usual = weight == 0.3;
+        EXPECT_LT(session.given, (usual ? 0.05 : 0.3) * session.handWork) << "the sand must not drive the mass";
+        EXPECT_LT(session.mostGiven, (usual ? 0.3 : 0.45) * session.loss) << "the sand must give back little";
+        EXPECT_LT(session.fastest.back(), 2e-4);
+        for (std::size_t i = 1; i < session.fastest.size(); ++i) {
+            EXPECT_LT(session.fastest[i], std::max(session.fastest[i - 1], 1e-4)) << "quarter " << i << ": growth";
+        }
+    });
+}
+
+// These weights press the tool in by more than its radius (docs/forces.md).
+TEST(SampledLoop, OfABuriedToolIsSlow) {
+    withEachLaw({0.45, 0.5, 0.55, 0.6}, [](sand::ForceLaw law, double, const Session& session) {
+        EXPECT_LT(session.fastest.back(), law == sand::ForceLaw::repulse ? 2e-4 : 5e-3);
+    });
 }
 
 TEST(SampledLoop, ShakesIfEverySurfaceActsAtOnce) {
