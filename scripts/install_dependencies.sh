@@ -49,8 +49,8 @@ add_node() {
 # packages that replace each other: the script installs the first that this Debian has.
 for option in "$@"; do
     case "$option" in
-        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox xdotool \
-            xserver-xorg-core xserver-xorg-video-dummy) ;;
+        --with-tests) tools+=("clang-14|clang-19" python3-jsonschema dpkg-dev file help2man lintian openbox \
+            universal-ctags xdotool xserver-xorg-core xserver-xorg-video-dummy) ;;
         --with-web) tools+=(emscripten); add_node ;;                      # the web page; docs/web.md
         --with-browsers) tools+=(chromium firefox-esr xauth) ;;         # its tests in browsers
         --with-report) tools+=(python3-matplotlib) ;;

@@ -50,6 +50,9 @@ def dig(table):
     return figure
 
 
+LEAST_PAST = 1e-4  # [cell³], drawn where less has run past a held tool, because the axis has no 0
+
+
 def held_tools(table):
     figure, axes = panels(3)
     slope = max(table.values("slope"))
@@ -57,9 +60,11 @@ def held_tools(table):
     for axis, sand in zip(axes, table.distinct("sand")):
         for tool in table.distinct("tool", sand=sand):
             rows = table.where(sand=sand, tool=tool, slope=slope)
-            axis.plot([row["ms"] for row in rows], [max(row["past"], 1e-4) for row in rows], color=SERIES[tools[tool] % len(SERIES)],
+            axis.plot([row["ms"] for row in rows], [max(row["past"], LEAST_PAST) for row in rows], color=SERIES[tools[tool] % len(SERIES)],
                       marker=MARKERS[tools[tool] % len(MARKERS)], linestyle="--" if tool == "wall" else "-", label=tool)
-        label(axis, "run time of the steps [ms]", "sand that has run past [cell³]", f"{sand}, slope {slope:g}")
+        least = min(row["past"] for row in table.where(sand=sand, slope=slope))
+        label(axis, "run time of the steps [ms]", "sand that has run past [cell³]",
+              f"{sand}, slope {slope:g}" + (f"; less is drawn at {LEAST_PAST:g}" if least < LEAST_PAST else ""))
     legend_below(figure, axes, 5)
     return figure
 

@@ -10,12 +10,15 @@ usage: bytes_by_hand_test.py
 
 import pathlib
 import re
+import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Folders of programs and libraries. base/ has the reader, the writer, and the forms of members.
-FOLDERS = ("bench", "examples", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene",
-           "tracking", "walls", "web")
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
+import product  # noqa: E402
+
+# base/ has the reader, the writer, and the forms of members.
+FOLDERS = sorted({*product.folders(), "bench", "examples"} - {"base"})
 RECORD = "docs/decisions/values_described_once.md"
 MOST = 15
 

@@ -14,11 +14,12 @@ usage: kinds_of_sand_test.py
 
 import pathlib
 import re
+import sys
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# Folders of programs and libraries. Tests, examples and benchmarks know the kind of their sand.
-FOLDERS = ("base", "haptic_bridge", "host", "journal", "lockstep", "master", "pictures", "render_node", "replay", "sand", "scene", "tracking", "walls", "web")
+sys.path.insert(0, str(ROOT / "scripts" / "checks"))
+import product  # noqa: E402
 
 # The five places that may ask for the kind.
 PLACES = {
@@ -89,7 +90,7 @@ def without_comments(text):
 
 def sources():
     return {str(path.relative_to(ROOT)): without_comments(path.read_text())
-            for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*")) if path.suffix in (".cpp", ".hpp")}
+            for folder in product.folders() for path in sorted((ROOT / folder).rglob("*")) if path.suffix in (".cpp", ".hpp")}
 
 
 def questions(path, text):

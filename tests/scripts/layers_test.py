@@ -14,6 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve() if len(sys.argv) > 1 else ROOT / "build" / "release"
 sys.path.insert(0, str(ROOT / "scripts" / "checks"))
 import layers  # noqa: E402
+import product  # noqa: E402
 
 PROJECT = layers.Project.of(ROOT, BUILD)
 
@@ -43,6 +44,10 @@ def linked(name):
 
 
 class Layers(unittest.TestCase):
+    def test_the_folders_of_the_product_are_those_of_its_targets(self):
+        tops = {source.partition("/")[0] for target in PROJECT.targets.values() for source in target["sources"] if source in PROJECT.sources}
+        self.assertEqual(set(product.folders()), tops - set(product.AROUND))
+
     def test_no_file_includes_what_its_folder_may_not(self):
         self.assertEqual(layers.faults(PROJECT), [])
 

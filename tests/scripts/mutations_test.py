@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that every patch of tests/mutations applies, and names a test program and tests that exist. Tests the rule by
-which scripts/mutate.sh draws further bugs, and what it reports.
+"""Tests that the line of every row of tests/mutations is in the sources exactly once, and that its tests exist. Tests the
+rule by which scripts/mutate.sh draws further bugs, and what it reports.
 
 usage: mutations_test.py   (SANDWALL_BIN: folder of the built test programs)
 """
 
 import ast
 import contextlib
+import dataclasses
 import fnmatch
 import functools
 import io
@@ -22,34 +23,41 @@ import unittest
 from docs_test import PROJECT, ROOT, tracked
 from launcher_fixture import BIN
 
-sys.path.insert(0, str(ROOT / "scripts" / "checks" / "mutation"))
+sys.path[:0] = [str(ROOT / "scripts" / "checks"), str(ROOT / "scripts" / "checks" / "mutation")]
 import draw  # noqa: E402
 import run  # noqa: E402
 import sites  # noqa: E402
+import table  # noqa: E402
 import workspace  # noqa: E402
 
-HEADER = re.compile(r"\A# (?P<what>[A-Z].*\.)\n# (?:tests: (?P<program>\w+) (?P<filter>\S+)|script tests: (?P<file>\w+\.py)(?: (?P<test>[\w.]+))?)\n"
-                    r"(# programs: [\w -]+\n)?(?=diff --git |--- a/)")
 PROGRAMS = run.test_programs()
+TABLES = ROOT / "tests" / "mutations"
 
 
-def faults(name, text, tests, applies):
-    header = HEADER.match(text)
-    if header is None:
-        yield f"{name}: must begin with the lines '# What is wrong.' and '# tests: PROGRAM FILTER'"
-        return
-    if header["file"]:
-        if f"{header['file']} {header['test'] or ''}".strip() not in script_tests():
-            yield f"{name}: there is no test {header['file']} {header['test'] or ''}"
-    elif header["program"] not in PROGRAMS:
-        yield f"{name}: there is no test program {header['program']}"
+def faults(row, tests):
+    """Yields what is wrong with the text of a row and with the names of its tests."""
+    if not re.match(r"[A-Z].*\.$", row.what):
+        yield f"{row.name}: `what` must be a sentence"
+    program, _, filter_ = row.tests.partition(" ")
+    if program.endswith(".py"):
+        if row.tests not in script_tests():
+            yield f"{row.name}: there is no test {row.tests}"
+    elif program not in PROGRAMS:
+        yield f"{row.name}: there is no test program {program}"
     else:
-        names = tests(header["program"])
-        for pattern in header["filter"].split(":"):
+        names = tests(program)
+        for pattern in filter_.split(":"):
             if not any(fnmatch.fnmatchcase(test, pattern) for test in names):
-                yield f"{name}: the filter {pattern} runs no test of {header['program']}"
-    if not applies(text):
-        yield f"{name}: no longer applies; make it again from the current source"
+                yield f"{row.name}: the filter {pattern} runs no test of {program}"
+
+
+def misplaced(rows, sources):
+    """Yields what is wrong with the lines of the rows."""
+    for row in rows:
+        try:
+            sources.changes(row)
+        except table.Misplaced as fault:
+            yield str(fault)
 
 
 @functools.cache
@@ -76,30 +84,86 @@ def script_tests():
                 yield from (f"{file} {node.name}.{test.name}" for test in node.body if isinstance(test, ast.FunctionDef))
 
 
-def applies(text):
-    return subprocess.run(["git", "apply", "--check", "-"], cwd=ROOT, input=text, text=True, capture_output=True).returncode == 0
+class Tables(unittest.TestCase):
+    """The rows of tests/mutations."""
 
+    ROW = table.Row("sand_falls_up", "Sand falls up.", (table.Place("Sand::fall", "down();", "up();"),), "sand_tests Law.*:x/Law.Holds/*")
 
-class Mutations(unittest.TestCase):
-    def test_apply_and_name_their_tests(self):
-        names = tracked("tests/mutations/*.patch")
-        self.assertGreaterEqual(len(names), 12)
-        found = [fault for name in names for fault in faults(name, (ROOT / name).read_text(), tests_of, applies)]
-        self.assertEqual(found, [])
+    def setUp(self):
+        self.root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-mutations-")))
+        (self.root / "CMakeLists.txt").write_text("add_subdirectory(sand)\nadd_subdirectory(tests)\n")
+        subprocess.run(["git", "init", "--quiet"], cwd=self.root, check=True)
 
-    def test_that_do_not_are_named(self):
-        def one(_):
+    def write(self, name, text):
+        (self.root / name).parent.mkdir(exist_ok=True, parents=True)
+        (self.root / name).write_text(text)
+        subprocess.run(["git", "add", name], cwd=self.root, check=True)
+
+    def place(self, **changed):
+        """Returns the text of all sources with the bug, or why its row has no place."""
+        row = dataclasses.replace(self.ROW, places=(dataclasses.replace(self.ROW.places[0], **changed),))
+        try:
+            changes = table.Sources(self.root).changes(row)
+        except table.Misplaced as fault:
+            return str(fault)
+        return table.planted((self.root / changes[0].file).read_text(), changes)
+
+    def test_are_in_the_sources_and_name_tests_that_exist(self):
+        rows = table.rows(TABLES)
+        self.assertGreater(len(rows), 400)
+        found = [fault for row in rows for fault in faults(row, tests_of)]
+        self.assertEqual(found + list(misplaced(rows, table.Sources(ROOT))), [])
+
+    def test_with_a_wrong_text_or_test_are_named(self):
+        def tests(_):
             return ["Law.Holds", "x/Law.Holds/0"]
 
-        good = "# Sand falls up.\n# tests: sand_tests Law.*:x/Law.Holds/*\ndiff --git a/a b/a\n"
-        self.assertEqual(list(faults("a", good, one, lambda _: True)), [])
-        for bad in (good.replace("Sand", "sand"), good.replace("tests: sand_tests", "test:"), good.replace("sand_tests", "sad_tests"),
-                    good.replace("Law.*", "Rule.*"), good.replace("x/Law.Holds/*", "Holds.*"), good.replace("# Sand falls up.\n", "")):
-            self.assertEqual(len(list(faults("a", bad, one, lambda _: True))), 1, bad)
-        self.assertEqual(len(list(faults("a", good, one, lambda _: False))), 1)
-        python = good.replace("# tests: sand_tests Law.*:x/Law.Holds/*", "# script tests: mutations_test.py Mutations.test_that_do_not_are_named")
-        self.assertEqual(list(faults("a", python, one, lambda _: True)), [])
-        self.assertEqual(len(list(faults("a", python.replace("do_not", "do"), one, lambda _: True))), 1)
+        self.assertEqual(list(faults(self.ROW, tests)), [])
+        python = dataclasses.replace(self.ROW, tests="mutations_test.py Tables.test_with_a_wrong_text_or_test_are_named")
+        self.assertEqual(list(faults(python, tests)), [])
+        for bad in ({"what": "sand falls up."}, {"tests": "sad_tests Law.*"}, {"tests": "sand_tests Rule.*"},
+                    {"tests": "sand_tests Law.*:Holds.*"}, {"tests": "mutations_test.py Tables.test_with"}):
+            self.assertEqual([fault[:14] for fault in faults(dataclasses.replace(self.ROW, **bad), tests)], ["sand_falls_up:"], bad)
+
+    def test_follow_a_function_into_another_file_and_to_other_lines(self):
+        self.write("sand/sand.cpp", "namespace sand {\nvoid Sand::fall() {\n    down();\n}\nvoid Sand::rest() {\n    down();\n}\n}\n")
+        self.assertEqual(self.place(), "namespace sand {\nvoid Sand::fall() {\n    up();\n}\nvoid Sand::rest() {\n    down();\n}\n}\n")
+        self.write("sand/sand.cpp", "namespace sand {\nvoid Sand::rest() {\n    down();\n}\n}\n")
+        self.write("sand/grid/falls.hpp", "// Falls.\nnamespace sand {\nstruct Sand {\n    void fall() {\n        down();\n    }\n};\n}\n")
+        self.assertEqual(self.place(wrong=""), "// Falls.\nnamespace sand {\nstruct Sand {\n    void fall() {\n    }\n};\n}\n")
+        self.assertEqual(self.place(wrong="\nif (x)\n    up();"),
+                         "// Falls.\nnamespace sand {\nstruct Sand {\n    void fall() {\n        if (x)\n            up();\n    }\n};\n}\n")
+
+    def test_without_exactly_one_place_are_named(self):
+        self.write("sand/sand.cpp", "void Sand::fall() {\n    down();\n    west();\n    down();\n}\nvoid fly() {\n    up();\n}\n")
+        self.write("sand/other.cpp", "void fly() {\n    up();\n    east();\n}\n")
+        self.assertEqual(self.place(where="Sand::rise"), "sand_falls_up: nothing is named Sand::rise")
+        self.assertEqual(self.place(line="fall();"), "sand_falls_up: Sand::fall has no line `fall();`")
+        self.assertEqual(self.place(), "sand_falls_up: the line `down();` of Sand::fall stands at sand/sand.cpp:2, sand/sand.cpp:4; "
+                                       "add the next line, or more of the function's name")
+        self.assertIn("stands at sand/other.cpp:2, sand/sand.cpp:7", self.place(where="fly", line="up();"))
+        self.assertEqual(self.place(where="fly", line="up();\neast();"), "void fly() {\n    up();\n}\n")
+        self.assertIn("    up();\n    west();", self.place(line="down();\nwest();", wrong="up();\nwest();"))
+
+    def test_find_methods_constants_and_shaders(self):
+        self.write("sand/a.py", "LIMIT = 3\nclass Sand:\n    def fall(self):\n        return 1\ndef fall():\n    return 1\n")
+        self.write("sand/b.glsl", "const vec3 kSun = vec3(1, 2, 3);\nvoid main() {\n    down();\n}\n")
+        self.write("sand/c.glsl", "void main() {\n    down();\n}\n")
+        self.assertEqual(self.place(where="Sand.fall", line="return 1", wrong="return 2").split("\n")[3], "        return 2")
+        self.assertEqual(self.place(where="a.fall", line="return 1", wrong="return 2").split("\n")[5], "    return 2")
+        self.assertEqual(self.place(where="LIMIT", line="LIMIT = 3", wrong="LIMIT = 4").split("\n")[0], "LIMIT = 4")
+        self.assertEqual(self.place(where="kSun", line="const vec3 kSun = vec3(1, 2, 3);", wrong="?").split("\n")[0], "?")
+        self.assertEqual(self.place(where="c.main").split("\n")[1], "    up();")
+
+    def test_that_are_not_whole_are_refused(self):
+        row = '[a]\nwhat = "W."\nin = "f"\nline = "x"\nwrong = "y"\ntests = "t T.*"\n'
+        self.write("tables/one.toml", row)
+        self.assertEqual(table.rows(self.root / "tables"), [table.Row("a", "W.", (table.Place("f", "x", "y"),), "t T.*")])
+        for more, why in ((row, "a stands in another table, too"), (row.replace("[a]", "[b]").replace("what", "because"), "b has the keys because"),
+                          (row.replace("[a]", "[b]") + "test = 1\n", "it needs what")):
+            self.write("tables/two.toml", more)
+            with self.assertRaisesRegex(ValueError, f"^two.toml: .*{why}"):
+                table.rows(self.root / "tables")
 
 
 class Copy(unittest.TestCase):
@@ -257,23 +321,27 @@ class Report(unittest.TestCase):
             self.assertEqual(ended("kill -SEGV $$"), "status -11")
             self.assertEqual(ended("exec sleep 60", limit=0.5), "the time limit")
 
-    def test_folders_and_patches_select_bugs(self):
-        def selected(*words):
-            return run.selected(run.parse(words), {"seed": "a"})
+    def test_folders_and_rows_select_bugs(self):
+        rows, sources = table.rows(TABLES), table.Sources(ROOT)
 
-        patch = tracked("tests/mutations/*.patch")[0]
-        elsewhere = "tracking" if run.Patch(ROOT / patch).names[0].startswith("scripts/") else "scripts"
-        self.assertEqual([bug.title for bug in selected(patch)], [pathlib.PurePath(patch).stem])
+        def selected(*words):
+            return run.selected(run.parse(words), {"seed": "a"}, rows, sources)
+
+        name = rows[0].name
+        elsewhere = "tracking" if run.TableBug(rows[0], sources).names[0].startswith("scripts/") else "scripts"
+        self.assertEqual([bug.title for bug in selected(name)], [name])
         of_folder = selected(elsewhere)
         self.assertTrue(of_folder)
-        self.assertEqual([name for bug in of_folder for name in bug.names if not name.startswith(f"{elsewhere}/")], [])
-        self.assertEqual([bug.title for bug in selected(elsewhere, patch)], [pathlib.PurePath(patch).stem, *(bug.title for bug in of_folder)])
+        self.assertEqual([file for bug in of_folder for file in bug.names if not file.startswith(f"{elsewhere}/")], [])
+        self.assertEqual([bug.title for bug in selected(elsewhere, name)], [name, *(bug.title for bug in of_folder)])
         self.assertEqual({type(bug) for bug in selected("--drawn-only")}, {run.DrawnBug})
-        self.assertEqual({type(bug) for bug in selected("--drawn", "0")}, {run.Patch})
+        self.assertEqual({type(bug) for bug in selected("--drawn", "0")}, {run.TableBug})
+        with self.assertRaisesRegex(ValueError, "^sandbox: there is no such folder in .*, and no such row in tests/mutations$"):
+            selected("sandbox")
 
     def test_drawn_bugs_run_the_tests_of_their_folder(self):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
-        self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests"])
+        self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests", run.SESSIONS])
         self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
         self.assertEqual(run.tests_for("scripts/launcher/programs.py", programs)[0], "programs_test.py")
         self.assertLessEqual(run.SLOW, set(PROGRAMS))

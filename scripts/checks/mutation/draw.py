@@ -9,14 +9,12 @@ source, and then from a spare one. No other bug is discarded.
 
 import dataclasses
 import hashlib
-import pathlib
 import re
-import subprocess
 
+import product
 from sites import sites
 
-ROOT = pathlib.Path(__file__).resolve().parents[3]
-FOLDERS = re.compile(r"(base|haptic_bridge|host|lockstep|master|pictures|render_node|replay|sand|scene|tracking|walls)/")
+ROOT = product.ROOT
 
 
 def rank(*parts):
@@ -40,9 +38,8 @@ class Drawn:
 
 def sources(root=ROOT):
     """Returns the .cpp files of the product, and the scripts that are installed."""
-    names = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True).stdout.split("\0")
     installed = set(re.findall(r"scripts/launcher/(?:sandwall\b|\w+\.py)", (root / "cmake" / "Install.cmake").read_text()))
-    return [name for name in names if name in installed or FOLDERS.match(name) and name.endswith(".cpp")]
+    return [name for name in product.sources(root) if name in installed or name.endswith(".cpp")]
 
 
 def candidates(seed, name, text):

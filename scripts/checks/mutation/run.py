@@ -11,38 +11,38 @@ import sys
 import time
 import tomllib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "launcher"))
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(SCRIPTS / "launcher"), str(SCRIPTS / "checks")]
 import draw
+import table
 from command_line import Parser
 from workspace import ROOT, DoesNotCompile, Workspace
 
-PATCHES = ROOT / "tests" / "mutations"
+TABLES = ROOT / "tests" / "mutations"
 COUNT = 64  # bugs that are drawn
 # Sessions over real ranks, and comparisons with other libraries, are too slow to run for each drawn bug.
 SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_tests", "window_tests", "module_tests"}
 # A few sessions, for the parts of the programs that no unit test reaches.
 SESSIONS = "cluster_tests Lockstep.*:Resuming.*:WrongServer.*:Devices.*"
-WITH_SESSIONS = ("haptic_bridge", "lockstep", "master", "render_node", "replay", "tracking", "walls")
 # Python tests that start neither sessions nor windows.
 SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
 
 
-class Patch:
-    """A bug of tests/mutations. Its first lines name its test: "# tests: PROGRAM FILTER" or "# script tests: FILE.py [TEST]",
-    and "# programs: TARGET…" the programs that the test starts."""
+class TableBug:
+    """A bug of a row of tests/mutations. Throws table.Misplaced if the row's lines are not in `sources` exactly once."""
 
-    def __init__(self, path):
-        self.title = path.stem
-        self.text = path.read_text()
-        self.names = re.findall(r"^--- a/(\S+)", self.text, re.MULTILINE)
-        self.test = re.search(r"^# (?:script )?tests: (.*)", self.text, re.MULTILINE)[1]
-        self.programs = " ".join(re.findall(r"^# programs: (.*)", self.text, re.MULTILINE)).split()
+    def __init__(self, row, sources):
+        self.title, self.test, self.programs = row.name, row.tests, list(row.programs)
+        self.changes = sources.changes(row)
+        self.names = sorted({change.file for change in self.changes})
 
     def targets(self):
         return self.programs if ".py" in self.test else [self.test.split()[0], *self.programs]
 
     def try_in(self, space):
-        space.patch(self.text)
+        texts = {name: space.read(name) for name in self.names}
+        for name, text in texts.items():
+            space.write(name, table.planted(text, [change for change in self.changes if change.file == name]))
         try:
             if targets := self.targets():
                 space.build(targets)
@@ -50,7 +50,8 @@ class Patch:
         except DoesNotCompile:
             return False, "does not compile"
         finally:
-            space.patch(self.text, "--reverse")
+            for name, text in texts.items():
+                space.write(name, text)
         return (True, f"caught by {failure}") if failure else (False, f"SURVIVED {self.test}")
 
 
@@ -112,12 +113,12 @@ def common(a, b):
 def tests_for(name, programs):
     """Returns the tests that should see a bug in the source `name`, the nearest first.
 
-    For a script these are the Python tests, otherwise the unit tests of its top folder and a few sessions.
+    For a script these are the Python tests, otherwise the unit tests of its top folder, and then a few sessions.
     """
     if name.endswith(".cpp"):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
         units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
-        return units + [SESSIONS] * name.startswith(WITH_SESSIONS)
+        return [*units, SESSIONS]
     files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
     stem = pathlib.PurePath(name).stem
     module = re.compile(rf"\b{stem}\b")
@@ -127,36 +128,37 @@ def tests_for(name, programs):
 
 def parse(arguments):
     parser = Parser(prog="scripts/mutate.sh", description=__doc__)
-    parser.add_argument("which", nargs="*", metavar="FOLDER|PATCH",
-                        help="only the bugs in sources below these folders, or these patches (default: all, and the drawn bugs)")
+    parser.add_argument("which", nargs="*", metavar="FOLDER|ROW",
+                        help="only the bugs in sources below these folders, or the rows of these names (default: all, and the drawn bugs)")
     parser.add_argument("--drawn", type=int, default=COUNT, metavar="N", help=f"how many bugs to draw (default: {COUNT}; 0: none)")
-    parser.add_argument("--drawn-only", action="store_true", help="plant only drawn bugs, and no patch")
+    parser.add_argument("--drawn-only", action="store_true", help="plant only drawn bugs, and no row of a table")
     parser.add_argument("--seed", help="draw by this text instead of the one in tests/mutations/drawn.toml")
     parser.add_argument("--list", action="store_true", help="print the bugs and do not plant them")
     options = parser.parse_args(arguments)
-    for which in options.which:
-        if not (ROOT / which).exists():
-            parser.error(f"{which}: there is no such folder or patch in {ROOT}")
     return options
 
 
-def selected(options, kept):
-    """Returns the bugs that the options select."""
-    folders = [pathlib.Path(which).as_posix() for which in options.which if not which.endswith(".patch")]
-    patches = [ROOT / which for which in options.which if which.endswith(".patch")]
-    if patches and not folders:
-        return [Patch(path) for path in patches]
+def selected(options, kept, rows, sources):
+    """Returns the bugs that the options select. Throws table.Misplaced, and ValueError for an option that names nothing."""
+    named = {row.name: row for row in rows}
+    folders = [pathlib.Path(which).as_posix() for which in options.which if which not in named]
+    for folder in folders:
+        if not (ROOT / folder).is_dir():
+            raise ValueError(f"{folder}: there is no such folder in {ROOT}, and no such row in {TABLES.relative_to(ROOT)}")
+    chosen = [TableBug(named[which], sources) for which in dict.fromkeys(options.which) if which in named]
+    if chosen and not folders:
+        return chosen
     programs = test_programs()
-    bugs = [] if options.drawn_only else [Patch(path) for path in sorted(PATCHES.glob("*.patch")) if path not in patches]
+    bugs = [] if options.drawn_only else [TableBug(row, sources) for row in rows if row.name not in options.which]
     bugs += [DrawnBug(list_, lambda name: tests_for(name, programs)) for list_ in draw.drawn(options.seed or kept["seed"], options.drawn)]
     if folders:
         bugs = [bug for bug in bugs if any(common(name, folder) == len(folder.split("/"))
                                            for name in bug.names for folder in folders)]
-    return [Patch(path) for path in patches] + bugs
+    return chosen + bugs
 
 
 def test_without_bugs(space, tests):
-    """Ends the run if a test of a patch fails without a bug. Returns the tests that drawn bugs cannot use."""
+    """Ends the run if a test of a row fails without a bug. Returns the tests that drawn bugs cannot use."""
     useless = set()
     for test, drawn in tests:
         if failure := space.run(test):
@@ -169,10 +171,14 @@ def test_without_bugs(space, tests):
 
 def main():
     options = parse(sys.argv[1:])
-    kept = tomllib.loads((PATCHES / "drawn.toml").read_text())
-    bugs = selected(options, kept)
+    kept = tomllib.loads((TABLES / "drawn.toml").read_text())
+    try:
+        bugs = selected(options, kept, table.rows(TABLES), table.Sources(ROOT))
+    except (table.Misplaced, ValueError) as fault:
+        print(f"mutate.sh: {fault}", file=sys.stderr)
+        return 2
     drawn = [bug for bug in bugs if isinstance(bug, DrawnBug)]
-    print(f"{len(bugs) - len(drawn)} patches, {len(drawn)} drawn bugs; seed {options.seed or kept['seed']}", flush=True)
+    print(f"{len(bugs) - len(drawn)} bugs of tables, {len(drawn)} drawn bugs; seed {options.seed or kept['seed']}", flush=True)
     if options.list:
         print("\n".join(bug.title for bug in bugs))
         return 0

@@ -90,10 +90,6 @@ class Workspace:
     def read(self, name):
         return (self.folder / name).read_text()
 
-    def patch(self, text, *options):
-        subprocess.run(["patch", "--strip", "1", "--fuzz", "0", "--silent", "--no-backup-if-mismatch", *options],
-                       cwd=self.folder, input=text, text=True, check=True)
-
     def run(self, test, limit=LONGEST):
         """Runs a test and returns the name of its first failure, or None if it passes.
 
