@@ -26,8 +26,10 @@ protected:
     void press(const haptic_bridge::Address& server) {
         client_ = std::make_unique<haptic_bridge::Client>(server, offerOf(scene_));
         ASSERT_TRUE(Wall(scene_).follow(*client_, 5)) << client_->link().message << "\n" << folder_.read("err");
-        ASSERT_TRUE(eventually([this] { return pushes() > 20; })) << folder_.read("forces");
-        ASSERT_GT(lastForce(), 0) << "the arm must press when the server ends";
+        // On a busy machine the force may fall for a while after the first pushes.
+        ASSERT_TRUE(eventually([this] { return pushes() > 20 && lastForce() > 0; }))
+            << "the arm must press when the server ends\n"
+            << folder_.read("forces");
     }
     void breakDown() { (void)folder_.write("forces.now", ""); }
 
