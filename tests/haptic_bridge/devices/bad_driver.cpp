@@ -3,6 +3,7 @@
 #include <cfenv>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -16,10 +17,10 @@ namespace {
 using haptic_bridge::ArmReading;
 using sand::force::Vec3;
 
-/// A faulty arm. It presses into the sand, and after half a second has the fault `what`. With "press:FILE" it keeps
-/// pressing, and its destructor writes the greatest force that it was pushed with. With "rough" its constructor leaves
-/// another rounding behind. With "number:NAME=VALUE:FILE" a number of its physics has this value, or its default for
-/// the value "forgotten". Each push then adds a line to the file.
+/// A faulty arm. It presses into the sand. With "stops:FILE", "nan:FILE" and "jumps:FILE" it has this fault as soon as
+/// the file exists. With "press:FILE" it keeps pressing, and its destructor writes the greatest force that it was
+/// pushed with. With "rough" its constructor leaves another rounding behind. With "number:NAME=VALUE:FILE" a number of
+/// its physics has this value, or its default for the value "forgotten". Each push then adds a line to the file.
 class BadArm : public haptic_bridge::Arm {
 public:
     explicit BadArm(std::string what) : what_(std::move(what)) {
@@ -47,12 +48,11 @@ public:
     [[nodiscard]] ArmReading read(double time) override {
         ArmReading reading;
         reading.place = {0.02 * std::cos(time), 0.02 * std::sin(time), -0.002};
-        const bool bad = time > 0.5;
-        if (bad && what_ == "stops") {
+        if (faulty("stops:")) {
             reading.present = false;
-        } else if (bad && what_ == "nan") {
+        } else if (faulty("nan:")) {
             reading.place.y = std::numeric_limits<double>::quiet_NaN();
-        } else if (bad && what_ == "jumps" && (++reads_ / 10) % 2 == 0) {
+        } else if (faulty("jumps:") && (++reads_ / 10) % 2 == 0) {
             reading.place.x += 1;
         }
         return reading;
@@ -65,6 +65,10 @@ public:
     }
 
 private:
+    /// Returns whether the arm has the fault `kind` now.
+    [[nodiscard]] bool faulty(const std::string& kind) const {
+        return what_.starts_with(kind) && std::filesystem::exists(what_.substr(kind.size()));
+    }
     void takeNumber() {
         const auto equals = what_.find('='), colon = what_.find(':', equals);
         name_ = what_.substr(7, equals - 7);
