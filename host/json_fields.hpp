@@ -151,7 +151,9 @@ public:
     explicit JsonReader(const nlohmann::ordered_json& json) : json_(json) {}
     template <class Member>
     void operator()(std::string_view name, Member&& member) const {
-        const nlohmann::ordered_json::json_pointer place("/" + std::string(name));
+        std::string path = "/";
+        path += name;  // g++ 12 warns of `"/" + std::string(name)`, wrongly
+        const nlohmann::ordered_json::json_pointer place(path);
         read(name, json_.contains(place) ? &json_.at(place) : nullptr, member);
     }
 

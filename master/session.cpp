@@ -11,8 +11,8 @@
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
-#include "master/failure_report.hpp"
-#include "master/frame_cost.hpp"
+#include "master/measure/failure_report.hpp"
+#include "master/measure/frame_cost.hpp"
 
 namespace master {
 namespace {

@@ -9,9 +9,9 @@
 #include "base/input_error.hpp"
 #include "host/print_line.hpp"
 #include "lockstep/session_message.hpp"
-#include "master/failure_report.hpp"
+#include "master/measure/failure_report.hpp"
+#include "master/measure/recovery.hpp"
 #include "master/pictures/wall_pictures.hpp"
-#include "master/recovery.hpp"
 #include "master/session.hpp"
 
 namespace master {

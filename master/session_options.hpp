@@ -12,10 +12,10 @@
 #include "haptic_bridge/hand/pace.hpp"
 #include "journal/recording.hpp"
 #include "master/drills/drills.hpp"
-#include "master/master_sand.hpp"
-#include "master/operator_desk.hpp"
+#include "master/operator/operator_desk.hpp"
 #include "master/pictures/film.hpp"
 #include "master/session_record.hpp"
+#include "master/steps/master_sand.hpp"
 #include "master/steps/step_source.hpp"
 #include "scene/model/scene.hpp"
 

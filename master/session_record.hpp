@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "master/frame_clock.hpp"
-#include "master/incidents.hpp"
 #include "master/journal/keeper.hpp"
 #include "master/journal/resume.hpp"
-#include "master/master_sand.hpp"
-#include "master/rank_labels.hpp"
-#include "master/recovery.hpp"
-#include "master/summary.hpp"
+#include "master/measure/frame_clock.hpp"
+#include "master/measure/incidents.hpp"
+#include "master/measure/rank_labels.hpp"
+#include "master/measure/recovery.hpp"
+#include "master/measure/summary.hpp"
+#include "master/steps/master_sand.hpp"
 #include "scene/model/scene.hpp"
 
 namespace master {

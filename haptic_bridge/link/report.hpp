@@ -70,7 +70,7 @@ struct Report {
     bool deviceAway = false;                      // the device does not answer now
     bool arm = false;                             // the device has a body that forces push
     Audited audited = Audited::no;                // agreed or differed only in the last report of a link
-    /// The order of the bytes. The names are the keys in `haptic` of summary.json (master/summary.hpp).
+    /// The order of the bytes. The names are the keys in `haptic` of summary.json (master/measure/summary.hpp).
     template <class Self, class Visit>
     static void fields(Self& it, Visit& visit) {
         visit("haptic_period_us/p50", it.hapticPeriodUsP50);

@@ -6,12 +6,12 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
-#include "master/disagreement.hpp"
+#include "master/check/disagreement.hpp"
 #include "master/drills/drills.hpp"
-#include "master/failure_report.hpp"
-#include "master/incidents.hpp"
-#include "master/recovery.hpp"
-#include "master/summary.hpp"
+#include "master/measure/failure_report.hpp"
+#include "master/measure/incidents.hpp"
+#include "master/measure/recovery.hpp"
+#include "master/measure/summary.hpp"
 #include "tests/support/blocked_child.hpp"
 #include "tests/support/folder_test.hpp"
 

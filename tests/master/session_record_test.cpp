@@ -8,7 +8,7 @@
 #include <random>
 
 #include "master/journal/journal.hpp"
-#include "master/recovery.hpp"
+#include "master/measure/recovery.hpp"
 #include "tests/support/folder_test.hpp"
 #include "tests/support/no_steps.hpp"
 #include "tests/support/sand_samples.hpp"

@@ -39,7 +39,7 @@ BY_HAND = {
 }
 
 # Headers of types that are written as JSON alone (host/json_fields.hpp).
-JSON = ("master/failure_report.hpp", "master/incidents.hpp", "master/operator/dark_outputs.hpp", "master/summary.hpp", "master/summary_parts.hpp", "tracking/head_tracker.hpp")
+JSON = ("master/measure/failure_report.hpp", "master/measure/incidents.hpp", "master/operator/dark_outputs.hpp", "master/measure/summary.hpp", "master/measure/summary_parts.hpp", "tracking/head_tracker.hpp")
 LISTS = ("tests/described/types.hpp", "tests/described/rank_types.hpp")
 
 OWNER = re.compile(r"\bByte(?:Reader|Writer)\s*&?\s+(\w+)\s*[;,(){=]|\bByte(?:Reader|Writer)&\s*(\w+)\s*[,)]")

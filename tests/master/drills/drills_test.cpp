@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "master/failure_report.hpp"
+#include "master/measure/failure_report.hpp"
 #include "tests/support/folder_test.hpp"
 
 namespace {

@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "master/operator/operator_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "base/input_error.hpp"
+#include "host/clock.hpp"
+#include "host/event.hpp"
+#include "host/print_line.hpp"
+#include "walls/stereo_change.hpp"
+#include "walls/window_size.hpp"
+
+namespace master {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string line(const Json& json) {
+    // A user may type bytes that are not UTF-8. They are replaced.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
+/// Returns the material in the units in which an operator types it.
+Json materialNow(const scene::Material& material) {
+    return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
+            {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
+            {"band", material.band},         {"settling-time", material.settlingSeconds}};
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& material, const walls::Wall& wall,
+                           std::filesystem::path out, const DeskOptions& options, Session session)
+    : wall_(wall),
+      shown_(wall),
+      place_(SandPlace::of(scene)),
+      grid_(scene.grid()),
+      material_(material),
+      out_(std::move(out)),
+      session_(std::move(session)),
+      views_(wall, scene, options.tracker),
+      input_(options.readInput),
+      captures_(out_),
+      force_(options.force),
+      lastEdit_(options.lastEdit),
+      film_(options.film),
+      windows_(scene, out_, options.pointer,
+               {views_, material_, paused_, walls::followsWindow(wall),
+                [this] { return session_.sand.replica().surface().heights(); },
+                [this](const Command& command, int rank) { (void)carryOut(command, Asker::at(rank)); }}) {
+    if (session_.requests != nullptr) {
+        control_.emplace(out_);
+    }
+    views_.show(options.pattern);
+    views_.show(options.layers);
+    views_.setHumidity(material_.humidity);
+    windows_.frameView();
+    if (const int port = views_.viewer().port(); port != 0) {
+        fmt::print("head tracking listens on port {}\n", port);
+        std::fflush(stdout);
+        host::emitEvent("head_tracking", {{"state", "listening"}, {"port", port}});
+    }
+}
+
+void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
+    const std::vector<std::string> lines = input_.takeLines();
+    if (control_) {
+        for (const std::string& typed : lines) {
+            obeyLine(typed, {});
+        }
+        for (const ControlSocket::Asked& asked : control_->take()) {
+            obeyLine(asked.line, {.client = asked.client});
+        }
+    }
+    finishJobs(false);
+    for (std::size_t rank = 0; rank < arrivals.size(); ++rank) {
+        if (arrivals[rank].key.code != 0) {
+            windows_.obey(arrivals[rank].key, static_cast<int>(rank));
+        }
+    }
+}
+
+void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
+    try {
+        if (carryOut(parseCommand(text), asker) && asker.client) {
+            control_->answer(*asker.client, line({{"ok", true}}));
+        }
+    } catch (const base::InputError& error) {
+        refuse(error.what(), {asker});
+    }
+}
+
+bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
+    switch (command.verb) {
+        case Verb::status:
+            answerClient(asker, status());
+            return false;
+        case Verb::reset:
+            askEdit(sand::Edit::reset, asker);
+            return false;
+        case Verb::undo:
+            askEdit(sand::Edit::undo, asker);
+            return false;
+        case Verb::settle:
+            askEdit(sand::Edit::settle, asker);
+            return false;
+        case Verb::tool:
+            askMaterial(scene::withTool(material_, command.tool, grid_), asker);
+            return false;
+        case Verb::material:
+            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), asker);
+            return false;
+        case Verb::save:
+            save(command.word, asker);
+            return false;
+        case Verb::load:
+            load(command.word, asker);
+            return false;
+        case Verb::capture:
+            captures_.ask(asker);
+            return false;
+        case Verb::pause:
+        case Verb::resume:
+            paused_ = command.verb == Verb::pause;
+            answerSettle({});  // a paused session would let the client wait
+            return true;
+        case Verb::pattern:
+            views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
+            return true;
+        case Verb::show:
+        case Verb::hide:
+            views_.show(command.layer, command.verb == Verb::show);
+            return true;
+        case Verb::eyeSeparation:
+            views_.separateEyes(command.number);
+            return true;
+        case Verb::force:
+            shareForce(command.number, asker);
+            return false;
+        case Verb::stereo:
+            showWall(command.stereo, window_, shown_.swapEyes);
+            return true;
+        case Verb::swapEyes:
+            swapEyes(command.on);
+            return true;
+        case Verb::stop:
+            input_.stop();
+            return true;
+    }
+    return true;
+}
+
+void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
+    if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
+        throw base::InputError("nothing to undo");
+    }
+    edits_.requireRoomFor(edit);
+    // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
+    if (!session_.room(edits_.sandBytes(edit))) {
+        if (session_.room(edits_.sandBytes())) {
+            throw base::InputError(
+                fmt::format("the disk has no room for {} bytes of sand in the journal; the edit was "
+                            "refused: free disk space and try again",
+                            edits_.sandBytes(edit) - edits_.sandBytes()));
+        }
+        answerEditsThatWaitForRoom();
+        throw base::InputError(
+            "the disk has no room for the journal, so the sand is stopped; the edit was refused: free disk space and "
+            "try again");
+    }
+    std::optional<Client> client = asker.client;
+    if (paused_ && client) {
+        control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
+        client.reset();
+    }
+    edit.number = ++lastEdit_;
+    session_.requests->request(edit);
+    edits_.add({std::move(edit), client, material});
+}
+
+/// Changes the material only if the edit was accepted. Later changes start from this material.
+void OperatorDesk::askMaterial(const scene::Material& material, const Asker& asker) {
+    askEdit(sand::Edit::tuned(scene::tuningOf(material, grid_)), asker, material);
+    material_ = material;
+    views_.setHumidity(material_.humidity);
+}
+
+/// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
+void OperatorDesk::shareForce(double share, const Asker& asker) {
+    session_.requests->shareForce(share);
+    force_ = share;
+    host::emitEvent("force", {{"share", share}});
+    session_.keepForce(share);
+    const std::optional<double> ceiling = session_.requests->forceCeiling();
+    Json answer{{"ok", true}, {"force_share", share}, {"force_ceiling", orNull(ceiling)}};
+    const bool capped = ceiling && *ceiling < share;
+    if (capped) {
+        answer["note"] = fmt::format(
+            "the hand feels {:g} of the force, because --force or --force-scale of the haptic server is a ceiling; "
+            "start that server with a higher one, or with --force-until-ctl",
+            *ceiling);
+    }
+    if (asker.client) {
+        control_->answer(*asker.client, line(answer));
+    } else if (capped) {
+        host::printLine("{}", answer["note"].get<std::string>());
+    }
+}
+
+void OperatorDesk::swapEyes(bool swapEyes) {
+    if (walls::eyesOf(shown_.stereo).size() < 2) {
+        throw base::InputError(
+            fmt::format("swap-eyes: the wall shows one eye ({}), so there is nothing to swap; choose a mode with two "
+                        "eyes first, such as stereo anaglyph",
+                        walls::stereoName(shown_.stereo)));
+    }
+    showWall(shown_.stereo, window_, swapEyes);
+}
+
+void OperatorDesk::followWindow(const std::vector<lockstep::Arrival>& arrivals) {
+    if (film_ || !walls::followsWindow(wall_) || arrivals.size() < 2) {
+        return;
+    }
+    const glm::ivec2 window(arrivals[1].window[0], arrivals[1].window[1]);
+    if (window != glm::ivec2(0) && window != window_) {
+        showWall(shown_.stereo, window, shown_.swapEyes);
+    }
+}
+
+void OperatorDesk::showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes) {
+    shown_ = walls::withSwappedEyes(walls::shownInWindow(walls::shownOnItsOutputs(wall_, stereo), window), swapEyes);
+    window_ = window;
+    views_.show(stereo);
+    views_.show(window);
+    views_.swapEyes(swapEyes);
+}
+
+void OperatorDesk::save(const std::string& name, const Asker& asker) {
+    jobs_.requireRoom();
+    // Copying takes a fraction of a frame. A thread compresses and writes the copy while frames continue.
+    auto copy = session_.sand.replica().copySand();
+    SavedSand saved{place_, session_.sand.replica().stepNumber(), session_.sand.hash(), {}};
+    jobs_.start(
+        [copy = std::move(copy), saved = std::move(saved), file = saveFile(out_, name)]() mutable {
+            saved.sand = copy->encode();
+            copy.reset();
+            writeSavedSand(file, saved);
+            return BackgroundJobs::Result{line({{"ok", true},
+                                                {"file", "saves/" + file.filename().string()},
+                                                {"bytes", saved.sand.size()},
+                                                {"step", saved.step},
+                                                {"state_hash", fmt::format("{:016x}", saved.stateHash)}}),
+                                          {},
+                                          fmt::format("sand saved as saves/{}", file.filename().string())};
+        },
+        {asker});
+}
+
+void OperatorDesk::load(const std::string& name, const Asker& asker) {
+    jobs_.requireRoom();
+    jobs_.start(
+        [file = saveFile(out_, name), place = place_, read = session_.sand.replica().sandReader()] {
+            return BackgroundJobs::Result{{}, sand::Edit::loaded(readSavedSand(file, place, read).sand)};
+        },
+        {asker});
+}
+
+void OperatorDesk::finishJobs(bool wait) {
+    for (BackgroundJobs::Done& done : jobs_.finished(wait)) {
+        try {
+            if (!done.error.empty()) {
+                refuse(done.error, done.askers);
+            } else if (done.result.edit.any()) {
+                askEdit(std::move(done.result.edit), done.askers.front());
+            } else {
+                answerAll(done.askers, done.result);
+            }
+        } catch (const base::InputError& error) {
+            refuse(error.what(), done.askers);
+        }
+    }
+}
+
+void OperatorDesk::close() {
+    finishJobs(true);
+    answerSettle({});
+    control_.reset();
+}
+
+void OperatorDesk::answerEditsThatWaitForRoom() {
+    answerSettle({});
+    for (const Client client : edits_.releaseClients()) {
+        control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
+    }
+}
+
+void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
+    const MasterSand& sand = session_.sand;
+    const auto answerIfEnded = [this, &sand] {
+        if (const std::optional<SettleEnd> end = settling_ ? sand.endOfSettle(settling_->step) : std::nullopt) {
+            answerSettle(end);
+        }
+    };
+    answerIfEnded();  // one of an earlier frame
+    for (const haptic_bridge::TimedStep& timed : steps) {
+        const std::uint64_t step = timed.step.number;
+        const auto client = edits_.shown(timed.step.edit.number);
+        if (!client) {
+            continue;
+        }
+        if (sand.settlingSince() == step || sand.endOfSettle(step)) {
+            settling_ = {*client, step, host::monotonicNs()};
+            answerIfEnded();
+        } else {
+            control_->answer(*client, line({{"ok", true}, {"step", step}}));
+        }
+    }
+    if (settling_ && host::monotonicNs() - settling_->sinceNs > kSettleNs) {
+        answerSettle({});
+    }
+}
+
+void OperatorDesk::answerSettle(std::optional<SettleEnd> end) {
+    if (!settling_) {
+        return;
+    }
+    Json json{{"ok", true}, {"step", settling_->step}};
+    if (end) {
+        json["settle_ended_by"] = std::string(base::nameOf(*end));
+    } else {
+        json["settling"] = true;
+    }
+    control_->answer(settling_->client, line(json));
+    settling_.reset();
+}
+
+void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier) {
+    captures_.take(frame, session_.sand, shown_, barrier, jobs_);
+}
+
+std::string OperatorDesk::status() const {
+    Json status = session_.status();
+    status["ok"] = true;
+    status["paused"] = paused_;
+    status["pattern"] = std::string(lockstep::patternName(views_.pattern()));
+    status["stereo"] = std::string(walls::stereoName(shown_.stereo));
+    status["swap_eyes"] = shown_.swapEyes;
+    status["eye_separation"] = views_.eyeSeparation();
+    status["material"] = materialNow(material_);
+    status["force_share"] = orNull(force_);
+    status["force_ceiling"] = orNull(session_.requests->forceCeiling());
+    status["edits_waiting"] = edits_.size();
+    return line(status);
+}
+
+void OperatorDesk::answerClient(const Asker& asker, const std::string& json) {
+    if (asker.client) {
+        control_->answer(*asker.client, json);
+    } else {
+        fmt::print("{}\n", json);
+        std::fflush(stdout);
+    }
+}
+
+void OperatorDesk::answerAll(const Askers& askers, const BackgroundJobs::Result& result) {
+    for (const Asker& asker : askers) {
+        if (asker.client) {
+            control_->answer(*asker.client, result.json);
+        } else if (asker.window) {
+            windows_.answer(*asker.window, result.words);
+        }
+    }
+}
+
+void OperatorDesk::refuse(const std::string& why, const Askers& askers) {
+    for (const Asker& asker : askers) {
+        if (asker.client) {
+            control_->answer(*asker.client, line({{"ok", false}, {"error", why}}));
+        } else if (asker.window) {
+            windows_.answer(*asker.window, why);
+        } else {
+            host::printLine("{}", why);
+            host::emitEvent("command_refused", {{"error", why}});
+        }
+    }
+}
+
+}  // namespace master

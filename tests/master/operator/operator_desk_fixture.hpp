@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "master/operator/operator_desk.hpp"
+#include "tests/support/control_client.hpp"
+#include "tests/support/folder_test.hpp"
+#include "tests/support/no_steps.hpp"
+#include "tests/support/sand_samples.hpp"
+
+namespace test {
+
+using haptic_bridge::TimedStep;
+using nlohmann::json;
+
+/// Records the requests of the desk.
+class Requests : public master::StepRequests {
+public:
+    void request(sand::Edit edit) override { edits.push_back(std::move(edit)); }
+    void shareForce(double share) override { shares.push_back(share); }
+    [[nodiscard]] std::optional<double> forceCeiling() const override { return ceiling; }
+
+    std::vector<sand::Edit> edits;
+    std::vector<double> shares;
+    std::optional<double> ceiling;  // of the linked server
+};
+
+/// A desk without a wall. Clients talk to it through its control socket.
+class OperatorDeskTest : public FolderTest {
+protected:
+    OperatorDeskTest() : OperatorDeskTest(samples::flatScene(32, 24)) {}
+    explicit OperatorDeskTest(scene::Scene scene) : scene_(std::move(scene)) {}
+    void SetUp() override { open(&requests_); }
+    void open(master::StepRequests* requests, const master::DeskOptions& options = {}) {
+        desk_.reset();
+        desk_.emplace(scene_, scene_.material, wall_, folder_, options,
+                      master::OperatorDesk::Session{sand_, requests,
+                                                    [this](std::int64_t bytes) {
+                                                        asked_ = bytes;
+                                                        return room_ && bytes <= most_;
+                                                    },
+                                                    [this](double share) { kept_.push_back(share); },
+                                                    [] {
+                                                        return json{{"frame", 42}};
+                                                    }});
+    }
+    /// Sends a line from another thread. The future has the answer.
+    std::future<json> send(const std::string& line) {
+        return std::async(std::launch::async, [this, line] { return support::askSession(folder_, line); });
+    }
+    json await(std::future<json>& answer) {
+        obeyUntil([&] { return answer.wait_for(std::chrono::milliseconds(1)) == std::future_status::ready; });
+        return answer.get();
+    }
+    json ask(const std::string& line) {
+        std::future<json> answer = send(line);
+        return await(answer);
+    }
+    /// Calls obey() until `done`. After a minute it closes the desk, so that waiting clients return, and throws.
+    void obeyUntil(const std::function<bool()>& done) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+        while (!done()) {
+            if (std::chrono::steady_clock::now() > end) {
+                desk_.reset();
+                throw std::runtime_error("the desk did not do within a minute what this test waits for");
+            }
+            desk_->obey({});
+        }
+    }
+    /// Shows a step with the edit `edit`.
+    void show(const sand::Edit& edit) {
+        std::vector<TimedStep> steps(1);
+        steps[0].step.number = sand_.replica().stepNumber() + 1;
+        steps[0].step.edit = edit;
+        sand_.apply(1, steps, 0, source_);
+        desk_->answer(steps);
+    }
+
+    scene::Scene scene_;
+    walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
+    master::MasterSand sand_{scene_, {}, {}};
+    NoSteps source_;
+    Requests requests_;
+    bool room_ = true;
+    std::vector<double> kept_;                   // shares of the force that the journal got
+    std::int64_t most_ = std::int64_t{1} << 62;  // room on the disk [byte]
+    std::int64_t asked_ = -1;
+    std::optional<master::OperatorDesk> desk_;
+};
+
+}  // namespace test

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// Keys, wheels and pointers of the windows, without a wall.
+#include "master/operator/window_desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "host/clock.hpp"
+#include "tests/master/operator/operator_desk_fixture.hpp"
+
+namespace {
+
+using base::Keystroke;
+using test::TimedStep;
+
+constexpr Keystroke plain(char key) { return {static_cast<std::uint16_t>(key), 0, 0}; }
+constexpr Keystroke control(char key) { return {static_cast<std::uint16_t>(key), Keystroke::kControl, 0}; }
+constexpr Keystroke kShiftR{'r', Keystroke::kShift, 0};
+
+/// The windows of a desk.
+class WindowDesk : public test::OperatorDeskTest {
+protected:
+    using OperatorDeskTest::OperatorDeskTest;
+    void openForPointer() {
+        master::DeskOptions options;
+        options.pointer = true;
+        open(&requests_, options);
+    }
+    /// Presses a key in the window of rank 1.
+    void press(Keystroke key) {
+        std::vector<lockstep::Arrival> arrivals(2);
+        arrivals[1].key = key;
+        desk_->obey(arrivals);
+    }
+    /// Returns the answer that the windows of a rank show.
+    [[nodiscard]] std::string answerIn(int rank) {
+        for (const lockstep::Answer& answer : desk_->windows().answers(host::monotonicNs())) {
+            if (answer.rank == rank) {
+                return answer.text;
+            }
+        }
+        return {};
+    }
+    /// Applies two steps with a stroke, so that there is one to undo.
+    void stroke() {
+        std::vector<TimedStep> steps(2);
+        for (TimedStep& timed : steps) {
+            timed.step.number = sand_.replica().stepNumber() + 1 + static_cast<std::uint64_t>(&timed - steps.data());
+            timed.step.engaged = &timed != steps.data();
+            timed.step.path = {sand::probePoint(16, 12, 0)};
+        }
+        sand_.apply(1, steps, 0, source_);
+    }
+};
+
+TEST_F(WindowDesk, TakesKeysIfTheHandIsThePointer) {
+    desk_->obey({{.key = kShiftR}, {.key = plain('h')}});
+    EXPECT_TRUE(requests_.edits.empty()) << "another hand";
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
+    openForPointer();
+    press(kShiftR);
+    press(plain('h'));
+    ASSERT_EQ(requests_.edits.size(), 1U);
+    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
+    EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::help));
+    press(plain('3'));
+    press({Keystroke::kF1, 0, 0});
+    ASSERT_EQ(requests_.edits.size(), 2U);
+    EXPECT_EQ(requests_.edits[1].tuning.tool.kind, sand::ToolKind::rectangle);
+    EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
+    press(control('z'));
+    EXPECT_EQ(requests_.edits.size(), 2U) << "there is no stroke to undo";
+    press(plain('x'));
+    EXPECT_EQ(requests_.edits.size(), 2U) << "a key without an action";
+}
+
+TEST_F(WindowDesk, UndoesTheLastStrokeByControlZAndByU) {
+    openForPointer();
+    stroke();
+    press(control('z'));
+    ASSERT_EQ(requests_.edits.size(), 1U);
+    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::undo);
+    press(plain('u'));
+    EXPECT_EQ(requests_.edits.size(), 2U) << "asked for before the first one is shown";
+}
+
+TEST_F(WindowDesk, AnswersEachKeyInTheWindowWhereItWasPressed) {
+    openForPointer();
+    EXPECT_EQ(answerIn(0), lockstep::hint());
+    press(control('z'));
+    EXPECT_EQ(answerIn(1), "nothing to undo");
+    stroke();
+    press(control('z'));
+    EXPECT_EQ(answerIn(1), "undone");
+    press(plain('3'));
+    EXPECT_EQ(answerIn(1), "tool: rectangle");
+    press(plain('.'));
+    EXPECT_EQ(answerIn(1), "heading 355°");
+    press(plain('w'));
+    EXPECT_EQ(answerIn(1), "humidity 10 %");
+    press(plain('0'));
+    EXPECT_EQ(answerIn(1), "tool and humidity of the scene, usual depth");
+    press(plain(' '));
+    EXPECT_EQ(answerIn(1), "paused; Space resumes");
+    press(plain('1'));
+    EXPECT_EQ(answerIn(1), "tool: sphere; the sand waits until Space resumes");
+    press(plain(' '));
+    EXPECT_EQ(answerIn(1), "resumed");
+    press(plain('m'));
+    EXPECT_EQ(answerIn(1), "hill-shade shown");
+    press({Keystroke::kHome, 0, 0});
+    EXPECT_EQ(answerIn(1), "this wall's view is fixed");
+    press(control('s'));
+    desk_->close();
+    EXPECT_EQ(answerIn(1), "sand saved as saves/save_001.sand");
+    EXPECT_EQ(answerIn(2), "");
+    EXPECT_EQ(answerIn(0), lockstep::hint()) << "answers of one window leave it to the others";
+}
+
+// The rank itself switches a window that the picture follows to full screen.
+TEST_F(WindowDesk, AnswersF11WhereWindowsKeepTheirSize) {
+    for (const char* name : {"desktop", "tiled_3x4"}) {
+        wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/" + std::string(name) + ".toml");
+        openForPointer();
+        press({Keystroke::kF11, 0, 0});
+        EXPECT_EQ(answerIn(1), wall_.tiles.size() == 1 ? "" : "this wall's windows keep their size");
+    }
+}
+
+TEST_F(WindowDesk, OfAnotherHandHintsAtNothing) { EXPECT_TRUE(desk_->windows().answers(host::monotonicNs()).empty()); }
+
+TEST_F(WindowDesk, PausesAndResumesBySpace) {
+    openForPointer();
+    press(plain(' '));
+    EXPECT_TRUE(desk_->paused());
+    press(plain(' '));
+    EXPECT_FALSE(desk_->paused());
+}
+
+TEST_F(WindowDesk, SavesByControlSUnderTheNextFreeName) {
+    openForPointer();
+    std::filesystem::create_directory(folder_ / "saves");
+    std::ofstream(folder_ / "saves/save_002.sand") << "of an earlier session";
+    press(control('s'));
+    press(control('s'));
+    desk_->close();
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "saves/save_001.sand"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "saves/save_003.sand"));
+    EXPECT_EQ(std::filesystem::file_size(folder_ / "saves/save_002.sand"), 21U) << "that of an earlier session";
+}
+
+TEST_F(WindowDesk, WantsACaptureByF12) {
+    openForPointer();
+    press({Keystroke::kF12, 0, 0});
+    EXPECT_TRUE(desk_->needsCapture());
+}
+
+TEST_F(WindowDesk, ChangesTheToolByKeysWithinItsLimitsAndBackToTheScene) {
+    openForPointer();
+    for (int i = 0; i < 60; ++i) {  // the scene's tool is smaller than both limits
+        press(plain(i < 40 ? '+' : '-'));
+        show(requests_.edits.back());
+        const std::int32_t most = 3 * sand::kProbePerCell;  // a quarter of 24 cells long
+        EXPECT_LE(requests_.edits.back().tuning.tool.radius, most);
+        EXPECT_TRUE(i != 39 || requests_.edits.back().tuning.tool.radius == most);
+    }
+    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, sand::kProbePerCell) << "two cells long";
+    press(plain('4'));
+    show(requests_.edits.back());
+    press(plain(','));
+    show(requests_.edits.back());
+    const sand::Heading left = requests_.edits.back().tuning.tool.heading;
+    EXPECT_EQ(left, sand::headingOf(5).value());
+    press(plain('w'));
+    show(requests_.edits.back());
+    EXPECT_NE(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+    press(plain('0'));
+    EXPECT_EQ(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+}
+
+TEST_F(WindowDesk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
+    openForPointer();
+    std::array<haptic_bridge::PointerReport, 2> pointers{};
+    desk_->windows().turnWheels(pointers);
+    EXPECT_TRUE(requests_.edits.empty()) << "a wheel that rests";
+    pointers[1].depth = 2;
+    desk_->windows().turnWheels(pointers);
+    EXPECT_NEAR(desk_->windows().depth(), 0.7, 1e-12);
+    EXPECT_EQ(answerIn(1), "depth 70 % of the radius");
+    pointers[1].depth = -100;
+    desk_->windows().turnWheels(pointers);
+    EXPECT_EQ(desk_->windows().depth(), master::kShallowest);
+    EXPECT_EQ(answerIn(1), "depth 10 % of the radius, the shallowest");
+    press(plain('0'));
+    EXPECT_EQ(desk_->windows().depth(), master::kUsualDepth);
+    pointers[1] = {};
+    pointers[1].size = -100;
+    desk_->windows().turnWheels(pointers);
+    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
+}
+
+// The wall of these tests is in stereo, so that it is not a desktop.
+TEST_F(WindowDesk, KeepsTheViewOfAWallThatIsNoDesktop) {
+    std::array<haptic_bridge::PointerReport, 3> pointers{};
+    const auto before = desk_->views().at(0).sceneToRoom;
+    pointers[1].wheel = 3;
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(pointers[1].wheel, 0);
+    EXPECT_EQ(pointers[1].depth, 3) << "the wheel is the depth";
+    pointers[2].turnX = 0.25F;
+    EXPECT_TRUE(desk_->windows().answers(host::monotonicNs()).empty());
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(answerIn(2), "this wall's view is fixed");
+    pointers[2] = {.pan = {0, 0.1F, 0}};
+    desk_->windows().moveView(pointers);
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, before);
+}
+
+TEST_F(WindowDesk, MovesTheViewOfADesktopAndFramesItAgain) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    master::DeskOptions options;
+    options.pointer = true;
+    open(&requests_, options);
+    const auto framed = desk_->views().at(0).sceneToRoom;
+    const std::array<haptic_bridge::PointerReport, 3> moves{
+        {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
+    for (const haptic_bridge::PointerReport& move : moves) {
+        std::array<haptic_bridge::PointerReport, 2> pointers{haptic_bridge::PointerReport{}, move};
+        const auto before = desk_->views().at(0).sceneToRoom;
+        desk_->windows().moveView(pointers);
+        EXPECT_NE(desk_->views().at(0).sceneToRoom, before);
+        EXPECT_EQ(pointers[1].depth, 0);
+    }
+    press(plain('v'));
+    EXPECT_EQ(desk_->views().at(0).sceneToRoom, framed);
+}
+
+/// Returns level sand with a high summit in the north-west corner.
+scene::Scene mountain() {
+    scene::Scene scene = samples::flatScene(32, 24);
+    scene.terrain.setHeight(0, 23, scene.terrain.height(0, 23) + 40 * sand::kUnitsPerCell);
+    return scene;
+}
+
+class MountainDesk : public WindowDesk {
+protected:
+    MountainDesk() : WindowDesk(mountain()) {}
+};
+
+TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
+    wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
+    const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
+    open(&requests_);
+    EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
+}
+
+}  // namespace
