@@ -121,7 +121,7 @@ def main():
     before, after = args.before.resolve(), args.after.resolve()
     for program in (folder / name for folder in (before, after) for name in ("sandwall-bench", "sand_bench")):
         if not program.is_file():
-            parser.error(f"{program} is missing; build it")
+            parser.error(f"{program} is missing; build it (sand_bench: --target benchmarks)")
     for table in [TABLES[args.table]] if args.table else TABLES.values():
         rows = table(before, after, args)
         header = next(rows)

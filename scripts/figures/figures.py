@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Measures the rows of the table "The demo" in docs/figures.md, and prints the table. Takes about a minute.
+Needs the programs of the target `benchmarks`.
 
 usage: scripts/figures/figures.py [SUMMARY.json]   (default: out/demo/summary.json, as scripts/demo.sh leaves it)
 """

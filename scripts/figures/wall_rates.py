@@ -252,7 +252,7 @@ def main():
     args = parser.parse_args()
     for program in ("wall_bench", "redraw_bench"):
         if not (BIN / program).is_file():
-            print(f"{BIN}/{program}: not built yet; run cmake --build build/release", file=sys.stderr)
+            print(f"{BIN}/{program}: not built yet; run cmake --build build/release --target benchmarks", file=sys.stderr)
             return 2
     print("| 12 ranks, 24 views of 1024×768 on one machine | | |\n|---|---|---|", flush=True)
     with tempfile.TemporaryDirectory(prefix="sandwall-rates-") as folder:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures the page's replica in node (docs/web.md). Needs build/release (session_files, verify_times) and build/web.
+// Measures the page's replica in node (docs/web.md). Needs build/release (session_files, and verify_times of the target benchmarks) and build/web.
 // usage: node scripts/figures/web_times.mjs times     processor's time for a step beside the native kernels, in turns
 //        node scripts/figures/web_times.mjs moments   100 random moments after the first pass
 //        node scripts/figures/web_times.mjs hour      an hour's session: memory during the first pass, then moments
