@@ -60,12 +60,16 @@ for option in "$@"; do
 done
 packages=("${tools[@]}" "${libraries[@]/%/${cross:+:$cross}}")
 
-# is_installed PACKAGE[:ARCHITECTURE]: succeeds if it is installed for this architecture or for all (default: this machine's).
+# One line PACKAGE:ARCHITECTURE for each of these packages that is installed.
 native=$(dpkg --print-architecture)
+names=(${packages[@]//|/ })
+installed=$(dpkg-query -W -f='${Package}:${Architecture} ${db:Status-Status}\n' "${names[@]%:*}" 2>/dev/null | sed -n 's/ installed$//p' || true)
+
+# is_installed PACKAGE[:ARCHITECTURE]: succeeds if it is installed for this architecture or for all (default: this machine's).
 is_installed() {
     local architecture=$native
     [[ $1 != *:* ]] || architecture=${1#*:}
-    dpkg-query -W -f='${Architecture} ${db:Status-Status}\n' "${1%:*}" 2>/dev/null | grep -Eqx "($architecture|all) installed"
+    [[ $'\n'$installed$'\n' == *$'\n'"${1%:*}:$architecture"$'\n'* || $'\n'$installed$'\n' == *$'\n'"${1%:*}:all"$'\n'* ]]
 }
 
 missing=()
@@ -86,6 +90,7 @@ fi
 [[ -z $cross ]] || "${as_root[@]}" dpkg --add-architecture "$cross"
 "${as_root[@]}" apt-get update -qq
 for i in "${!missing[@]}"; do
+    [[ ${missing[i]} == *[:\|]* ]] || continue
     alternatives=(${missing[i]//|/ })
     missing[i]=${alternatives[-1]%:*} # apt knows a package for all architectures by its plain name alone
     for alternative in "${alternatives[@]}"; do

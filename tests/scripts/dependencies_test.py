@@ -14,7 +14,7 @@ from launcher_fixture import ROOT
 # `installed` has lines PACKAGE ARCHITECTURE, and `known` the packages of this Debian.
 PROGRAMS = {
     "dpkg": '[ "$1" = --print-architecture ] && echo amd64\n[ "$1" = --add-architecture ] && echo "$2" >>"$MADE_UP/added"\ntrue\n',
-    "dpkg-query": '[ "$2" = "-f=\\${Conflicts}" ] && exec sed "" "$MADE_UP/conflicts"\nfor package; do :; done\nsed -n "s/^$package \\(.*\\)/\\1 installed/p" "$MADE_UP/installed"\n',
+    "dpkg-query": '[ "$2" = "-f=\\${Conflicts}" ] && exec sed "" "$MADE_UP/conflicts"\nsed "s/ /:/; s/$/ installed/" "$MADE_UP/installed"\n',
     "apt-cache": 'echo "$2:"\ngrep -qx "$2" "$MADE_UP/known" && echo "  Candidate: 1:14.0-1" || echo "  Candidate: (none)"\n',
     "apt-get": '[ "$1" = install ] && echo "$*" >>"$MADE_UP/asked"\ntrue\n',
 }
