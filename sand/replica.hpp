@@ -72,12 +72,12 @@ public:
     Replica& operator=(Replica&&) noexcept = default;
     ~Replica() = default;
 
-    /// Applies the next step: an engaged tool displaces sand along step.path, step.edit is done, and the sand slides
-    /// for step.sweeps of the owed sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
+    /// Applies the next step. An engaged tool displaces sand along step.path, then step.edit is done. Then the sand
+    /// slides for step.sweeps of the owed sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
-    /// docs/how_it_works.md#a-step has the rules of owed sweeps and of edits. docs/journal.md has the steps of which a
-    /// part is left out, or the whole step; all replicas leave out the same. After std::bad_alloc, which depends on the
-    /// host, the replica is unusable, and its process must end.
+    /// docs/how_it_works.md#a-step has the rules of owed sweeps and of edits. docs/journal.md says which steps are left
+    /// out, as a whole or in part; all replicas leave out the same. After std::bad_alloc, which depends on the host,
+    /// the replica is unusable, and its process must end.
     void apply(const Step& step) {
         apply(step, [] {});
     }

@@ -24,7 +24,7 @@ using Underside = ActiveEdges::Underside;
 /// sliding ends. The proofs need only that a flux keeps below its bound (weights.hpp) and never flows uphill.
 ///
 /// Each call of sweep() begins without momentum. Sand that began to slide beyond the start threshold may need many
-/// calls until it stops at the threshold, because the layer records which sand moves.
+/// calls until it stops at the threshold. The layer records which sand moves.
 ///
 /// The result of sweep() depends only on the layer, the rules, the obstacle and the number of sweeps. It does not
 /// depend on slots, active sets, threads or earlier calls. Not thread-safe.
