@@ -72,42 +72,12 @@ public:
     Replica& operator=(Replica&&) noexcept = default;
     ~Replica() = default;
 
-    /// Applies the next step. Throws std::logic_error if step.number is not stepNumber() + 1.
+    /// Applies the next step. An engaged tool displaces sand along step.path, then step.edit is done. Then the sand
+    /// slides for step.sweeps of the owed sweeps. Throws std::logic_error if step.number is not stepNumber() + 1.
     ///
-    /// 1. An engaged tool displaces sand along step.path.
-    /// 2. step.edit is done.
-    /// 3. The sand slides for step.sweeps sweeps, a part of the owed ones.
-    ///
-    /// **Owed sweeps.** If nothing is owed when a step begins, the step owes Tuning::sweepsPerStep sweeps. It pays
-    /// some of them, and the steps after it pay the rest. A step that begins while sweeps are owed owes no sweeps of
-    /// its own, and must not move an engaged tool: engaging, lifting, turning and each point of a path are movements.
-    /// So the sand does not depend on how sweeps are divided among steps. A sweep that moves no sand ends what is owed.
-    /// On a TIN, each step runs all its sweeps.
-    ///
-    /// Edits with a rule of their own:
-    /// - A reset, a load or an undo restores sand, outflow and inertia. On a TIN, only an undo also restores which sand
-    ///   moves. Step number, probe, tool and material are not restored. Such a step runs no sweeps, so that it ends
-    ///   with exactly the restored sand. Nothing is owed after it. An engaged tool then presses once.
-    /// - A tune replaces the owed sweeps: the step owes the new Tuning::sweepsPerStep.
-    /// - A settle replaces them, too. It brings all sand to rest within its step. With an engaged tool, and on a
-    ///   height field with rock or walls, the sand settles by sweeps instead. An engaged tool is then an obstacle.
-    ///   These sweeps are owed until all sand is at rest, or until an engaged tool moves. On a TIN, each step runs at
-    ///   most settlingSweeps() of them, or Tuning::sweepsPerStep if that is more.
-    ///
-    /// A step may leave out a part of itself. Every replica does so alike, because state and step alone decide:
-    /// - The whole step is left out if it moves an engaged tool while sweeps are owed, or if it runs more sweeps than
-    ///   are owed. Only the step number changes. A program that numbers steps correctly makes no such step.
-    /// - A load whose bytes are not sand for this field is ignored. The step then runs its sweeps.
-    /// - An undo is ignored if canUndo() is false. The step then runs its sweeps.
-    /// - A path is ignored, except for its end, if it is so long and the tool so large that the step would take
-    ///   minutes. No hand makes such a step.
-    /// - The whole step is skipped if the sand throws an exception. It still counts as applied. The sand becomes that
-    ///   from before the last stroke, or that of the scene if no such sand is kept. Probe, tool and material become
-    ///   those from before the step, the tool is lifted, and nothing is owed. It does not matter how far the step had
-    ///   come.
-    ///
-    /// std::bad_alloc is passed on instead, because it depends on the host. The replica is then unusable, and its
-    /// process must end.
+    /// docs/how_it_works.md#a-step has the rules of owed sweeps and of edits. docs/journal.md says which steps are left
+    /// out, as a whole or in part; all replicas leave out the same. After std::bad_alloc, which depends on the host,
+    /// the replica is unusable, and its process must end.
     void apply(const Step& step) {
         apply(step, [] {});
     }

@@ -11,19 +11,7 @@
 namespace haptic_bridge {
 
 /// Decides how much work of the sand fits into a frame: how many sweeps a step runs, how far it moves the tool, and how
-/// many of the steps that are due a frame takes, at least one.
-///
-/// The time for sand in a frame is half of the longer of a step's period and the frame's drawing, and at most kMostNs.
-/// If the drawing is long, it is the rest of kFrameNs, but at least kLeastNs.
-///
-/// The sweeps of a step fit into this time by the last wall time of a sweep. They are also at most twice as many as a
-/// frame has shown since a change. A stroke begins with at most kFastPart sweeps. After an edit all sand may move, as
-/// at the start of a session. So the first sweeps are as many as fit if each cell takes kCellNs, and at most kFastPart.
-///
-/// More sand moves after a drag, and for a while from sweep to sweep. So a sweep counts as longer if the step, or the
-/// steps of a frame, drag farther than those whose sweeps were measured. A part of more than kFastPart sweeps is
-/// shorter while each frame's sweeps take longer than those of the frame before, by the same factor. Of such parts a
-/// frame takes fewer.
+/// many of the steps that are due a frame takes, at least one. docs/how_it_works.md#a-step has the rules.
 ///
 /// The sand after all sweeps of a step does not depend on these numbers. In real time the path of the hand does.
 /// Reads no clock. Used by one thread.

@@ -21,37 +21,9 @@ namespace sand::grid {
 
 /// Thermal erosion: sand slides wherever it is steeper than the talus, until all sand is at rest.
 ///
-/// A sweep is a Jacobi iteration over the faces between cells. It computes all fluxes from the heights before the
-/// sweep. Each flux is rounded once, subtracted from one cell and added to the other. Volume is therefore exact.
-///
-/// A flux is at most the share k of the height difference across its face. The shares of a cell's four faces add up to
-/// less than 1. Two properties follow from these bounds:
-/// - The next height of a cell lies between the lowest and the highest of the cell and its neighbours.
-/// - The sum of all squared heights falls by at least 1 in every sweep that moves sand, so that sliding ends.
-///
-/// **Inertia.** The default law is
-///
-///     q = M q_last + p (1 - t²/m²) a, cut to [0, k a]
-///
-/// - a: height difference across the face
-/// - m: slope
-/// - t: threshold
-/// - q_last: flux of the face in the last sweep
-/// - M = n / (n + 25), at most 0.9: inertia, where n counts the sweeps that moved sand since touch()
-///
-/// A small pile rests after few sweeps, so that it has little inertia and does not overshoot.
-///
-/// The two properties need only the cut. Plain G is the law without inertia. Sand at rest starts to slide at the same
-/// slope under both laws. The piles of both are equal to three digits, but the default law needs a tenth of the sweeps.
-/// docs/sand.md has the constants p and k, and the measurements.
-///
-/// Within one step, M may grow faster, because a step of few sweeps ends before sand overshoots. In sweep i (from 0) of
-/// the step, M is at least i / (i + d), at most 0.9. Here d is a third of the step's sweeps, clamped to [3, 25]. It
-/// does not matter whether the sweeps of a step run in one call of sweep() or in several.
-///
-/// **Band.** The start threshold may be above t. The sand of a cell slides if sand flowed through a face of the cell in
-/// the last sweep. A face no steeper than the start threshold carries a flux only if the sand of one of its two cells
-/// slides. Sliding sand therefore stops at t, and sand at rest starts to slide only beyond the start threshold.
+/// A sweep is a Jacobi iteration over the faces between cells: it computes all fluxes from the heights before the
+/// sweep. docs/sand.md has the law of a flux with its constants, inertia and band, and the proofs that volume is exact
+/// and that sliding ends. The proofs need only the cut of a flux at the share k of the height difference.
 ///
 /// **Blocks.** A sweep visits the blocks in which sand flows, and each neighbour next to a border where sand flows.
 /// Sand at rest costs no time. The result equals that of full sweeps bit for bit.

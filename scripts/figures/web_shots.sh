@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Takes pictures of the page with a session, at the size of a desktop and of a phone, in Chromium.
-# usage: scripts/figures/web_shots.sh SESSION OUT   writes OUT/web.png, which the README shows, and OUT/web_phone.png
+# usage: scripts/figures/web_shots.sh SESSION OUT   writes OUT/web.png, which docs/web.md shows, and OUT/web_phone.png
 # Needs the page and puppeteer-core (scripts/web.sh) and Chromium.
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -13,8 +13,7 @@ namespace sand::tin {
 /// a, b and c must run counter-clockwise. Exact.
 ///
 /// The sides of a field are at most 2^22 probe units. Minors and squares then stay within 2^46, and the whole within
-/// 2^94. 128-bit
-/// integers decide if doubles cannot.
+/// 2^94. 128-bit integers decide if doubles cannot.
 [[nodiscard]] inline int inCircle(const LatticePoint& a, const LatticePoint& b, const LatticePoint& c,
                                   const LatticePoint& d) {
     const std::int64_t ax = a.x - d.x, ay = a.y - d.y;

@@ -37,21 +37,11 @@ public:
     };
 
     /// Moves the tool along `path`, which begins where the tool is, and displaces the sand. A path of one point
-    /// presses there.
+    /// presses there. docs/tin.md#tools says where the sand goes.
     ///
     /// Moves in sub-steps of at most one cell. Skips a sub-step that brings the tool less than a quarter of a cell
-    /// farther and less than a quarter of a cell deeper. Never skips the last one. Refines the mesh along the path,
-    /// also on the rim and on the borders of holes. Removes the previous imprint, and puts the outline in at the end of
-    /// the path.
-    ///
-    /// Sand above the underside goes to the vertices ahead, each by its share of the ground, as on a grid to the cells
-    /// ahead. If no vertex is ahead, or if one of them would rise above kMaxHeight, the sand goes to all vertices
-    /// around, except those that would rise above kMaxHeight. If the mesh is too coarse for that, it goes to the
-    /// neighbours of the vertices from which it came. If no vertex can take the sand, it stays. Beside an open rim, the
-    /// ground beyond takes its share, which flows out.
-    ///
-    /// Holes divide the vertices below the tool and beside it into parts. Two vertices are joined by an edge of a
-    /// triangle on ground. Each part shares out its own sand.
+    /// farther and less than a quarter of a cell deeper, except the last one. Refines the mesh along the path, also on
+    /// the rim and on the borders of holes. Replaces the previous imprint by the outline at the end of the path.
     ///
     /// A tool that is held still changes nothing after its press, except in hold(). If the tool does not reach the sand
     /// at all, it leaves the sand as with leave().

@@ -165,7 +165,7 @@ TEST_F(Mapped, ABadReadingLiftsTheHandAndCountsAsAbsent) {
         for (int lost = 0; lost < late; ++lost) {
             (void)device_->read(time_ += kArmTick);
         }
-        EXPECT_EQ(device_->troubles()->of(trouble), 0U) << "an arm that may only be late is no trouble";
+        EXPECT_EQ(device_->troubles()->of(trouble), 0U) << "an arm may only be late";
         const Pose during = device_->read(time_ += kArmTick);
         EXPECT_EQ(device_->answers(), trouble != Trouble::absent) << "a reading that is not plausible is a fault";
         EXPECT_FALSE(during.engaged);

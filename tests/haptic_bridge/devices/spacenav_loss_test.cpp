@@ -66,7 +66,7 @@ TEST_F(SpacenavLoss, ADaemonThatEndsStopsAndLiftsTheToolUntilItIsBack) {
     ASSERT_TRUE(isBack());
     EXPECT_FALSE(device_->troubles()->away());
     expectStill();
-    EXPECT_EQ(next().x, left.x) << "the hand goes on where it was";
+    EXPECT_EQ(next().x, left.x) << "the hand continues where it was";
     dig();
     EXPECT_EQ(losses(), 1);
 }

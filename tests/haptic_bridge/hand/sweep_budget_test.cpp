@@ -111,7 +111,7 @@ TEST_F(Budget, AStrokeBeginsWithSixtyFourSweeps) {
     show(3000, 100);
     EXPECT_EQ(next(true), 64) << "a new stroke";
     sand_->apply({1, 2, true, {}});
-    EXPECT_EQ(next(true), 64) << "the same stroke, of which no frame was shown";
+    EXPECT_EQ(next(true), 64) << "the same stroke, without a frame that was shown";
     budget_.shown({.sweeps = 3000, .sweepNs = 300'000}, 1);
     EXPECT_EQ(next(true), 64) << "a frame from before the stroke";
     show(64, 100);
@@ -211,7 +211,7 @@ TEST_F(Budget, AFrameTakesFewerLongPartsWhileSweepsTakeLongerAndLonger) {
     }
     EXPECT_TRUE(budget_.fits({36, 0}, {64, 0}, tool)) << "100 sweeps of 0.04 ms each may take 8 ms";
     EXPECT_FALSE(budget_.fits({37, 0}, {64, 0}, tool));
-    EXPECT_TRUE(budget_.fits({137, 0}, {63, 0}, tool)) << "a step of fewer sweeps is no long part";
+    EXPECT_TRUE(budget_.fits({137, 0}, {63, 0}, tool)) << "a step of fewer sweeps is not a long part";
     show(100, 40'000);
     EXPECT_TRUE(budget_.fits({136, 0}, {64, 0}, tool));
 }

@@ -103,7 +103,7 @@ TEST_F(AskedForce, OfAnArmThatLosesReadingsHasTheFaultInEachSecond) {
     }
     EXPECT_EQ(server_->hand().handTicks().faultedSeconds(), 10U);
     EXPECT_EQ(server_->counted(Guard::unread), 40U);
-    EXPECT_GT(counted(ForceOutcome::half), 8'900U) << "one lost reading is no fall";
+    EXPECT_GT(counted(ForceOutcome::half), 8'900U) << "one lost reading does not count as a fall";
 }
 
 TEST_F(AskedForce, OfAnArmThatIsLostForLongIsNotHadBecauseOfIt) {
