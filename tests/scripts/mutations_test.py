@@ -12,11 +12,14 @@ import dataclasses
 import fnmatch
 import functools
 import io
+import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 import unittest
 
@@ -224,6 +227,78 @@ class Copy(unittest.TestCase):
         (self.sources / "link").symlink_to("docs/old.md")
         self.space.copy_sources(self.sources)
         self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("docs/old.md"))
+
+
+class Processes(unittest.TestCase):
+    """A test program leaves processes in sessions of their own, as a launcher with a bug does."""
+
+    LEAVES = "setsid sleep 1000 & echo >> began"
+    # Tries two bugs in one workspace.
+    RUN = """import pathlib, sys
+sys.path.insert(0, sys.argv[2])
+import run, workspace
+class Bug:
+    title = "bug"
+    def try_in(self, space):
+        return True, space.run("tests Sand.*")
+bugs, space = [Bug(), Bug()], workspace.Workspace(pathlib.Path(sys.argv[1]), 1)
+sys.exit(run.until_interrupted(lambda: run.try_all(bugs, [space], [])))
+"""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-mutations-")))
+        self.space = workspace.Workspace(self.folder, 1)
+        self.space.bin.mkdir(parents=True)
+
+    def program(self, lines):
+        (self.space.bin / "tests").write_text(f"#!/bin/sh\n{lines}\n")
+        (self.space.bin / "tests").chmod(0o755)
+
+    def left(self):
+        return workspace.marked(f"{workspace.MARK}={self.folder}".encode())
+
+    def begin(self, *before):
+        command = [*before, sys.executable, "-c", self.RUN, self.folder, pathlib.Path(run.__file__).parent]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_are_ended_after_the_test_and_at_its_time_limit(self):
+        other = subprocess.Popen(["sleep", "1000"], env={**os.environ, workspace.MARK: f"{self.folder}/other"})
+        self.addCleanup(other.wait)
+        self.addCleanup(other.kill)
+        self.program(f"{self.LEAVES}; exit 3")
+        self.assertEqual((self.space.run("tests Sand.*"), self.left()), ("status 3", []))
+        self.program(f"{self.LEAVES}; exec sleep 1000")
+        self.assertEqual((self.space.run("tests Sand.*", 0.5), self.left()), ("the time limit", []))
+        self.assertIsNone(other.poll(), "the process of another workspace")
+
+    def test_of_a_run_that_was_killed_are_ended_by_the_next(self):
+        left = subprocess.Popen(["sleep", "1000"], env=self.space.environment())
+        self.addCleanup(left.kill)
+        self.space.end_processes()
+        self.assertEqual(left.wait(60), -signal.SIGKILL)
+
+    def test_are_ended_by_a_signal_and_no_further_bug_is_tried(self):
+        self.program(f"{self.LEAVES}; exec sleep 1000")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            process = self.begin()
+            while not (self.folder / "began").exists():
+                self.assertIsNone(process.poll(), "no test began")
+                time.sleep(0.01)
+            process.send_signal(number)
+            self.assertEqual((process.wait(60), self.left()), (130, []), number)
+            self.assertEqual((self.folder / "began").read_text(), "\n")
+            (self.folder / "began").unlink()
+
+    def test_get_signals_that_the_run_itself_ignores(self):
+        for ignored, sent in (("INT", "kill -INT $$"), ("HUP", "kill -HUP $PPID; kill -HUP $$")):
+            self.program(sent)
+            process = self.begin("sh", "-c", f"trap '' {ignored}; exec \"$@\"", "sh")
+            status = -signal.Signals[f"SIG{ignored}"]
+            self.assertEqual((process.communicate(timeout=60)[0].count(f" status {status}\n"), process.returncode), (2, 0))
 
 
 class Drawn(unittest.TestCase):
