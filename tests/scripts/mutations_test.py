@@ -190,7 +190,8 @@ class Copy(unittest.TestCase):
         self.git("add", name)
 
     def copied(self):
-        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in self.space.folder.rglob("*") if path.is_file()}
+        paths = [path for path in self.space.folder.rglob("*") if path.is_file() and self.space.folder / ".git" not in path.parents]
+        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in paths}
 
     def test_a_kept_copy_holds_the_tracked_files_and_its_build_alone(self):
         self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}"})
@@ -203,6 +204,17 @@ class Copy(unittest.TestCase):
         self.space.copy_sources(self.sources)
         self.assertEqual(self.copied(), {"pages/new.md": "the same page", "main.cpp": "int main() {}", "build/release/bin/tests": "built"})
         self.assertFalse((self.space.folder / "docs").exists())
+
+    def test_git_lists_the_files_of_a_copy_and_knows_its_commit(self):
+        (self.space.folder / "build").mkdir()
+        self.space.write("build/tests", "built")
+        self.git("mv", "docs/old.md", "new.md")
+        self.write(".gitignore", "build/")
+        self.space.copy_sources(self.sources)
+        for words, lines in (("ls-files", [".gitignore", "main.cpp", "new.md"]), ("status --short", []),
+                             ("log --format=%s", 2 * ["the sources without a bug"])):
+            ran = subprocess.run(["git", *words.split()], cwd=self.space.folder, check=True, capture_output=True, text=True)
+            self.assertEqual(ran.stdout.splitlines(), lines)
 
     def test_a_folder_may_replace_a_file_of_a_kept_copy(self):
         self.git("mv", "main.cpp", "main")
@@ -396,6 +408,15 @@ class Report(unittest.TestCase):
             self.assertEqual(ended("kill -SEGV $$"), "status -11")
             self.assertEqual(ended("exec sleep 60", limit=0.5), "the time limit")
 
+    def test_a_python_test_that_is_no_unittest_gets_no_options(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-mutations-") as folder:
+            scripts = pathlib.Path(folder, "tests", "scripts")
+            scripts.mkdir(parents=True)
+            (scripts / "a_test.py").write_text("import sys\nsys.exit(len(sys.argv) - 1)\n")
+            (scripts / "b_test.py").write_text("import sys\nsys.exit(len(sys.argv) - 1)\nunittest.main()\n")
+            space = workspace.Workspace(pathlib.Path(folder), 1)
+            self.assertEqual([space.run("a_test.py"), space.run("b_test.py"), space.run("b_test.py A.b")], [None, "status 1", "status 2"])
+
     def test_folders_and_rows_select_bugs(self):
         rows, sources = table.rows(TABLES), table.Sources(ROOT)
 
@@ -418,7 +439,9 @@ class Report(unittest.TestCase):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
         self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests", run.SESSIONS])
         self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
-        self.assertEqual(run.tests_for("scripts/launcher/programs.py", programs)[0], "programs_test.py")
+        scripts = run.tests_for("scripts/launcher/programs.py", programs)
+        self.assertEqual(scripts[0], "programs_test.py")
+        self.assertNotIn("mutations_test.py", scripts)
         self.assertLessEqual(run.SLOW, set(PROGRAMS))
         for pattern in run.SESSIONS.split()[1].split(":"):
             self.assertTrue(fnmatch.filter(PROJECT.all_tests(), pattern), pattern)

@@ -13,6 +13,7 @@ import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+COMMIT = ["-c", "user.name=mutate.sh", "-c", "user.email=mutate.sh", "-c", "commit.gpgsign=false", "commit", "--quiet"]
 LONGEST = 300  # [s], limit of a test program
 MARK = "SANDWALL_MUTATED"  # name of a variable in the environment of all that builds and tests start
 SKIPPED = 77   # status of a test program that passes, but has skipped a test that needs rights
@@ -75,7 +76,8 @@ class Workspace:
 
     def copy_sources(self, root=ROOT):
         """Copies the tracked files of `root`. Restores a file that a run before has left changed. Deletes every file outside the
-        build that is not tracked any more, such as a renamed document, because tests read all files of a folder."""
+        build that is not tracked any more, such as a renamed document, because tests read all files of a folder. The copy is a
+        repository with these files, because tests ask git for them."""
         listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True).stdout.split("\0")
         names = set(filter(None, listed))
         for path in self.files_outside_the_build():
@@ -85,11 +87,13 @@ class Workspace:
                     os.removedirs(path.parent)
         for name in names:
             copy_of(root / name, self.folder / name)
+        for command in (["init", "--quiet"], ["add", "--all"], [*COMMIT, "--allow-empty", "--message", "the sources without a bug"]):
+            subprocess.run(["git", *command], cwd=self.folder, check=True)
 
     def files_outside_the_build(self):
-        build = str(self.folder / "build")
+        kept = [str(self.folder / name) for name in ("build", ".git")]
         for folder, folders, files in os.walk(self.folder):
-            folders[:] = [name for name in folders if os.path.join(folder, name) != build]
+            folders[:] = [name for name in folders if os.path.join(folder, name) not in kept]
             yield from (pathlib.Path(folder, name) for name in files)
 
     def environment(self):
@@ -153,7 +157,8 @@ class Workspace:
         """
         program, _, which = test.partition(" ")
         if program.endswith(".py"):
-            command = ["python3", str(self.folder / "tests" / "scripts" / program), *which.split(), "--failfast"]
+            file = self.folder / "tests" / "scripts" / program
+            command = ["python3", str(file), *which.split(), *(["--failfast"] if "unittest.main()" in file.read_text() else [])]
         else:
             command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]
         start = time.monotonic()
