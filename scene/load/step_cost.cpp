@@ -18,10 +18,10 @@ constexpr std::int32_t kPart = 16;  // [sweep], between two looks at the clock
 
 double secondsSince(std::int64_t then) { return static_cast<double>(host::monotonicNs() - then) * 1e-9; }
 
-/// Digs through the middle of the part, to and fro, by a cell in each step and with the tool half a radius deep.
+/// Digs through the middle of the part.
 class Digger {
 public:
-    explicit Digger(const sand::Start& part) : replica_(part), radius_(part.rules.tuning.tool.radius) {}
+    explicit Digger(const sand::Start& part) : replica_(part) {}
 
     /// Applies a part of a step.
     void dig() {
@@ -56,26 +56,29 @@ public:
 
 private:
     [[nodiscard]] sand::ProbePoint next() {
-        constexpr int kWay = 16;  // [cell], to one side
-        const int at = static_cast<int>(begun_ % (2 * kWay));
-        const sand::Rules& rules = replica_.rules();
-        const std::int32_t x =
-            rules.columns * sand::kProbePerCell / 2 + (at < kWay ? at : 2 * kWay - at) * sand::kProbePerCell;
-        const std::int32_t y = rules.rows * sand::kProbePerCell / 2;
         if (begun_ == 0) {
-            level_ =
-                static_cast<std::int32_t>(replica_.surface().height(x, y) / sand::kUnitsPerCell * sand::kProbePerCell);
+            const sand::ProbePoint middle = digPlace(replica_.rules(), 0, 0);
+            level_ = static_cast<std::int32_t>(replica_.surface().height(middle.x, middle.y) / sand::kUnitsPerCell *
+                                               sand::kProbePerCell);
         }
-        return {x, y, level_ + radius_ / 2};
+        return digPlace(replica_.rules(), begun_, level_);
     }
 
     sand::Replica replica_;
-    std::int32_t radius_, level_ = 0;  // [probe unit]
+    std::int32_t level_ = 0;  // [probe unit], of the sand in the middle
     std::int64_t begun_ = 0, whole_ = 0, sweeps_ = 0;
     std::int64_t dragNs_ = 0, sweepNs_ = 0, endedNs_ = 0;  // the last one: of the steps that have run whole
 };
 
 }  // namespace
+
+sand::ProbePoint digPlace(const sand::Rules& rules, std::int64_t step, std::int32_t level) {
+    constexpr int kWay = 16;  // [cell], to one side
+    const int at = static_cast<int>(step % (2 * kWay));
+    const std::int32_t x =
+        rules.columns * sand::kProbePerCell / 2 + (at < kWay ? at : 2 * kWay - at) * sand::kProbePerCell;
+    return {x, rules.rows * sand::kProbePerCell / 2, level + rules.tuning.tool.radius / 2};
+}
 
 std::optional<StepCost> stepCostOf(const Scene& scene) {
     const std::optional<sand::Start> part = scene.middle(kMostCells);

@@ -4,6 +4,7 @@
 
 import os
 import subprocess
+import tempfile
 import unittest
 from unittest import mock
 
@@ -65,6 +66,22 @@ class LogWithoutDisk(unittest.TestCase):
         subprocess.run(["sh", "-c", f"echo '[1,0]<stderr>:{event}' >&2"], stdout=log.out.file, stderr=log.err.file, check=True)
         log.follow(ended=True)
         self.assertEqual((log.frame, log.step), (7, 6))
+
+
+class HeldLines(unittest.TestCase):
+    def test_the_newest_thousand_are_shown_at_the_first_frame(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-console-") as folder:
+            log = job_log.JobLog(folder, 1, open_mpi.OpenMpi4("4.1.4"), held=True)
+            self.addCleanup(log.close)
+            shown = []
+            log.out.shown = mock.Mock(line=shown.append)
+            for number in range(1500):
+                log.show(log.out, number)
+            self.assertEqual(shown, [])
+            log.release()
+            self.assertEqual(shown, list(range(500, 1500)))
+            log.show(log.out, 1500)
+            self.assertEqual(shown[1000:], [1500])
 
 
 class MissingLines(unittest.TestCase):

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Tests that the output of a job stays small on the disk and hinders no process, and that a job ends with its launcher."""
 
+import fcntl
 import os
 import pathlib
 import re
@@ -107,6 +108,14 @@ class Outlet(Folder):
         self.assertEqual(found[-len(line(0)) - 1:], line(39999) + b"\n")
         self.assertEqual((len(found), len(found) + left_out), (job_outlet.MOST_WAITING, 40000 * len(line(0)) + 1))
         self.assertEqual(self.path.stat().st_size, 40000 * len(line(0)) + 1)
+
+
+    def test_the_pipe_holds_what_mpirun_writes_until_it_is_read(self):
+        outlet = job_outlet.Outlet(None)
+        self.addCleanup(outlet.close)
+        # A mebibyte is also the most that Linux gives a user by its default (pipe-max-size).
+        most = int(pathlib.Path("/proc/sys/fs/pipe-max-size").read_text())
+        self.assertEqual(fcntl.fcntl(outlet.file, fcntl.F_GETPIPE_SZ), min(MIB, most))
 
 
 class Flood(Supervised):

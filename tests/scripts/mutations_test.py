@@ -12,11 +12,14 @@ import dataclasses
 import fnmatch
 import functools
 import io
+import os
 import pathlib
 import re
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 import tomllib
 import unittest
 
@@ -187,7 +190,8 @@ class Copy(unittest.TestCase):
         self.git("add", name)
 
     def copied(self):
-        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in self.space.folder.rglob("*") if path.is_file()}
+        paths = [path for path in self.space.folder.rglob("*") if path.is_file() and self.space.folder / ".git" not in path.parents]
+        return {path.relative_to(self.space.folder).as_posix(): path.read_text() for path in paths}
 
     def test_a_kept_copy_holds_the_tracked_files_and_its_build_alone(self):
         self.assertEqual(self.copied(), {"docs/old.md": "the same page", "main.cpp": "int main() {}"})
@@ -200,6 +204,17 @@ class Copy(unittest.TestCase):
         self.space.copy_sources(self.sources)
         self.assertEqual(self.copied(), {"pages/new.md": "the same page", "main.cpp": "int main() {}", "build/release/bin/tests": "built"})
         self.assertFalse((self.space.folder / "docs").exists())
+
+    def test_git_lists_the_files_of_a_copy_and_knows_its_commit(self):
+        (self.space.folder / "build").mkdir()
+        self.space.write("build/tests", "built")
+        self.git("mv", "docs/old.md", "new.md")
+        self.write(".gitignore", "build/")
+        self.space.copy_sources(self.sources)
+        for words, lines in (("ls-files", [".gitignore", "main.cpp", "new.md"]), ("status --short", []),
+                             ("log --format=%s", 2 * ["the sources without a bug"])):
+            ran = subprocess.run(["git", *words.split()], cwd=self.space.folder, check=True, capture_output=True, text=True)
+            self.assertEqual(ran.stdout.splitlines(), lines)
 
     def test_a_folder_may_replace_a_file_of_a_kept_copy(self):
         self.git("mv", "main.cpp", "main")
@@ -224,6 +239,78 @@ class Copy(unittest.TestCase):
         (self.sources / "link").symlink_to("docs/old.md")
         self.space.copy_sources(self.sources)
         self.assertEqual((self.space.folder / "link").readlink(), pathlib.Path("docs/old.md"))
+
+
+class Processes(unittest.TestCase):
+    """A test program leaves processes in sessions of their own, as a launcher with a bug does."""
+
+    LEAVES = "setsid sleep 1000 & echo >> began"
+    # Tries two bugs in one workspace.
+    RUN = """import pathlib, sys
+sys.path.insert(0, sys.argv[2])
+import run, workspace
+class Bug:
+    title = "bug"
+    def try_in(self, space):
+        return True, space.run("tests Sand.*")
+bugs, space = [Bug(), Bug()], workspace.Workspace(pathlib.Path(sys.argv[1]), 1)
+sys.exit(run.until_interrupted(lambda: run.try_all(bugs, [space], [])))
+"""
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="sandwall-mutations-")))
+        self.space = workspace.Workspace(self.folder, 1)
+        self.space.bin.mkdir(parents=True)
+
+    def program(self, lines):
+        (self.space.bin / "tests").write_text(f"#!/bin/sh\n{lines}\n")
+        (self.space.bin / "tests").chmod(0o755)
+
+    def left(self):
+        return workspace.marked(f"{workspace.MARK}={self.folder}".encode())
+
+    def begin(self, *before):
+        command = [*before, sys.executable, "-c", self.RUN, self.folder, pathlib.Path(run.__file__).parent]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_are_ended_after_the_test_and_at_its_time_limit(self):
+        other = subprocess.Popen(["sleep", "1000"], env={**os.environ, workspace.MARK: f"{self.folder}/other"})
+        self.addCleanup(other.wait)
+        self.addCleanup(other.kill)
+        self.program(f"{self.LEAVES}; exit 3")
+        self.assertEqual((self.space.run("tests Sand.*"), self.left()), ("status 3", []))
+        self.program(f"{self.LEAVES}; exec sleep 1000")
+        self.assertEqual((self.space.run("tests Sand.*", 0.5), self.left()), ("the time limit", []))
+        self.assertIsNone(other.poll(), "the process of another workspace")
+
+    def test_of_a_run_that_was_killed_are_ended_by_the_next(self):
+        left = subprocess.Popen(["sleep", "1000"], env=self.space.environment())
+        self.addCleanup(left.kill)
+        self.space.end_processes()
+        self.assertEqual(left.wait(60), -signal.SIGKILL)
+
+    def test_are_ended_by_a_signal_and_no_further_bug_is_tried(self):
+        self.program(f"{self.LEAVES}; exec sleep 1000")
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            process = self.begin()
+            while not (self.folder / "began").exists():
+                self.assertIsNone(process.poll(), "no test began")
+                time.sleep(0.01)
+            process.send_signal(number)
+            self.assertEqual((process.wait(60), self.left()), (130, []), number)
+            self.assertEqual((self.folder / "began").read_text(), "\n")
+            (self.folder / "began").unlink()
+
+    def test_get_signals_that_the_run_itself_ignores(self):
+        for ignored, sent in (("INT", "kill -INT $$"), ("HUP", "kill -HUP $PPID; kill -HUP $$")):
+            self.program(sent)
+            process = self.begin("sh", "-c", f"trap '' {ignored}; exec \"$@\"", "sh")
+            status = -signal.Signals[f"SIG{ignored}"]
+            self.assertEqual((process.communicate(timeout=60)[0].count(f" status {status}\n"), process.returncode), (2, 0))
 
 
 class Drawn(unittest.TestCase):
@@ -321,6 +408,15 @@ class Report(unittest.TestCase):
             self.assertEqual(ended("kill -SEGV $$"), "status -11")
             self.assertEqual(ended("exec sleep 60", limit=0.5), "the time limit")
 
+    def test_a_python_test_that_is_no_unittest_gets_no_options(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-mutations-") as folder:
+            scripts = pathlib.Path(folder, "tests", "scripts")
+            scripts.mkdir(parents=True)
+            (scripts / "a_test.py").write_text("import sys\nsys.exit(len(sys.argv) - 1)\n")
+            (scripts / "b_test.py").write_text("import sys\nsys.exit(len(sys.argv) - 1)\nunittest.main()\n")
+            space = workspace.Workspace(pathlib.Path(folder), 1)
+            self.assertEqual([space.run("a_test.py"), space.run("b_test.py"), space.run("b_test.py A.b")], [None, "status 1", "status 2"])
+
     def test_folders_and_rows_select_bugs(self):
         rows, sources = table.rows(TABLES), table.Sources(ROOT)
 
@@ -343,7 +439,9 @@ class Report(unittest.TestCase):
         programs = {"sand_tests": "sand", "tin_tests": "sand/tin", "sand_oracle_tests": "sand", "master_tests": "master"}
         self.assertEqual(run.tests_for("sand/tin/flow/sweep.cpp", programs), ["tin_tests", "sand_tests", run.SESSIONS])
         self.assertEqual(run.tests_for("master/main.cpp", programs), ["master_tests", run.SESSIONS])
-        self.assertEqual(run.tests_for("scripts/launcher/programs.py", programs)[0], "programs_test.py")
+        scripts = run.tests_for("scripts/launcher/programs.py", programs)
+        self.assertEqual(scripts[0], "programs_test.py")
+        self.assertNotIn("mutations_test.py", scripts)
         self.assertLessEqual(run.SLOW, set(PROGRAMS))
         for pattern in run.SESSIONS.split()[1].split(":"):
             self.assertTrue(fnmatch.filter(PROJECT.all_tests(), pattern), pattern)

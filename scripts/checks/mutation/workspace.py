@@ -6,11 +6,16 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
+import tempfile
+import threading
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+COMMIT = ["-c", "user.name=mutate.sh", "-c", "user.email=mutate.sh", "-c", "commit.gpgsign=false", "commit", "--quiet"]
 LONGEST = 300  # [s], limit of a test program
+MARK = "SANDWALL_MUTATED"  # name of a variable in the environment of all that builds and tests start
 SKIPPED = 77   # status of a test program that passes, but has skipped a test that needs rights
 FAILED = re.compile(r"^\[  FAILED  \] ([^ ,\n]+)", re.MULTILINE)
 NO_TEST = re.compile(r"^\[  PASSED  \] 0 tests", re.MULTILINE)
@@ -19,6 +24,20 @@ PYTHON_FAILED = re.compile(r"^(?:FAIL|ERROR): (\w+) ", re.MULTILINE)
 
 class DoesNotCompile(Exception):
     pass
+
+
+class Closed(Exception):
+    """The run ends, and starts nothing more."""
+
+
+def marked(mark):
+    """Returns the processes of this user that have `mark`, a whole entry NAME=VALUE, in their environment."""
+    found = []
+    for entry in pathlib.Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):  # it has ended, or belongs to another user
+            if mark in (entry / "environ").read_bytes().split(b"\0"):
+                found.append(int(entry.name))
+    return found
 
 
 def copy_of(source, copy):
@@ -35,7 +54,7 @@ def copy_of(source, copy):
 
 
 class Workspace:
-    """Not for several threads at once: each thread has a workspace of its own."""
+    """Not for several threads at once: each thread has a workspace of its own. Any thread may call close()."""
 
     def __init__(self, folder, jobs):
         self.folder = folder
@@ -43,9 +62,12 @@ class Workspace:
         self.build_folder = folder / "build" / "release"
         self.bin = self.build_folder / "bin"
         self.seconds = {}  # of each test without a bug
+        self.closed = False
+        self.lock = threading.Lock()
 
     def prepare(self):
-        """Copies the sources and configures the build."""
+        """Copies the sources and configures the build. Ends what a run that was killed has left."""
+        self.end_processes()
         self.copy_sources()
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache", "-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "--preset", "release", "-S", self.folder, "-B", self.build_folder, "-DSANDWALL_MUTANTS=ON",
@@ -54,7 +76,8 @@ class Workspace:
 
     def copy_sources(self, root=ROOT):
         """Copies the tracked files of `root`. Restores a file that a run before has left changed. Deletes every file outside the
-        build that is not tracked any more, such as a renamed document, because tests read all files of a folder."""
+        build that is not tracked any more, such as a renamed document, because tests read all files of a folder. The copy is a
+        repository with these files, because tests ask git for them."""
         listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, check=True, text=True).stdout.split("\0")
         names = set(filter(None, listed))
         for path in self.files_outside_the_build():
@@ -64,25 +87,62 @@ class Workspace:
                     os.removedirs(path.parent)
         for name in names:
             copy_of(root / name, self.folder / name)
+        for command in (["init", "--quiet"], ["add", "--all"], [*COMMIT, "--allow-empty", "--message", "the sources without a bug"]):
+            subprocess.run(["git", *command], cwd=self.folder, check=True)
 
     def files_outside_the_build(self):
-        build = str(self.folder / "build")
+        kept = [str(self.folder / name) for name in ("build", ".git")]
         for folder, folders, files in os.walk(self.folder):
-            folders[:] = [name for name in folders if os.path.join(folder, name) != build]
+            folders[:] = [name for name in folders if os.path.join(folder, name) not in kept]
             yield from (pathlib.Path(folder, name) for name in files)
 
     def environment(self):
         """Returns the environment of builds and tests. With it, one workspace uses what another one has compiled."""
         return dict(os.environ, SANDWALL_MAY_SKIP="1", CCACHE_BASEDIR=str(self.folder), CCACHE_NOHASHDIR="1",
                     CCACHE_SLOPPINESS="pch_defines,time_macros,include_file_mtime,include_file_ctime", PYTHONDONTWRITEBYTECODE="1",
-                    SANDWALL_BIN=str(self.bin))
+                    SANDWALL_BIN=str(self.bin), **{MARK: str(self.folder)})
+
+    def ended(self, command, limit=None):
+        """Runs a command, and ends all processes that it leaves, such as a session of a launcher with a bug.
+
+        Returns its status, or None at the time limit [s], and its output. Throws Closed after close().
+        """
+        with tempfile.TemporaryFile() as output:  # a process that the command leaves would hold a pipe open
+            with self.lock:
+                if self.closed:
+                    raise Closed
+                process = subprocess.Popen(command, cwd=self.folder, env=self.environment(), start_new_session=True,
+                                           stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
+            try:
+                status = process.wait(limit)
+            except subprocess.TimeoutExpired:
+                status = None
+            finally:
+                self.end_processes()
+                process.wait()
+            output.seek(0)
+            return status, output.read().decode(errors="replace")
+
+    def end_processes(self):
+        """Kills all that builds and tests in this workspace have started."""
+        while left := marked(f"{MARK}={self.folder}".encode()):
+            for process in left:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+            time.sleep(0.01)
+
+    def close(self):
+        """Ends what runs, and lets nothing more begin."""
+        with self.lock:
+            self.closed = True
+        self.end_processes()
 
     def build(self, targets):
         """Throws DoesNotCompile."""
         command = ["cmake", "--build", str(self.build_folder), "--parallel", str(self.jobs), "--target", *targets]
-        built = subprocess.run(command, env=self.environment(), capture_output=True, text=True)
-        if built.returncode != 0:
-            raise DoesNotCompile(built.stdout[-4000:] + built.stderr[-1000:])
+        status, output = self.ended(command)
+        if status != 0:
+            raise DoesNotCompile(output[-5000:])
 
     def write(self, name, text):
         (self.folder / name).write_text(text)
@@ -97,23 +157,19 @@ class Workspace:
         """
         program, _, which = test.partition(" ")
         if program.endswith(".py"):
-            command = ["python3", str(self.folder / "tests" / "scripts" / program), *which.split(), "--failfast"]
+            file = self.folder / "tests" / "scripts" / program
+            command = ["python3", str(file), *which.split(), *(["--failfast"] if "unittest.main()" in file.read_text() else [])]
         else:
             command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]
         start = time.monotonic()
-        process = subprocess.Popen(command, cwd=self.folder, env=self.environment(), text=True, errors="replace",
-                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)
-        try:
-            output, _ = process.communicate(timeout=limit)
-        except subprocess.TimeoutExpired:
-            os.killpg(process.pid, 9)
-            process.communicate()
+        status, output = self.ended(command, limit)
+        if status is None:
             return "the time limit"
         self.seconds.setdefault(test, time.monotonic() - start)
-        if process.returncode in (0, SKIPPED):
+        if status in (0, SKIPPED):
             return "no test" if NO_TEST.search(output) else None
         named = (PYTHON_FAILED if program.endswith(".py") else FAILED).search(output)
-        return named[1] if named else f"status {process.returncode}"
+        return named[1] if named else f"status {status}"
 
     def limit(self, test):
         """Returns the time limit of a test that may hang with a bug [s]."""

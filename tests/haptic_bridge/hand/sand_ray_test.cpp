@@ -38,6 +38,12 @@ TEST(SandRay, MeetsLevelSandOfAnyHeightExactly) {
     }
 }
 
+TEST(SandRay, MeetsTheSandAtItsEdges) {
+    for (const auto& [x, y] : {std::pair(20.0, 0.0), {20, 60}, {0, 30}, {100, 30}}) {
+        expectMeets({{x, y, 40}, {0, 0, -1}}, level(10), x, y);
+    }
+}
+
 TEST(SandRay, MeetsARidgeBeforeTheSandBehindIt) {
     // A ridge 8 high at y = 30 hides level sand behind it. Its southern slope rises by 1 per unit from y = 22.
     const auto ridge = [](double, double y) { return std::max(0.0, 8 - std::abs(y - 30)); };

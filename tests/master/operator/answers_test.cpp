@@ -38,6 +38,8 @@ TEST(Answers, ThatAreTooLongAreCutBetweenTwoCharacters) {
     EXPECT_EQ(answers.at(kNow).at(0).text, std::string(Answer::kLongest - 1, 'x'));
     answers.show(1, std::string(Answer::kLongest, 'y'), kNow);
     EXPECT_EQ(answers.at(kNow).at(0).text.size(), Answer::kLongest);
+    answers.show(1, std::string(Answer::kLongest + 1, '\x80'), kNow);
+    EXPECT_EQ(answers.at(kNow).at(0).text, "") << "bytes that are only the middle of characters";
 }
 
 // Somebody may hold a key at each window of a large wall.

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <thread>
 #include <vector>
@@ -238,6 +241,24 @@ TEST_F(Control, WhoSaysNothingIsSentAway) {
     ControlSocket control(folder_);
     EXPECT_EQ(hear(connectHere()), "");
     EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+}
+
+TEST_F(Control, DoesNothingWhileNobodyAsks) {
+    ControlSocket control(folder_);
+    EXPECT_EQ(ask(control, "status", "{}"), "{}\n");
+    const auto waits = [] {
+        rusage used{};
+        getrusage(RUSAGE_SELF, &used);
+        return used.ru_nvcsw;
+    };
+    // The thread must still see that its last client has gone. Then only this test itself waits.
+    long fewest = std::numeric_limits<long>::max();
+    for (int i = 0; i < 20 && fewest > 2; ++i) {
+        const long before = waits();
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        fewest = std::min(fewest, waits() - before);
+    }
+    EXPECT_LE(fewest, 2);
 }
 
 TEST_F(Control, CrowdsHarmNobody) {
