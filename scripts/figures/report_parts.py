@@ -10,6 +10,8 @@ from typing import Optional
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 RELEASE = "build/release/bin"
 PRESETS = ("release", "golden-clang-O3", "golden-g++-O0", "golden-g++-O2", "golden-clang-O0")  # builds whose hashes are compared
+# Comments of a script, and the lines that say where files are.
+PLACES = r"^\s*#[^\n]*|^(?:from|import) (?:[^\n(]*\([^)]*\)|[^\n]*)|^sys\.path[^\n]*|^[^\n]*__file__[^\n]*"
 
 
 @dataclass
@@ -98,9 +100,11 @@ def release(root=ROOT):
 def fingerprint(source, root=ROOT):
     """Returns a hash of the code that measures.
 
-    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts beside it that it imports.
+    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts of its folder, or of one
+    beside it, that it imports.
 
-    Comments and spaces do not count. The lists of curves and the writer of tables do not count either.
+    Comments, spaces and the places of files do not count, so a table stays valid when sources move. The lists of curves and
+    the writer of tables do not count either.
     """
     seen, waiting = {}, [source]
     while waiting:
@@ -109,12 +113,14 @@ def fingerprint(source, root=ROOT):
         if name in seen or re.match(r"bench/report/(csv|curves)\.", name) or not file.is_file():
             continue
         text = file.read_text()
-        seen[name] = re.sub(r"//[^\n]*|\s+" if name.endswith("pp") else r"^\s*#[^\n]*", "", text, flags=re.MULTILINE)
+        seen[name] = re.sub(r"//[^\n]*|^#include [^\n]*|\s+" if name.endswith("pp") else PLACES, "", text, flags=re.MULTILINE)
         for included in re.findall(r'#include "((?:bench|tests/support)/[^"]+)"', text):
             waiting += [included, re.sub(r"\.hpp$", ".cpp", included)]
         if name.endswith(".py"):
-            waiting += [str(pathlib.PurePath(name).with_name(f"{module}.py")) for module in re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE)]
-    return hashlib.blake2b("\n".join(f"{name}\n{seen[name]}" for name in sorted(seen)).encode(), digest_size=8).hexdigest()
+            folder = pathlib.PurePath(name).parent
+            for module in re.findall(r"^(?:from|import) ([\w.]+)", text, re.MULTILINE):
+                waiting += [str(above / f"{module.replace('.', '/')}.py") for above in (folder, folder.parent)]
+    return hashlib.blake2b("\n".join(sorted(seen.values())).encode(), digest_size=8).hexdigest()
 
 
 @dataclass

@@ -96,15 +96,31 @@ class Sources(unittest.TestCase):
         for part in PARTS:
             self.assertTrue((ROOT / part.source).is_file(), part.name)
 
-    def test_the_fingerprint_of_a_script_covers_the_scripts_that_it_imports(self):
-        with tempfile.TemporaryDirectory(prefix="sandwall-report-") as folder:
-            for name, text in (("measure", "import os\nfrom session import run\n"), ("session", "SECONDS = 1\n"), ("other", "")):
-                (pathlib.Path(folder) / f"{name}.py").write_text(text)
-            before = fingerprint("measure.py", pathlib.Path(folder))
-            (pathlib.Path(folder) / "other.py").write_text("SECONDS = 2\n")
-            self.assertEqual(fingerprint("measure.py", pathlib.Path(folder)), before)
-            (pathlib.Path(folder) / "session.py").write_text("SECONDS = 2\n")
-            self.assertNotEqual(fingerprint("measure.py", pathlib.Path(folder)), before)
+    def test_the_fingerprint_covers_the_code_and_not_the_folders_of_the_files(self):
+        with tempfile.TemporaryDirectory(prefix="sandwall-report-") as name:
+            root = pathlib.Path(name)
+
+            def write(files):
+                for file, text in files.items():
+                    (root / file).parent.mkdir(parents=True, exist_ok=True)
+                    (root / file).write_text(text)
+
+            before = {
+                "measure.py": "import os\nfrom session import (\n    run)\n", "session.py": "SECONDS = 1\n", "other.py": "",
+                "bench/a.cpp": '#include <vector>\n#include "bench/b.hpp"\nint a;', "bench/b.hpp": "int b;"}
+            after = {
+                "times/measure.py": "import os\nfrom rooms.session import run\n", "rooms/session.py": "SECONDS = 1\n",
+                "bench/times/a.cpp": '#include "bench/part/b.hpp"\n#include <vector>\nint a; // of b', "bench/part/b.hpp": "int b;"}
+            write({**before, **after})
+            self.assertEqual(fingerprint("times/measure.py", root), fingerprint("measure.py", root))
+            self.assertEqual(fingerprint("bench/times/a.cpp", root), fingerprint("bench/a.cpp", root))
+            script, source = fingerprint("measure.py", root), fingerprint("bench/a.cpp", root)
+            write({"other.py": "SECONDS = 2\n"})
+            self.assertEqual(fingerprint("measure.py", root), script)
+            write({"session.py": "SECONDS = 2\n", "rooms/session.py": "SECONDS = 2\n", "bench/b.hpp": "int c;"})
+            self.assertNotEqual(fingerprint("measure.py", root), script)
+            self.assertEqual(fingerprint("times/measure.py", root), fingerprint("measure.py", root))
+            self.assertNotEqual(fingerprint("bench/a.cpp", root), source)
 
 
 if __name__ == "__main__":
