@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace {
 
