@@ -17,9 +17,8 @@ from dataclasses import dataclass
 sys.dont_write_bytecode = True
 from measured_session import (BIN, REFRESH, SCENE, START_SECONDS, Failed, Helper, Load, Parser, circles, processor, session,
                               smaller, stop_on_signals, write_csv)
-import open_mpi
-import rank_hosts
-from command_line import within
+from base.command_line import within
+from job import open_mpi, rank_hosts
 
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
             "sandwall-latency-floor")

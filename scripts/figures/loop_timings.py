@@ -17,7 +17,7 @@ import tempfile
 sys.dont_write_bytecode = True  # writes no files into the project's folder
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 import measured_session
-from command_line import Parser, above
+from base.command_line import Parser, above
 from latency import WALLS
 
 # Edges of the histogram of periods between two ticks [us]; the target is 1000.

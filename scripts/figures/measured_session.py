@@ -15,10 +15,8 @@ from dataclasses import dataclass
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import command_line
-import events
-import layout
-import session_results
+from ask import session_results
+from base import command_line, events, layout
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = layout.bin_folder()

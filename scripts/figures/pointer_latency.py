@@ -19,9 +19,9 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import events
-import session_results
-from command_line import above, at_least
+from ask import session_results
+from base import events
+from base.command_line import above, at_least
 from latency import pm
 from measured_session import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
 from x_server import XServer

@@ -14,7 +14,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-from command_line import BAD_INPUT, Parser
+from base.command_line import BAD_INPUT, Parser
 from report_check import check
 from report_measure import Measuring, expected, minutes, state_of, total
 from report_page import write_page

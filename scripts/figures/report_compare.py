@@ -13,7 +13,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-from command_line import Parser
+from base.command_line import Parser
 from report_check import is_compared, same
 from report_data import TableFault, keys_of, markdown
 from report_page import read_tables

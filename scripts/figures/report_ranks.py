@@ -13,9 +13,9 @@ import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import layout
-import session_results
-from command_line import Parser
+from ask import session_results
+from base import layout
+from base.command_line import Parser
 from measured_session import processor, write_csv
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]

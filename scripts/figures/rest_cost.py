@@ -18,9 +18,8 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import events
-import layout
-from command_line import above, at_least
+from base import events, layout
+from base.command_line import above, at_least
 from measured_session import ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
 
 HERTZ = os.sysconf("SC_CLK_TCK")

@@ -19,9 +19,9 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import layout
-import session_results
-from command_line import Parser
+from ask import session_results
+from base import layout
+from base.command_line import Parser
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PROGRAMS = {"sandwall-render-node": "rank", "sandwall-master": "master", "sandwall-haptic-server": "haptic server"}

@@ -28,9 +28,9 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import session_control
-from command_line import Parser, above
-from rank_hosts import BadInput
+from ask import session_control
+from base.bad_input import BadInput
+from base.command_line import Parser, above
 from wall_rates import ROOT, swaying_head
 
 LONGEST_FRAME = 120  # for which an answer is awaited [s]

@@ -9,9 +9,8 @@ from unittest import mock
 
 from supervisor_fixture import Supervised
 
-import console
-import job_log
-import open_mpi
+from base import console
+from job import job_log, open_mpi
 
 
 class FullDisk(Supervised):
@@ -56,7 +55,7 @@ class FullDisk(Supervised):
 
 class LogWithoutDisk(unittest.TestCase):
     def test_a_job_runs_although_no_file_can_be_made_for_its_output(self):
-        said = mock.patch("job_stream.print_line")
+        said = mock.patch("job.job_stream.print_line")
         said.start()
         self.addCleanup(said.stop)
         log = job_log.JobLog("/nowhere", 1, open_mpi.OpenMpi4("4.1.4"))

@@ -14,8 +14,7 @@ import unittest
 from unittest import mock
 
 from launcher_fixture import ROOT, LauncherTest
-import examined_host
-import first_frame
+from hosts import examined_host, first_frame
 
 # Every host is this machine. The name of a host selects its fault.
 AGENT = """#!/bin/sh

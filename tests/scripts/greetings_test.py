@@ -10,10 +10,9 @@ import unittest
 from unittest import mock
 
 import launcher_fixture  # finds scripts/
-import examined_host
-import marked_answer
-import open_mpi
-import reachable
+from base import marked_answer
+from hosts import examined_host, reachable
+from job import open_mpi
 
 LONG = "x" * 10000
 # The text that a login prints before the command, and the text that it prints after the command.
@@ -101,9 +100,9 @@ class Greetings(unittest.TestCase):
         self.assertGreater(min(reachable.REACH_SECONDS, examined_host.ANSWER_SECONDS), 30)
         for environment in ({}, {"OMPI_MCA_plm_rsh_agent": "ssh -p 2222"}):
             self.assertIn("ConnectTimeout=20", open_mpi.remote_shell(environment), "a host that is off is given up earlier")
-        with mock.patch.dict(os.environ, SILENT="1", BEFORE="Good morning\n"), mock.patch("reachable.REACH_SECONDS", 30):
+        with mock.patch.dict(os.environ, SILENT="1", BEFORE="Good morning\n"), mock.patch("hosts.reachable.REACH_SECONDS", 30):
             self.assertEqual(reachable.ask(["host"], self.node).complaints, {})
-        with mock.patch.dict(os.environ, SILENT="1000", BEFORE="Good morning\n"), mock.patch("reachable.REACH_SECONDS", 0.2):
+        with mock.patch.dict(os.environ, SILENT="1000", BEFORE="Good morning\n"), mock.patch("hosts.reachable.REACH_SECONDS", 0.2):
             self.assertIn("no answer within 0.2 s", reachable.ask(["host"], self.node).complaints["host"])
 
     def test_a_host_that_answers_after_a_silence_is_named_and_then_taken(self):
@@ -113,7 +112,7 @@ class Greetings(unittest.TestCase):
             named.append(hosts)
             speaks.touch()
         for before in ("", LONG):
-            with mock.patch.dict(os.environ, UNTIL=str(speaks), BEFORE=before), mock.patch("reachable.SILENT_SECONDS", 0):
+            with mock.patch.dict(os.environ, UNTIL=str(speaks), BEFORE=before), mock.patch("hosts.reachable.SILENT_SECONDS", 0):
                 found = reachable.ask(["host"], self.node, say_silent=say_silent)
             self.assertEqual((found.complaints, found.identities["host"]), ({}, reachable.identity_here()))
             speaks.unlink()

@@ -13,12 +13,7 @@ from unittest import mock
 
 from supervisor_fixture import Supervised
 
-import bounded_log
-import job_guard
-import job_outlet
-import job_stream
-import open_mpi
-import processes
+from job import bounded_log, job_guard, job_outlet, job_stream, open_mpi, processes
 
 MIB = 1 << 20
 
@@ -57,7 +52,7 @@ class BoundedLog(Folder):
         self.assertEqual(self.path.read_bytes(), line(0) + line(1))
 
     def test_the_first_and_the_newest_lines_of_a_long_log_are_kept(self):
-        with mock.patch("bounded_log.MOST_BYTES", 10000):
+        with mock.patch("job.bounded_log.MOST_BYTES", 10000):
             log = self.log()
             for number in range(5000):
                 log.write(line(number))
@@ -81,7 +76,7 @@ class BoundedLog(Folder):
         self.assertEqual(nothing.why, "")
 
     def test_the_file_of_a_rank_is_shortened_too(self):
-        with mock.patch("bounded_log.MOST_BYTES", 100000):
+        with mock.patch("job.bounded_log.MOST_BYTES", 100000):
             stream = job_stream.RankStream(str(self.path), mock.Mock(), open_mpi.OpenMpi5("5.0.7"), 1)
             count = 0
             for number in range(20000):

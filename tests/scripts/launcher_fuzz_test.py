@@ -27,23 +27,15 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 sys.dont_write_bytecode = True
 
-import console  # noqa: E402
-import doctor  # noqa: E402
-import events  # noqa: E402
-import examined_host  # noqa: E402
-import job_log  # noqa: E402
-import open_mpi  # noqa: E402
-import process_failure  # noqa: E402
 import programs  # noqa: E402
-import rank_hosts  # noqa: E402
-import session_control  # noqa: E402
-import session_folder  # noqa: E402
-import session_report  # noqa: E402
-import session_results  # noqa: E402
-import spare_hosts  # noqa: E402
-import supervisor  # noqa: E402
+from ask import session_control, session_report, session_results  # noqa: E402
+from base import console, events, session_folder  # noqa: E402
+from base.bad_input import BadInput  # noqa: E402
+from hosts import doctor, examined_host  # noqa: E402
+from job import job_log, open_mpi, rank_hosts  # noqa: E402
 from json_mutator import changed_bytes, changed_json, changed_value  # noqa: E402
 from sample_summary import SUMMARY  # noqa: E402
+from watch import process_failure, spare_hosts, supervisor  # noqa: E402
 
 SEED = 20261125
 INPUTS = 1000  # for each reader
@@ -80,7 +72,7 @@ def refused():
     """Accepts BadInput of one line."""
     try:
         yield
-    except rank_hosts.BadInput as complaint:
+    except BadInput as complaint:
         require_line(str(complaint))
 
 
@@ -96,7 +88,7 @@ class Folder:
     def supervisor(self):
         options = argparse.Namespace(restarts=1000, restart_window=60, resume=False)
         hosts = spare_hosts.SessionHosts(["node01", "node02"], [], "node", "4.1.4")
-        with mock.patch("supervisor.Input"):
+        with mock.patch("watch.supervisor.Input"):
             one = supervisor.Supervisor(self.path, hosts, open_mpi.OpenMpi4("4.1.4"), None, None, "none", options, mock.Mock(count=0))
         one.logs = self.log
         return one
@@ -175,7 +167,7 @@ def answer_of_master(folder, text):
     ours, theirs = socket.socketpair()
     theirs.sendall(text[:1 << 15])
     theirs.shutdown(socket.SHUT_WR)
-    with mock.patch("session_control.connect", lambda *_: ours), theirs, refused():
+    with mock.patch("ask.session_control.connect", lambda *_: ours), theirs, refused():
         session_control.ctl(argparse.Namespace(session=str(folder.path), words=["status"]))
 
 
@@ -205,11 +197,11 @@ def versions(_, text):
 def hosts_file(folder, text):
     path = folder.path / "hosts"
     path.write_bytes(text)
-    with mock.patch("rank_hosts.addresses", return_value=[]), refused():  # a name that no server knows takes a second
+    with mock.patch("job.rank_hosts.addresses", return_value=[]), refused():  # a name that no server knows takes a second
         rank_hosts.hosts_of_file(path, 2)
         rank_hosts.spares_of_file(path)
         rank_hosts.slots_of_file(path)
-    with mock.patch("rank_hosts.addresses", return_value=[]), refused():
+    with mock.patch("job.rank_hosts.addresses", return_value=[]), refused():
         rank_hosts.hosts_of_wall(text.decode(errors="replace"), "wall.toml")
 
 

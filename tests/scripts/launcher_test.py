@@ -12,9 +12,9 @@ from unittest import mock
 
 from launcher_fixture import LauncherTest
 
-import environment
 import pointer
-from rank_hosts import BadInput
+from base import environment
+from base.bad_input import BadInput
 
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"

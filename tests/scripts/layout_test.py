@@ -13,8 +13,8 @@ import unittest
 
 from launcher_fixture import ROOT, LauncherTest
 
-import layout
-from rank_hosts import BadInput
+from base import layout
+from base.bad_input import BadInput
 
 
 class Names(unittest.TestCase):
@@ -60,9 +60,7 @@ class InstalledTree(LauncherTest):
         super().setUp()
         self.prefix = self.folder / "prefix"
         self.private = self.prefix / "lib" / "sandwall"
-        (self.private / "python").mkdir(parents=True)
-        for file in [ROOT / "scripts" / "launcher" / "sandwall", *(ROOT / "scripts" / "launcher").glob("*.py")]:
-            shutil.copy(file, self.private / "python")
+        shutil.copytree(ROOT / "scripts" / "launcher", self.private / "python", ignore=shutil.ignore_patterns("samples", "__pycache__"))
         for file in (self.folder / "bin").iterdir():
             shutil.copy(file, self.private)
         for kind in ("walls", "scenes"):

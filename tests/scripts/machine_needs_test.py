@@ -9,7 +9,7 @@ import unittest
 from unittest import mock
 
 from launcher_fixture import ROOT, LauncherTest
-import machine_needs
+from hosts import machine_needs
 
 DF = "Filesystem     1024-blocks  Used Available Capacity Mounted on\ntmpfs                {}     0      {}       0% {}\n"
 

@@ -14,8 +14,7 @@ from unittest import mock
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts" / "launcher"))
 sys.dont_write_bytecode = True
-import mpirun_end
-import processes
+from job import mpirun_end, processes
 
 SECONDS = 0.5
 # Each begins as a shell and becomes a program that waits for no child: the child that ends stays a zombie.
@@ -94,10 +93,10 @@ class EndWatch(unittest.TestCase):
     def setUp(self):
         self.now = 1000.0
         self.shown = {}
-        patched = mock.patch("mpirun_end.process", lambda pid: self.shown.get(pid))
+        patched = mock.patch("job.mpirun_end.process", lambda pid: self.shown.get(pid))
         patched.start()
         self.addCleanup(patched.stop)
-        patched = mock.patch("mpirun_end.running_child", lambda parent: next(
+        patched = mock.patch("job.mpirun_end.running_child", lambda parent: next(
             (pid for pid, found in self.shown.items() if found.parent == parent and found.runs()), None))
         patched.start()
         self.addCleanup(patched.stop)

@@ -20,7 +20,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 
-from command_line import Parser, above, at_least, within
+from base.command_line import Parser, above, at_least, within
 
 NOT_FINITE = ("nan", "NaN", "-nan", "inf", "-inf", "Infinity", "1e999")
 OPTION = re.compile(r'add_argument\("(--[a-z-]+)", type=([^\n]+)')

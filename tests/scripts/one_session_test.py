@@ -14,7 +14,7 @@ from unittest import mock
 
 from launcher_fixture import LauncherTest
 
-import session_folder
+from base import session_folder
 
 MPIRUN = """#!/bin/sh
 echo "mpirun $*"
@@ -63,7 +63,7 @@ class FolderInUse(unittest.TestCase):
         self.first = self.enterContext(contextlib.ExitStack())
         self.first.enter_context(session_folder.held(self.folder))
         clock = mock.Mock(**{"monotonic.side_effect": lambda: self.now, "sleep.side_effect": self.sleep})
-        self.enterContext(mock.patch("session_folder.time", clock))
+        self.enterContext(mock.patch("base.session_folder.time", clock))
 
     def sleep(self, seconds):
         self.now += seconds

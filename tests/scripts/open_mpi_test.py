@@ -11,11 +11,10 @@ import zlib
 from unittest import mock
 
 import launcher_fixture  # finds scripts/
-import job_log
-import job_stream
-import open_mpi
+from base.bad_input import BadInput
+from job import job_log, job_stream, open_mpi
+from job.rank_hosts import HERE
 from launcher_fixture import LauncherTest
-from rank_hosts import HERE, BadInput
 
 FOUR, FIVE = open_mpi.OpenMpi4("4.1.4"), open_mpi.OpenMpi5("5.0.7")
 
@@ -168,7 +167,7 @@ class Output(unittest.TestCase):
         self.shown = []
         for stream in self.log.streams:
             stream.shown = mock.Mock(line=self.shown.append)
-        for mocked in (mock.patch("console.ERROR", self.log.err.shown), mock.patch("job_log.print_line")):
+        for mocked in (mock.patch("base.console.ERROR", self.log.err.shown), mock.patch("job.job_log.print_line")):
             self.said = mocked.start()
             self.addCleanup(mocked.stop)
 

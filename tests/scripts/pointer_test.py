@@ -14,7 +14,7 @@ import pointer_fixture
 from pointer_fixture import launch
 
 import desk  # noqa: E402  (its folder is named by pointer_fixture)
-from rank_hosts import BadInput  # noqa: E402
+from job.rank_hosts import BadInput  # noqa: E402
 
 TILE = (160, 120)  # [pixel]
 # Four windows. Three are without gaps on one display, and that in the south-east is on a display of its own. The bezels

@@ -13,10 +13,10 @@ import unittest
 
 from launcher_fixture import BIN, ROOT, LauncherTest
 
-import program_options
-from command_line import Parser
-from program_options import MASTER, NODE, PROGRAMS, SERVER
-from rank_hosts import BadInput
+from base import program_options
+from base.bad_input import BadInput
+from base.command_line import Parser
+from base.program_options import MASTER, NODE, PROGRAMS, SERVER
 
 
 def good_value(option):

@@ -8,8 +8,9 @@ import unittest
 from unittest import mock
 
 import launcher_fixture  # finds scripts/
-import rank_hosts
-from rank_hosts import HERE
+from base.bad_input import BadInput
+from job import rank_hosts
+from job.rank_hosts import HERE
 
 
 class HostsOfWall(unittest.TestCase):
@@ -22,7 +23,7 @@ class HostsOfWall(unittest.TestCase):
 
     def test_a_name_that_ssh_or_mpirun_would_misread_is_refused(self):
         for name in ("-oProxyCommand=x", "a,b", "a:2", "a/b", "a;b", "x" * 300):
-            with self.assertRaisesRegex(rank_hosts.BadInput, "wall.toml: '.*' is not a host name"):
+            with self.assertRaisesRegex(BadInput, "wall.toml: '.*' is not a host name"):
                 rank_hosts.hosts_of_wall(name, "wall.toml")
 
 
@@ -39,7 +40,7 @@ class ThisMachine(unittest.TestCase):
             return found[1][0] in ("127.0.0.1", "127.0.1.1", own_address)
         rank_hosts.addresses.cache_clear()
         with mock.patch("socket.gethostname", return_value=own), mock.patch("socket.getaddrinfo", resolve), \
-                mock.patch("rank_hosts.is_own", is_own):
+                mock.patch("job.rank_hosts.is_own", is_own):
             return rank_hosts.is_here(listed)
 
     def test_short_and_full_names_are_this_machine(self):
@@ -76,7 +77,7 @@ class HostsOfFile(unittest.TestCase):
             file.flush()
             try:
                 return rank_hosts.hosts_of_file(file.name, ranks)
-            except rank_hosts.BadInput as complaint:
+            except BadInput as complaint:
                 return str(complaint).replace(file.name, "FILE")
 
     def test_ranks_fill_the_slots_in_order(self):
@@ -113,11 +114,11 @@ class HostsOfFile(unittest.TestCase):
         with tempfile.NamedTemporaryFile("wb", suffix=".hosts") as file:
             file.write(b"node01\n\0node02\n")
             file.flush()
-            with self.assertRaisesRegex(rank_hosts.BadInput, r"\.hosts:2: a byte 0 is inside the text"):
+            with self.assertRaisesRegex(BadInput, r"\.hosts:2: a byte 0 is inside the text"):
                 rank_hosts.hosts_of_file(file.name, 1)
 
     def test_a_file_that_is_not_there_is_named(self):
-        with self.assertRaisesRegex(rank_hosts.BadInput, "--hosts /nowhere: cannot be read"):
+        with self.assertRaisesRegex(BadInput, "--hosts /nowhere: cannot be read"):
             rank_hosts.hosts_of_file("/nowhere", 1)
 
 
@@ -127,7 +128,7 @@ class Network(unittest.TestCase):
 
     def test_anything_else_is_refused(self):
         for text in ("", "10.0.0.1", "eth0", "10.0.0.0/33", "10.0.0/24", "10.0.0.0/24,lo"):
-            with self.assertRaisesRegex(rank_hosts.BadInput, f"--network: '{text}' is not a network"):
+            with self.assertRaisesRegex(BadInput, f"--network: '{text}' is not a network"):
                 rank_hosts.checked_network(text)
 
 

@@ -13,11 +13,10 @@ from unittest import mock
 
 from supervisor_fixture import HOST, Supervised
 
-import events
-import job_log
-import open_mpi
-import reachable
-import supervisor
+from base import events
+from hosts import reachable
+from job import job_log, open_mpi
+from watch import supervisor
 
 
 class Restarts(Supervised):

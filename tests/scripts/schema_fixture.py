@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCHEMAS = ROOT / "docs" / "schemas"
 sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
 
-import events
+from base import events
 
 WALL = """[viewer]
 eye = [0.0, 1.6, 2.0]

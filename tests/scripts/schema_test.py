@@ -15,7 +15,7 @@ import jsonschema
 
 from schema_fixture import ROOT, SCHEMAS, SchemaTest, SessionTest, load
 
-import session_results
+from ask import session_results
 
 
 class RealSessions(SessionTest):

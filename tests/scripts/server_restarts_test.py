@@ -9,9 +9,8 @@ from unittest import mock
 
 from supervisor_fixture import Supervised
 
-import job_log
-import open_mpi
-import supervisor
+from job import job_log, open_mpi
+from watch import supervisor
 
 SERVER = """#!/bin/bash
 folder=$(dirname "$0")/..

@@ -10,7 +10,7 @@ import unittest
 from launcher_fixture import ROOT
 from supervisor_fixture import HOST, Supervised
 
-import session_control
+from ask import session_control
 
 
 class Ctl(Supervised):

@@ -15,10 +15,10 @@ from unittest import mock
 from launcher_fixture import ROOT
 from supervisor_fixture import Supervised
 
-import processes
-import session_folder
-import session_results
-from rank_hosts import BadInput
+from ask import session_results
+from base import session_folder
+from base.bad_input import BadInput
+from job import processes
 
 
 NOBODY = 65534

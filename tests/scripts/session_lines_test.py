@@ -9,9 +9,8 @@ import launcher_fixture  # finds the modules of the launcher
 from sample_summary import (DARK, HEAD, OUTCOMES, RECOVERY, REFUSALS, SAMPLES, SERVER_DIED, SUMMARY, changed, film, outcomes, rank,
                             without_hand)
 
-import session_lines
-import session_rules
-from session_lines import BAD, GOOD, NOTE, UNMEASURED
+from ask import session_lines, session_rules
+from ask.session_lines import BAD, GOOD, NOTE, UNMEASURED
 
 
 class Lines(unittest.TestCase):

@@ -12,9 +12,8 @@ import unittest
 from launcher_fixture import ROOT, LauncherTest
 from sample_summary import SUMMARY, changed, film, without_hand
 
-import json_schema
-import session_report
-import session_rules
+from ask import session_report, session_rules
+from base import json_schema
 
 SLOW = changed(seconds=20.0, fps=30.0)
 WRONG = changed(volume_final=891)

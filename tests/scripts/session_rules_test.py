@@ -10,7 +10,7 @@ import jsonschema
 from launcher_fixture import ROOT
 from sample_summary import SAMPLES, SERVER_DIED
 
-import session_rules
+from ask import session_rules
 
 SCHEMA = json.loads((ROOT / "docs" / "schemas" / "summary.schema.json").read_text())
 
@@ -74,8 +74,8 @@ class EveryField(unittest.TestCase):
         for field in FIELDS:
             readers = [rule.name for rule in session_rules.RULES if any(covers(path, field) for path in rule.fields)]
             reasons = [path for path in session_rules.UNREAD if covers(path, field)]
-            self.assertTrue(readers or reasons, f"{field}: no line of the report reads it; add it to a Rule or to UNREAD in scripts/launcher/session_rules.py")
-            self.assertFalse(readers and reasons, f"{field}: read by {readers}, and called unread in scripts/launcher/session_rules.py")
+            self.assertTrue(readers or reasons, f"{field}: no line of the report reads it; add it to a Rule or to UNREAD in scripts/launcher/ask/session_rules.py")
+            self.assertFalse(readers and reasons, f"{field}: read by {readers}, and called unread in scripts/launcher/ask/session_rules.py")
 
     def test_each_path_in_the_list_is_a_field(self):
         for path in [*session_rules.UNREAD, *(path for rule in session_rules.RULES for path in rule.fields)]:
@@ -109,7 +109,7 @@ class Page(unittest.TestCase):
     def test_the_table_of_the_page_is_the_list(self):
         page = (ROOT / "docs" / "summary.md").read_text()
         self.assertIn("\n" + session_rules.table() + "\n", page,
-                      "docs/summary.md has another table; put the output of scripts/launcher/session_rules.py there")
+                      "docs/summary.md has another table; put the output of scripts/launcher/ask/session_rules.py there")
 
     def test_the_page_to_read_next_exists(self):
         for rule in session_rules.RULES:

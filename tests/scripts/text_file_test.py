@@ -10,7 +10,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
-import text_file  # noqa: E402
+from base import text_file  # noqa: E402
 
 CASES = json.loads((ROOT / "tests/base/text_cases.json").read_text())
 

@@ -9,7 +9,7 @@ import unittest
 
 from launcher_fixture import ROOT, LauncherTest
 
-import this_machine
+from hosts import this_machine
 
 # Draws with the backends in $BACKENDS. Its first option is --version or --probe.
 NODE = """#!/bin/sh

@@ -34,7 +34,7 @@ exec sh -c "$*"
 # A host that answers none of its first questions. The file `comes` has the number of the first that it answers.
 MUTE = LATE.replace('{ echo "ssh: connect to host late1 port 22: Connection refused" >&2; exit 255; }', "exec sleep 1000")
 # Runs the launcher with another limit, in a process of its own.
-WITH = "import runpy, sys, reachable; reachable.{}; sys.argv = sys.argv[1:]; runpy.run_path(sys.argv[0], run_name='__main__')"
+WITH = "import runpy, sys; from hosts import reachable; reachable.{}; sys.argv = sys.argv[1:]; runpy.run_path(sys.argv[0], run_name='__main__')"
 
 
 class WaitForWall(Supervised):

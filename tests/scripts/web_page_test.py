@@ -16,9 +16,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts" / "launcher"))
-import web_files  # noqa: E402
-import web_page  # noqa: E402
-from rank_hosts import BadInput  # noqa: E402
+from job.rank_hosts import BadInput  # noqa: E402
+from page import web_files, web_page  # noqa: E402
 
 FIRST, SECOND = b"SWJL first", b"SWJL second"  # parts of a journal begin with this word
 

@@ -15,7 +15,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SCRIPTS / "launcher"), str(SCRIPTS / "checks")]
 import draw
 import table
-from command_line import Parser
+from base.command_line import Parser
 from workspace import ROOT, DoesNotCompile, Workspace
 
 TABLES = ROOT / "tests" / "mutations"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts the outcomes of ticks in which the law asks for force, on a whole server under a virtual clock. The report's
-// line `force` judges these counts (scripts/launcher/session_lines.py).
+// line `force` judges these counts (scripts/launcher/ask/session_lines.py).
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -8,7 +8,7 @@
 
 #include "tests/support/processes/run_program.hpp"
 
-/// mpirun for tests that start a job themselves. scripts/launcher/open_mpi.py has the same knowledge for sessions.
+/// mpirun for tests that start a job themselves. scripts/launcher/job/open_mpi.py has the same knowledge for sessions.
 namespace support {
 
 /// Returns whether mpirun of this machine is of Open MPI 5.
