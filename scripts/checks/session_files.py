@@ -27,7 +27,7 @@ from ask import session_control
 from base import command_line, events, layout
 from base.bad_input import BadInput
 from job import processes
-from session_cost import WALL
+from sessions.session_cost import WALL
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_SECONDS = 120

@@ -99,7 +99,7 @@ class Launcher(unittest.TestCase):
 class Scripts(unittest.TestCase):
     def test_every_option_that_takes_a_number_refuses_what_is_not_finite(self):
         found = scripts_with_numbers()
-        self.assertIn(("scripts/figures/latency.py", "--warm-up"), found)
+        self.assertIn(("scripts/figures/sessions/latency.py", "--warm-up"), found)
         for file, option in found:
             for text in ("nan", "-inf"):
                 ended = subprocess.run([sys.executable, str(ROOT / file), f"{option}={text}"], text=True, capture_output=True,

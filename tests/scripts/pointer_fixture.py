@@ -16,9 +16,9 @@ import picture_files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / room) for room in ("figures", "launcher")]
-import x_server  # noqa: E402
 from ask import session_control  # noqa: E402
 from base import events  # noqa: E402
+from sessions import x_server  # noqa: E402
 
 BIN = pathlib.Path(os.environ.get("SANDWALL_BIN", ROOT / "build" / "release" / "bin"))
 PATIENCE = 120  # seconds for work that takes a few seconds on an idle machine

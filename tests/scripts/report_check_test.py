@@ -13,8 +13,8 @@ import tempfile
 import unittest
 
 from report_run import LONGEST, Report  # first, because it finds the modules of the report
-from report_check import is_compared
-from report_parts import PARTS, ROOT, fingerprint
+from report.report_check import is_compared
+from report.report_parts import PARTS, ROOT, fingerprint
 
 
 class Check(Report):
@@ -77,7 +77,7 @@ class Compare(Report):
         for folder, error, times in ((first, "0.1", "5,4,6"), (second, "0.2", "7,5.5,8")):
             folder.mkdir()
             (folder / "t.csv").write_text(f"N,error,ms_median,ms_min,ms_max\n8,{error},{times}\n16,0.5,{times}\n")
-        command = [sys.executable, str(ROOT / "scripts" / "figures" / "report_compare.py"), str(first), str(second)]
+        command = [sys.executable, str(ROOT / "scripts" / "figures" / "report" / "report_compare.py"), str(first), str(second)]
         ran = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST, check=False)
         self.assertEqual(ran.stdout.splitlines()[2:], ["| t | 8 | error | 0.1 | 0.2 |"], ran.stderr)
         (second / "t.csv").write_text("N,error,ms_median,ms_min,ms_max\n8,0.1,7,6.5,8\n")

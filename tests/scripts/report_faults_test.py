@@ -14,10 +14,10 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from report_tables import DATA, Altered  # first, because it finds the modules of the report
-from report_data import Table
-from report_page import page
-from report_parts import PARTS
-from report_text import SECTIONS
+from report.report_data import Table
+from report.report_page import page
+from report.report_parts import PARTS
+from report.report_text import SECTIONS
 
 EXTREMES = """world,scheme,band,columns,rows,talus,sweeps,at_rest,moved,outflow,lost,measure,start,excess,bound,stays,why
 "talus 0°, rough",G,0,31,33,0,2000,1,1662,0,0,face,641,4,4,0,"a quarter"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A report of made-up parts, for tests: it runs scripts/figures/report.py as scripts/report.sh does.
+"""A report of made-up parts, for tests: it runs scripts/figures/report/report.py as scripts/report.sh does.
 
 usage: report_fixture.py ROOT [OPTIONS OF report.sh]
 
@@ -13,11 +13,11 @@ import sys
 sys.dont_write_bytecode = True
 REPOSITORY = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(REPOSITORY / "scripts" / folder) for folder in ("figures", "launcher")]
-import report  # noqa: E402
-from report_claims import times  # noqa: E402
-from report_data import markdown  # noqa: E402
-from report_parts import Part  # noqa: E402
-from report_text import Section  # noqa: E402
+from report import report  # noqa: E402
+from report.report_claims import times  # noqa: E402
+from report.report_data import markdown  # noqa: E402
+from report.report_parts import Part  # noqa: E402
+from report.report_text import Section  # noqa: E402
 
 NAMES = ("first", "second", "third", "fourth", "fifth")
 # Writes errors that depend on N, and times that differ in each run. The file NAME.does says what a part does: it waits, fails,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs of scripts/figures/report.py with a made-up benchmark, for tests."""
+"""Runs of scripts/figures/report/report.py with a made-up benchmark, for tests."""
 
 import pathlib
 import subprocess

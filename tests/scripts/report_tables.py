@@ -7,8 +7,8 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts" / folder) for folder in ("figures", "launcher")]
-from report_data import Table, keys_of  # noqa: E402
-from report_text import SECTIONS  # noqa: E402
+from report.report_data import Table, keys_of  # noqa: E402
+from report.report_text import SECTIONS  # noqa: E402
 
 DATA = ROOT / "docs" / "report" / "data"
 

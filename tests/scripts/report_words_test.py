@@ -13,11 +13,11 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from report_tables import DATA, Altered, Tables  # first, because it finds the modules of the report
-from report_claims import listing
-from report_data import Table, TableFault
-from report_page import builds_of
-from report_parts import PRESETS
-from report_text import SECTIONS, Section
+from report.report_claims import listing
+from report.report_data import Table, TableFault
+from report.report_page import builds_of
+from report.report_parts import PRESETS
+from report.report_text import SECTIONS, Section
 
 # Words of a sentence that claims a result.
 CLAIMS = re.compile(r"\b(never|always|every|converges?|orders?|whatever|no matter|however long|cannot|exactly|nearly|"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Words of the report that depend on figures."""
 
-from report_data import rounded
+from report.report_data import rounded
 
 
 def listing(words):

@@ -8,7 +8,7 @@ With --tin: digs in a height field and in TINs in turns. The first rows are fram
 of a wall of one tile, whose rank has a core as on a cluster, and of the whole wall. The other rows are times of a frame. One
 is the processor time of a rank for the sand and the busiest tile. The other is of a session as fast as the machine can.
 
-usage: scripts/figures/wall_rates.py [--tin] [--seconds S]   (takes six minutes, or fifteen with --tin; the machine should be idle otherwise)
+usage: scripts/figures/sessions/wall_rates.py [--tin] [--seconds S]   (takes six minutes, or fifteen with --tin; the machine should be idle otherwise)
 """
 
 import json
@@ -22,12 +22,12 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_results
 from base import layout
 from base.command_line import Parser, above
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = ROOT / "build" / "release" / "bin"
 WALL = ROOT / "walls" / "configs" / "tiled_3x4.toml"
 WARM_UP = 5  # time at the start that does not count, because shaders are compiled and frame times settle [s]

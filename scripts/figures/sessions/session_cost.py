@@ -5,7 +5,7 @@
 Runs sessions of each build in turns, with a wall of two ranks and a recorded hand. Prints a table of medians. BIN is a
 build's folder of programs; the scripts/sandwall of its own source folder starts them.
 
-usage: scripts/figures/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs 5]
+usage: scripts/figures/sessions/session_cost.py BIN [BIN ...] [--scene FILE] [--steps 60] [--runs 5]
 """
 
 import os
@@ -18,12 +18,12 @@ import tempfile
 import time
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_results
 from base import layout
 from base.command_line import Parser
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 PROGRAMS = {"sandwall-render-node": "rank", "sandwall-master": "master", "sandwall-haptic-server": "haptic server"}
 POLL = 0.02  # s
 WALL = """[viewer]

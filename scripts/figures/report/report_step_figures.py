@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The figures of docs/report about steps, forces and TINs. Each function takes a table and returns a matplotlib figure."""
 
-from report_data import IN_TIME
-from report_plot import MARKERS, PILES, SERIES, label, legend_below, panels, percents, sizes_on
+from report.report_data import IN_TIME
+from report.report_plot import MARKERS, PILES, SERIES, label, legend_below, panels, percents, sizes_on
 
 
 def edit(table):

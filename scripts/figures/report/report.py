@@ -13,13 +13,13 @@ import subprocess
 import sys
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base.command_line import BAD_INPUT, Parser
-from report_check import check
-from report_measure import Measuring, expected, minutes, state_of, total
-from report_page import write_page
-from report_parts import PARTS, PRESETS, ROOT, release
-from report_text import SECTIONS
+from report.report_check import check
+from report.report_measure import Measuring, expected, minutes, state_of, total
+from report.report_page import write_page
+from report.report_parts import PARTS, PRESETS, ROOT, release
+from report.report_text import SECTIONS
 
 INTERRUPTED = 130
 

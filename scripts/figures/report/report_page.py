@@ -6,9 +6,9 @@ A section whose tables are missing or faulty is replaced by one line that names 
 
 import os
 
-from report_data import Table, TableFault, markdown
-from report_measure import minutes, total
-from report_parts import Old, release
+from report.report_data import Table, TableFault, markdown
+from report.report_measure import minutes, total
+from report.report_parts import Old, release
 
 HEAD = """# Report: run time and error of the sand
 
@@ -176,9 +176,8 @@ def page(out, draw, sections, parts, why=None, now=None):
 
 def draw_figure(name, table, file):
     """Draws the figure `name` of report_pile_figures or report_step_figures into a file."""
-    import report_pile_figures  # these need matplotlib, which the text does not
-    import report_step_figures
-    from report_plot import plt
+    from report import report_pile_figures, report_step_figures  # these need matplotlib, which the text does not
+    from report.report_plot import plt
     functions = {**vars(report_pile_figures), **vars(report_step_figures)}
     figure = functions[name](table)
     try:

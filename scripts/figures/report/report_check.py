@@ -9,9 +9,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from measured_session import die_with_parent
-from report_data import Table, TableFault
-from report_measure import state_of
+from report.report_data import Table, TableFault
+from report.report_measure import state_of
+from sessions.measured_session import die_with_parent
 
 LONGEST = 120  # [s], of one part
 # Columns that depend on the clock, on the number of runs or on the compiler. All others are compared.

@@ -5,7 +5,7 @@
 Runs the haptic server and a wall of one small tile for a minute, while the hand digs without end. Prints histograms of the
 period between two ticks and of the time of one force, and the share of missed deadlines.
 
-usage: scripts/figures/loop_timings.py [--seconds 60] [--scene scenes/sandbox.toml]   (leave the machine alone meanwhile)
+usage: scripts/figures/sessions/loop_timings.py [--seconds 60] [--scene scenes/sandbox.toml]   (leave the machine alone meanwhile)
 """
 
 import csv
@@ -15,10 +15,10 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True  # writes no files into the project's folder
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import measured_session
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base.command_line import Parser, above
-from latency import WALLS
+from sessions import measured_session
+from sessions.latency import WALLS
 
 # Edges of the histogram of periods between two ticks [us]; the target is 1000.
 PERIODS = [0, 500, 900, 990, 1010, 1100, 1500, 2000, 5000, 20000]

@@ -4,7 +4,7 @@
 import os
 import subprocess
 
-from measured_session import die_with_parent
+from sessions.measured_session import die_with_parent
 
 END_SECONDS = 30
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on arms, forces and the time from hand to wall. Every result in it comes from the tables."""
 
-from latency import HEADER as LATENCY_HEADER, cells as latency_cells
-from report_claims import count_of, listing, times
-from report_data import markdown, percent
+from report.report_claims import count_of, listing, times
+from report.report_data import markdown, percent
+from sessions.latency import HEADER as LATENCY_HEADER, cells as latency_cells
 
 MOST_TRIED = 1e6  # [N/m], the stiffest law that the curve `stability` tries
 

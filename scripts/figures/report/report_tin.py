@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on TINs. Every result in it comes from the tables."""
 
-from report_claims import count_of
-from report_data import markdown, percent, seconds
+from report.report_claims import count_of
+from report.report_data import markdown, percent, seconds
 
 
 def tin_piles(tables):

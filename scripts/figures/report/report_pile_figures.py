@@ -3,8 +3,8 @@
 
 from matplotlib.ticker import FuncFormatter
 
-from report_data import frontier, held, usual_size
-from report_plot import MARKERS, PILES, SERIES, STYLES, label, legend_below, panels, percents, sizes_on
+from report.report_data import frontier, held, usual_size
+from report.report_plot import MARKERS, PILES, SERIES, STYLES, label, legend_below, panels, percents, sizes_on
 
 
 def pile_figure(draw, columns=4):

@@ -5,7 +5,7 @@
 Runs one session of each build after the other, without a hand. BIN is a build's folder of programs; the scripts/sandwall of its
 own source folder starts them. Prints a table in Markdown. docs/figures.md has one.
 
-usage: scripts/figures/rest_cost.py BIN [BIN ...] [--seconds 600] [--settle 5]
+usage: scripts/figures/sessions/rest_cost.py BIN [BIN ...] [--seconds 600] [--settle 5]
 """
 
 import json
@@ -17,10 +17,10 @@ import tempfile
 import time
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base import events, layout
 from base.command_line import above, at_least
-from measured_session import ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
+from sessions.measured_session import ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
 
 HERTZ = os.sysconf("SC_CLK_TCK")
 

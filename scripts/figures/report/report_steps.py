@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on steps, pictures and builds. Every number and every result in it comes from the tables."""
 
-from report_claims import count_of, listing, times
-from report_data import IN_TIME, markdown, percent, rounded
-from report_parts import PRESETS
+from report.report_claims import count_of, listing, times
+from report.report_data import IN_TIME, markdown, percent, rounded
+from report.report_parts import PRESETS
 
 
 def edit(tables):

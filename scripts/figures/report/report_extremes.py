@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on sand at the ends of its ranges. The verdicts are made from the figures of the table."""
 
-from report_claims import count_of, listing
-from report_data import markdown, rounded
+from report.report_claims import count_of, listing
+from report.report_data import markdown, rounded
 
 MEASURES = {"slope": "slope over the talus", "face": "difference over the talus", "thickness": "thickness"}
 

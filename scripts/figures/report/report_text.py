@@ -4,12 +4,12 @@
 from dataclasses import dataclass
 from typing import Callable, Optional
 
-import report_piles as piles
-import report_steps as steps
-from report_data import TableFault
-from report_extremes import extremes
-from report_haptics import force_rate, force_work, latency, stability
-from report_tin import tin_piles, tin_simplify, tin_tool
+from report import report_piles as piles
+from report import report_steps as steps
+from report.report_data import TableFault
+from report.report_extremes import extremes
+from report.report_haptics import force_rate, force_work, latency, stability
+from report.report_tin import tin_piles, tin_simplify, tin_tool
 
 
 @dataclass

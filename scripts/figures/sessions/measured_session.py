@@ -14,11 +14,11 @@ import time
 from dataclasses import dataclass
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_results
 from base import command_line, events, layout
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 BIN = layout.bin_folder()
 SCENE = ROOT / "scenes" / "sandbox.toml"
 START_SECONDS = 120  # longest start of a session, on a busy machine

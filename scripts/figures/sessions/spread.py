@@ -15,7 +15,7 @@ edits               dunes of 2048 x 2048 cells on rock, without a hand: `materia
 Prints the longest frame, the samples of the hand that are in no step, and by how much the tool is slower than the hand. With
 --before ROOT the sessions of an earlier build run in turns with those of build/release.
 
-usage: scripts/figures/spread.py ROW [--before ROOT] [--seconds S]   (the machine should be idle otherwise)
+usage: scripts/figures/sessions/spread.py ROW [--before ROOT] [--seconds S]   (the machine should be idle otherwise)
 """
 
 import json
@@ -27,11 +27,11 @@ import threading
 import time
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_control
 from base.bad_input import BadInput
 from base.command_line import Parser, above
-from wall_rates import ROOT, swaying_head
+from sessions.wall_rates import ROOT, swaying_head
 
 LONGEST_FRAME = 120  # for which an answer is awaited [s]
 PERIOD = 1 / 60  # of the wall [s]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs whole sessions of 60 steps over several render ranks, and replays their journals. Writes both hashes as CSV.
 
-usage: scripts/figures/report_ranks.py [--walls 1x1,2x2,3x4] [--out FILE.csv]
+usage: scripts/figures/report/report_ranks.py [--walls 1x1,2x2,3x4] [--out FILE.csv]
 """
 
 import pathlib
@@ -12,13 +12,13 @@ import sys
 import tempfile
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_results
 from base import layout
 from base.command_line import Parser
-from measured_session import processor, write_csv
+from sessions.measured_session import processor, write_csv
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
 def wall(text):

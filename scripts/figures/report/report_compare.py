@@ -5,18 +5,18 @@
 Rows of the same keys are compared. Errors, sweeps and hashes differ if they are not the same. A time differs if the ranges
 from the least to the most do not meet; a time without such a range is not compared.
 
-usage: scripts/figures/report_compare.py DATA DATA
+usage: scripts/figures/report/report_compare.py DATA DATA
 """
 
 import pathlib
 import sys
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base.command_line import Parser
-from report_check import is_compared, same
-from report_data import TableFault, keys_of, markdown
-from report_page import read_tables
+from report.report_check import is_compared, same
+from report.report_data import TableFault, keys_of, markdown
+from report.report_page import read_tables
 
 
 def ranges_meet(a, b, column):

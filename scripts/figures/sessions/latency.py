@@ -15,10 +15,11 @@ import tempfile
 from dataclasses import dataclass
 
 sys.dont_write_bytecode = True
-from measured_session import (BIN, REFRESH, SCENE, START_SECONDS, Failed, Helper, Load, Parser, circles, processor, session,
-                              smaller, stop_on_signals, write_csv)
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from base.command_line import within
 from job import open_mpi, rank_hosts
+from sessions.measured_session import (BIN, REFRESH, SCENE, START_SECONDS, Failed, Helper, Load, Parser, circles, processor,
+                                       session, smaller, stop_on_signals, write_csv)
 
 PROGRAMS = ("sandwall-haptic-server", "sandwall-master", "sandwall-render-node", "sandwall-check", "sandwall-impaired-link",
             "sandwall-latency-floor")

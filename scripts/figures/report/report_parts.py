@@ -7,11 +7,11 @@ import re
 from dataclasses import dataclass
 from typing import Optional
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 RELEASE = "build/release/bin"
 PRESETS = ("release", "golden-clang-O3", "golden-g++-O0", "golden-g++-O2", "golden-clang-O0")  # builds whose hashes are compared
 # Comments of a script, and the lines that say where files are.
-PLACES = r"^\s*#[^\n]*|^(?:from|import) (?:[^\n(]*\([^)]*\)|[^\n]*)|^sys\.path[^\n]*|^[^\n]*__file__[^\n]*"
+PLACES = r"^(?:\s*#[^\n]*|(?:from|import) (?:[^\n(]*\([^)]*\)|[^\n]*)|sys\.path[^\n]*|[^\n]*__file__[^\n]*)?\n"
 
 
 @dataclass
@@ -83,9 +83,9 @@ PARTS = [
     Part("tin-active", "--sizes 500 --runs 10", "--sizes 200 --runs 3", (15, 2), f"{TIN}/tin_curves.cpp", check="--sizes 500 --runs 10"),
     Part("detail", "--sizes 1024,2048 --runs 10 --frames 12", "--sizes 2048 --runs 3 --frames 4", (240, 15), "bench/draw/detail_bench.cpp",
          program=f"{RELEASE}/detail_bench", command=""),
-    Part("ranks", "--walls 1x1,2x2,3x4", None, (60, 0), "scripts/figures/report_ranks.py", program="scripts/figures/report_ranks.py",
-         command="", check="--walls 1x1"),
-    Part("latency", "--seconds 10", None, (420, 0), "scripts/figures/latency.py", check=""),
+    Part("ranks", "--walls 1x1,2x2,3x4", None, (60, 0), "scripts/figures/report/report_ranks.py",
+         program="scripts/figures/report/report_ranks.py", command="", check="--walls 1x1"),
+    Part("latency", "--seconds 10", None, (420, 0), "scripts/figures/sessions/latency.py", check=""),
 ]
 
 

@@ -9,9 +9,9 @@ import subprocess
 import tempfile
 import time
 
-from measured_session import die_with_parent
-from report_data import Table, TableFault
-from report_parts import ROOT, algorithm_version, fingerprint, release, why_old
+from report.report_data import Table, TableFault
+from report.report_parts import ROOT, algorithm_version, fingerprint, release, why_old
+from sessions.measured_session import die_with_parent
 
 LEAST_FREE = 16 << 20  # [byte], free space below which no part begins
 SAYS_EVERY = 30  # [s], time between two lines of a long part

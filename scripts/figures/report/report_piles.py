@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Text of the report on piles in the grid. Every number and every result in it comes from the tables."""
 
-from report_claims import compared, convergence, growth, listing, count_of, times
-from report_data import held, least_seconds, markdown, percent, seconds, usual_size
+from report.report_claims import compared, convergence, count_of, growth, listing, times
+from report.report_data import held, least_seconds, markdown, percent, seconds, usual_size
 
 PUBLIC = ["float32 N4 in place", "float32 N4 Jacobi", "float32 N8 Jacobi", "float32 N8 sqrt2 Jacobi"]
 OURS = ["G", "settle"]

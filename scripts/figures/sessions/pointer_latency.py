@@ -18,13 +18,13 @@ import tempfile
 import time
 
 sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / room) for room in ("figures", "launcher")]
 from ask import session_results
 from base import events
 from base.command_line import above, at_least
-from latency import pm
-from measured_session import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
-from x_server import XServer
+from sessions.latency import pm
+from sessions.measured_session import BIN, ROOT, START_SECONDS, Failed, Parser, die_with_parent, processor
+from sessions.x_server import XServer
 
 SIZE = (1280, 720)  # pixels of walls/configs/desktop.toml
 SCREEN = (1600, 900)  # the first size of a window is at most 90 % of its screen
