@@ -25,7 +25,7 @@ SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_
 # A few sessions, for the parts of the programs that no unit test reaches.
 SESSIONS = "cluster_tests Lockstep.*:Resuming.*:WrongServer.*:Devices.*"
 # Python tests that start neither sessions nor windows.
-SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
+SCRIPT_TESTS = re.compile(r"^sandwall_python_test\(([\w/]+) LABELS unit", re.MULTILINE)
 
 
 class TableBug:
@@ -119,11 +119,11 @@ def tests_for(name, programs):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
         units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
         return [*units, SESSIONS]
-    files = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
+    paths = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
     stem = pathlib.PurePath(name).stem
     module = re.compile(rf"\b{stem}\b")
-    return [f"{file}.py" for file in sorted(files, key=lambda file: (
-        file != f"{stem}_test", not module.search((ROOT / "tests" / "scripts" / f"{file}.py").read_text())))]
+    return [f"{path.rpartition('/')[2]}.py" for path in sorted(paths, key=lambda path: (
+        not path.endswith(f"/{stem}_test"), not module.search((ROOT / "tests" / "scripts" / f"{path}.py").read_text())))]
 
 
 def parse(arguments):

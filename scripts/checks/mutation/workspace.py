@@ -93,11 +93,11 @@ class Workspace:
     def run(self, test, limit=LONGEST):
         """Runs a test and returns the name of its first failure, or None if it passes.
 
-        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of tests/scripts.
+        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of a folder in tests/scripts.
         """
         program, _, which = test.partition(" ")
         if program.endswith(".py"):
-            command = ["python3", str(self.folder / "tests" / "scripts" / program), *which.split(), "--failfast"]
+            command = ["python3", str(next((self.folder / "tests" / "scripts").rglob(program))), *which.split(), "--failfast"]
         else:
             command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]
         start = time.monotonic()
