@@ -100,8 +100,8 @@ def release(root=ROOT):
 def fingerprint(source, root=ROOT):
     """Returns a hash of the code that measures.
 
-    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts of its folder, or of one
-    beside it, that it imports.
+    This code is the file, the files of bench/ and tests/support/ that it includes, and the scripts that it imports. A
+    script is in the folder of the importing one, or in one beside it.
 
     Comments, spaces and the places of files do not count, so a table stays valid when sources move. The lists of curves and
     the writer of tables do not count either.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What every room uses: options, the console, events, files of others, and the folders of sources and sessions."""
+"""Holds what the other rooms use: options, console, events, and the folders of sources and sessions."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the launcher says to the user and ends with: bad input, and what may still come."""
+"""Errors that the launcher prints before it ends: bad input, and things that may still come."""
 
 from base import checked_json
 

@@ -19,12 +19,15 @@ import product  # noqa: E402
 PROJECT = layers.Project.of(ROOT, BUILD)
 
 
-def changed(more):
-    """Returns the faults of the project with changed or additional sources. A text of None removes a source."""
+def changed(more, others=()):
+    """Returns the faults of the project with changed or additional sources. A text of None removes a source.
+
+    `others` are additional sources in other languages.
+    """
     project = copy.deepcopy(PROJECT)
     sources = {**project.sources, **more}
     sources = {path: text for path, text in sources.items() if text is not None}
-    other = layers.Project(sources, project.targets)
+    other = layers.Project(sources, project.targets, [*project.others, *others])
     return layers.faults(other)
 
 
@@ -121,8 +124,17 @@ class Layers(unittest.TestCase):
         self.assertEqual(changed(including("tests/sand/grid/settle_test.cpp", name)), [])
 
     def test_a_crowded_folder_is_named(self):
-        more = {f"examples/much/part_{i}.cpp": "" for i in range(layers.MOST_SOURCES + 1)}
-        self.assertEqual(changed(more), ["examples/much: holds 26 sources, more than 25; divide it"])
+        numbers = range(layers.MOST_SOURCES + 1)
+        for ending in ("cpp", "hpp"):
+            self.assertEqual(changed({f"examples/much/part_{i}.{ending}": "" for i in numbers}),
+                             [f"examples/much: holds 26 sources *.{ending}, more than 25; divide it"])
+        for ending in layers.OTHER_LANGUAGES:
+            self.assertEqual(changed({}, [f"examples/much/part_{i}.{ending}" for i in numbers]),
+                             [f"examples/much: holds 26 sources *.{ending}, more than 25; divide it"])
+
+    def test_a_header_and_its_source_count_once(self):
+        pairs = {f"examples/much/part_{i}.{ending}": "" for i in range(layers.MOST_SOURCES) for ending in ("cpp", "hpp")}
+        self.assertEqual(changed(pairs), [])
 
     def test_a_source_of_no_library_is_named(self):
         self.assertEqual(changed({"dust/grain.cpp": ""}),
