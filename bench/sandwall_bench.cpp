@@ -148,7 +148,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     host::CommandLine line("Measures the sand: errors, sweeps and times, as CSV.", "sandwall-bench");
-    if (argc > 1 && std::string_view(argv[1]) == "latency") {  // scripts/figures/latency.py reads the options
+    if (argc > 1 && std::string_view(argv[1]) == "latency") {  // scripts/figures/sessions/latency.py reads the options
         return host::runMain(line, 1, argv, [&]() -> int { bench::becomeLatency({argv + 2, argv + argc}); });
     }
     const std::vector<Curve> curves = allCurves();

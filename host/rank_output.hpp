@@ -8,9 +8,9 @@
 ///
 /// Under Open MPI 5 the standard error of a rank is a file. The launcher reads the files of its own host. A rank of
 /// another host also sends its lines through mpirun, which may cut and mix them. So such a line carries the rank, its
-/// length and a checksum, and the launcher leaves out what does not fit (scripts/launcher/job_stream.py).
-/// scripts/launcher/open_mpi.py sets the variables. A rank on another host has SANDWALL_RELAY, the descriptor of the
-/// way through mpirun, and SANDWALL_RANK_LOG, the path of its file. A rank on the launcher's host has
+/// length and a checksum, and the launcher leaves out what does not fit (scripts/launcher/job/job_stream.py).
+/// scripts/launcher/job/open_mpi.py sets the variables. A rank on another host has SANDWALL_RELAY, the descriptor of
+/// the way through mpirun, and SANDWALL_RANK_LOG, the path of its file. A rank on the launcher's host has
 /// SANDWALL_RELAY_LOST in their place. It sends only the lines that its file does not take, such as those about a full
 /// disk.
 namespace host {

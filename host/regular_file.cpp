@@ -57,7 +57,7 @@ std::string whyUnsafeEntry(const std::filesystem::path& entry) {
     if (lstat(entry.c_str(), &about) != 0) {
         return "";
     }
-    // scripts/launcher/session_folder.py has the same messages.
+    // scripts/launcher/base/session_folder.py has the same messages.
     if (S_ISLNK(about.st_mode)) {
         return entry.string() +
                ": is a link, and a session follows none in its folder; remove it, or choose another --out";

@@ -107,7 +107,7 @@ void endWithParent();
 
 [[nodiscard]] std::string hostName();
 /// Returns the name of this machine and the id of its last start, "node01/3f2a…". No two machines have the same, also
-/// if their names are equal. scripts/launcher/reachable.py makes the same text.
+/// if their names are equal. scripts/launcher/hosts/reachable.py makes the same text.
 [[nodiscard]] std::string machineId();
 /// Returns the resident memory of this process [byte].
 [[nodiscard]] std::int64_t residentBytes();

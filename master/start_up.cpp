@@ -56,7 +56,7 @@ void requireFolder(const std::filesystem::path& out) {
     if (std::filesystem::exists(out, none) && !std::filesystem::is_directory(out, none)) {
         throw base::InputError(fmt::format("{}: is not a folder, and --out must be one; choose another", out.string()));
     }
-    // scripts/launcher/session_folder.py has the same check and messages.
+    // scripts/launcher/base/session_folder.py has the same check and messages.
     if (const std::string why = host::whyUnsafeFolder(out); !why.empty()) {
         throw base::InputError(fmt::format("{}: {}; {}choose another --out", out.string(), why,
                                            why.starts_with("other users") ? "run chmod go-w on it, or " : ""));

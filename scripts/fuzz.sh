@@ -60,7 +60,7 @@ done
 if [[ -n $launcher ]]; then
     log=$corpus/launcher.log
     findings=0
-    SANDWALL_SEED=$(date +%s) python3 tests/scripts/launcher_fuzz_test.py "$seconds" >"$log" || findings=$(grep -c '^SANDWALL_SEED' "$log" || true)
+    SANDWALL_SEED=$(date +%s) python3 tests/scripts/launcher/launcher_fuzz_test.py "$seconds" >"$log" || findings=$(grep -c '^SANDWALL_SEED' "$log" || true)
     executions=$(sed -n 's/^.*: \([0-9]*\) inputs;.*/\1/p' "$log" | awk '{ sum += $1 } END { print sum }')
     echo "| launcher | $seconds | ${executions:-?} | | $findings |"
     if [[ $findings -gt 0 || -z $executions ]]; then

@@ -10,7 +10,7 @@ set -euo pipefail
 cd -P "$(dirname "$0")/.."
 here=$(python3 -c 'import os, re; print(re.escape(os.getcwd()))')
 
-# Matches every compiled source outside build/. tests/scripts/lint_test.py compares them with the folders.
+# Matches every compiled source outside build/. tests/scripts/checks/lint_test.py compares them with the folders.
 every_source="^$here/(?!build/)"
 selected=()
 for file in "$@"; do

@@ -12,4 +12,4 @@
 # 130 after Ctrl-C.
 set -euo pipefail
 # Debian's own interpreter, because another python3 may come first in PATH, without Debian's matplotlib.
-exec /usr/bin/python3 "$(dirname "$0")/figures/report.py" "$@"
+exec /usr/bin/python3 "$(dirname "$0")/figures/report/report.py" "$@"

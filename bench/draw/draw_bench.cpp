@@ -9,7 +9,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sample_scene.hpp"
+#include "tests/support/pictures/sample_scene.hpp"
 
 namespace {
 

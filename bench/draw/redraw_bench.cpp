@@ -62,7 +62,7 @@ std::vector<std::unique_ptr<Tile>> tilesOf(const walls::Wall& wall, const scene:
 }
 
 /// Returns the hand after `seconds`. It digs rings of all sizes, half a radius deep, at half a side per second, as the
-/// stroke list of scripts/figures/wall_rates.py does.
+/// stroke list of scripts/figures/sessions/wall_rates.py does.
 sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double seconds) {
     double left = 0.5 * seconds;
     double radius = 0.6;

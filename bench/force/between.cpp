@@ -7,7 +7,7 @@
 #include "bench/report/curves.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "tests/haptic_bridge/loop/logging_arm.hpp"
-#include "tests/support/hand_in_sand.hpp"
+#include "tests/support/hand/hand_in_sand.hpp"
 
 namespace bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "bench/report/curves.hpp"
 #include "tests/haptic_bridge/loop/strong_arm.hpp"
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace bench {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "bench/report/curves.hpp"
 #include "bench/report/timing.hpp"
-#include "tests/support/border_experiments.hpp"
+#include "tests/support/borders/border_experiments.hpp"
 
 namespace bench {
 namespace {

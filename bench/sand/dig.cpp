@@ -8,7 +8,7 @@
 #include "bench/report/timing.hpp"
 #include "bench/sand/dig_lag.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace bench {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Brings sand at the ends of its ranges to rest: sweeps, volume, and the largest excess over the talus.
 #include "bench/report/curves.hpp"
-#include "tests/support/extreme_worlds.hpp"
+#include "tests/support/sand/extreme_worlds.hpp"
 
 namespace bench {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sand/model/height_field.hpp"
-#include "tests/support/oracles.hpp"
+#include "tests/support/sand/oracles.hpp"
 
 namespace bench {
 

@@ -11,8 +11,8 @@
 #include "bench/report/curves.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/arm_loop.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_loop.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace bench {
 namespace {

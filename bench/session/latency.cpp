@@ -13,7 +13,7 @@
 namespace bench {
 
 void becomeLatency(const std::vector<std::string>& arguments) {
-    std::vector<std::string> words{"python3", SANDWALL_SOURCE_DIR "/scripts/figures/latency.py"};
+    std::vector<std::string> words{"python3", SANDWALL_SOURCE_DIR "/scripts/figures/sessions/latency.py"};
     if (!std::filesystem::exists(words[1])) {
         throw base::InputError(words[1] + ": does not exist; run sandwall-bench on the machine that built it");
     }

@@ -6,8 +6,8 @@
 #include "bench/report/timing.hpp"
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
-#include "tests/support/oracles.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace bench {
 namespace {

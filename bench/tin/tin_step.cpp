@@ -10,7 +10,7 @@
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace bench {
 namespace {

@@ -11,8 +11,8 @@ namespace render_node {
 /// thread, with its context current.
 ///
 /// llvmpipe fills pixels in threads of its own, but begins only at a flush. Calling glFlush() early lets it fill pixels
-/// while this thread prepares the next triangles. With it, `draw_ms` of scripts/figures/pointer_latency.py --json fell
-/// from 13.5 to 9.9 ms (median). Whole pictures (bench/draw) took the same time as before.
+/// while this thread prepares the next triangles. With it, `draw_ms` of scripts/figures/sessions/pointer_latency.py
+/// --json fell from 13.5 to 9.9 ms (median). Whole pictures (bench/draw) took the same time as before.
 ///
 /// llvmpipe keeps some 270 bytes for each triangle, and much more for each draw call, until it fills pixels. It keeps
 /// them in scenes of 36 MB that it never returns: a field of 512 × 512 cells held 110 MB. Calling glFinish() more often

@@ -4,7 +4,7 @@ file(WRITE ${OUTPUT}.new "// Generated from render_node/shaders.\n#include \"ren
     "namespace render_node {\nconst std::vector<ShaderSource>& shaderSources() {\n"
     "    static const std::vector<ShaderSource> sources{\n")
 foreach(path IN LISTS FILES)
-    get_filename_component(name ${path} NAME)
+    file(RELATIVE_PATH name ${CMAKE_CURRENT_LIST_DIR} ${path})
     file(READ ${path} text)
     file(APPEND ${OUTPUT}.new "{\"${name}\", R\"glsl(${text})glsl\"},\n")
 endforeach()

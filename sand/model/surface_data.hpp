@@ -27,7 +27,7 @@ struct TinData {
 
 /// The sand as drawing, forces and exports read it: a height field or a TIN.
 ///
-/// Only a few source files may ask which of the two it is; tests/scripts/kinds_of_sand_test.py lists them.
+/// Only a few source files may ask which of the two it is; tests/scripts/checks/kinds_of_sand_test.py lists them.
 using SurfaceData = std::variant<GridData, TinData>;
 
 /// Change of a height field.

@@ -30,7 +30,7 @@ import time
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
 import docs_blocks
-from command_line import Parser
+from base.command_line import Parser
 from docs_blocks import BIN, ROOT
 
 PR_SET_CHILD_SUBREAPER = 36

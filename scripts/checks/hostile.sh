@@ -77,7 +77,7 @@ end_session() {
 import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, "scripts/launcher")
-import session_results
+from ask import session_results
 file, name, before, after, replayed = sys.argv[1:]
 told = session_results.read_summary(file)
 ms = told["frame_ms"]
@@ -121,7 +121,7 @@ kill "$server"; wait "$server" || true; server=
 SANDWALL_EVENTS=1 "$bin/sandwall-hostile" --scene "$scene" --frames "$([[ -n $secret ]] && echo 30 || echo "$frames")" --seed "$seed" \
     "${link[@]}" >"$folder/false.log" 2>"$folder/false.events" &
 false_server=$!
-address=$(python3 scripts/launcher/events.py "$folder/false.events" listening address)
+address=$(python3 scripts/launcher/base/events.py "$folder/false.events" listening address)
 start_session "against-master" "$address"
 wait "$false_server"
 end_session "against-master"

@@ -7,13 +7,14 @@ a header, so it may only include headers of libraries that its library links PUB
 a circle, and a folder's own files are above its subfolders: they may include these, and these never include them, not even
 through other folders. This also holds in bench/ and tests/. A source is in the folder of the header that it implements.
 A header with the line `// Private to this folder.` is only included from its folder and from its tests. A folder holds at
-most 25 sources. A header that declares one type, and no function, is named by it. A namespace is that of the top folder,
+most 25 sources of one language. A header that declares one type, and no function, is named by it. A namespace is that of the top folder,
 with sand::grid, sand::tin, sand::force and scene::relax.
 
 usage: scripts/checks/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
 """
 
 import argparse
+import collections
 import hashlib
 import json
 import os
@@ -24,6 +25,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_SOURCES = 25
+OTHER_LANGUAGES = ("py", "sh", "mjs", "ts", "glsl")
 PRIVATE = "// Private to this folder."
 OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
 # Folders of a module alone. It may include what the library that loads it may include.
@@ -37,8 +39,9 @@ OF_THE_TOP = ("sand/force/force_constants.hpp",)
 class Project:
     """The sources by path, and the targets that cmake/Layers.cmake has written."""
 
-    def __init__(self, sources, targets):
+    def __init__(self, sources, targets, others=()):
         self.sources = sources  # {path: text}
+        self.others = others  # paths of the sources in other languages
         self.includes = {path: [name for name in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE) if name in sources]
                          for path, text in sources.items()}
         objects = {name: target for name, target in targets.items() if target["type"] == "OBJECT_LIBRARY"}
@@ -61,9 +64,12 @@ class Project:
 
     @classmethod
     def of(cls, root, build):
-        listed = subprocess.run(["git", "ls-files", "*.cpp", "*.hpp"], cwd=root, capture_output=True, check=True, text=True)
-        sources = {path: (root / path).read_text() for path in listed.stdout.split()}
-        return cls(sources, json.loads((build / "layers.json").read_text()))
+        def listed(*patterns):
+            return subprocess.run(["git", "ls-files", *patterns], cwd=root, capture_output=True, check=True, text=True).stdout.split()
+
+        sources = {path: (root / path).read_text() for path in listed("*.cpp", "*.hpp")}
+        others = listed(*(f"*.{ending}" for ending in OTHER_LANGUAGES))
+        return cls(sources, json.loads((build / "layers.json").read_text()), others)
 
     def target_of(self, path):
         """Returns the library that a file is part of, or None if no folder above it has a library."""
@@ -139,13 +145,14 @@ def misplaced(project):
 
 
 def crowded(project):
-    count = {}
-    for path in project.sources:
-        if path.endswith(".cpp"):
-            count[os.path.dirname(path)] = count.get(os.path.dirname(path), 0) + 1
-    for folder, sources in sorted(count.items()):
+    count = collections.Counter()
+    for path in (*project.sources, *project.others):
+        stem, ending = os.path.splitext(path)
+        if ending != ".hpp" or stem + ".cpp" not in project.sources:  # a header and its source count once
+            count[os.path.dirname(path), ending] += 1
+    for (folder, ending), sources in sorted(count.items()):
         if sources > MOST_SOURCES:
-            yield f"{folder}: holds {sources} sources, more than {MOST_SOURCES}; divide it"
+            yield f"{folder}: holds {sources} sources *{ending}, more than {MOST_SOURCES}; divide it"
 
 
 def circles(project):

@@ -20,16 +20,12 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import events
-import layout
-import processes
-import session_control
-import session_report
-import session_results
-import session_rules
-from command_line import Parser, above
-from rank_hosts import BadInput
-from session_lines import BAD
+from ask import session_control, session_report, session_results, session_rules
+from ask.session_lines import BAD
+from base import events, layout
+from base.bad_input import BadInput
+from base.command_line import Parser, above
+from job import processes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SIGNALS = ("KILL", "SEGV", "ABRT", "TERM", "BUS", "STOP")

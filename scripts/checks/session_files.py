@@ -23,13 +23,11 @@ import time
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "figures"))
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import command_line
-import events
-import layout
-import processes
-import session_control
-from rank_hosts import BadInput
-from session_cost import WALL
+from ask import session_control
+from base import command_line, events, layout
+from base.bad_input import BadInput
+from job import processes
+from sessions.session_cost import WALL
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_SECONDS = 120

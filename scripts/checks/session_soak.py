@@ -18,10 +18,10 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import layout
-import processes
-import session_results
-from command_line import Parser, above, at_least
+from ask import session_results
+from base import layout
+from base.command_line import Parser, above, at_least
+from job import processes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 NAMES = ("mpirun", "prterun", "sandwall-master", "sandwall-render-node", "sandwall-haptic-server")

@@ -18,10 +18,9 @@ import time
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-import events
-import layout
-import processes
-from command_line import Parser
+from base import events, layout
+from base.command_line import Parser
+from job import processes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PATIENCE_SECONDS = 300

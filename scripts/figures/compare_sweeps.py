@@ -20,8 +20,8 @@ import tempfile
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-from command_line import BAD_INPUT, Parser, at_least, within
-from report_data import Table
+from base.command_line import BAD_INPUT, Parser, at_least, within
+from report.report_data import Table
 
 PATHS = ("baseline", "x86-64-v3", "x86-64-v4")
 SAND = {"G": "all moves", "G band": "all moves, band", "G lumps": "lumps", "G lumps band": "lumps, band"}

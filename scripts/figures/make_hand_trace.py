@@ -12,7 +12,7 @@ import sys
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "launcher"))
-from command_line import Parser, above
+from base.command_line import Parser, above
 
 STROKES = pathlib.Path(__file__).resolve().parents[2] / "haptic_bridge" / "devices" / "gis.strokes"
 

@@ -4,9 +4,8 @@
 usage: sandwall complete [COMMAND [OPTION]]   (not in --help)
 """
 
-import console
-import program_options
 import programs
+from base import console, program_options
 
 
 def of_parser(parser):

@@ -3,10 +3,8 @@
 
 import subprocess
 
-import checked_json
-import layout
-import marked_answer
-from rank_hosts import BadInput
+from base import checked_json, layout, marked_answer
+from base.bad_input import BadInput
 
 
 LONGEST_PROBE = 60  # [s], of a render node that opens one window

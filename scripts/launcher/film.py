@@ -5,9 +5,8 @@ import pathlib
 import shutil
 import subprocess
 
-import console
-import marked_answer
-from rank_hosts import BadInput
+from base import console, marked_answer
+from base.bad_input import BadInput
 
 PATTERN = "frame_%06d.png"  # the names that the master gives to the pictures
 FRAMES = "frame_[0-9]*.png"

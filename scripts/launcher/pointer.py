@@ -6,10 +6,10 @@ import pathlib
 import shlex
 
 import desk
-import layout
-import screens
-from console import print_line
-from rank_hosts import BadInput
+from base import layout
+from base.bad_input import BadInput
+from base.console import print_line
+from job import screens
 
 DEVICE = "pointer"
 ELSEWHERE = ("run `try` in a terminal of a desktop; without one, `run --gl osmesa` draws in memory, and "

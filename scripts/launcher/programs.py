@@ -5,11 +5,9 @@ import json
 import pathlib
 import subprocess
 
-import checked_json
-import console
-import layout
-from layout import program
-from rank_hosts import BadInput
+from base import checked_json, console, layout
+from base.bad_input import BadInput
+from base.layout import program
 
 FAILED = 1
 # Programs that `sandwall NAME` starts. The other programs are started by `run` and `film`.

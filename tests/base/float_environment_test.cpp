@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/float_register.hpp"
-#include "tests/support/other_floats.hpp"
+#include "tests/support/machine/other_floats.hpp"
 
 namespace {
 

@@ -42,7 +42,7 @@ std::vector<std::string> linesOfPieces(const std::string& bytes, std::size_t mos
     return linesOf(reader);
 }
 
-/// The table that tests/scripts/text_file_test.py reads, too.
+/// The table that tests/scripts/launcher/base/text_file_test.py reads, too.
 TEST(TextReader, ReadsEveryEncodingOfTheTableHoweverItIsCut) {
     std::ifstream file(SANDWALL_SOURCE_DIR "/tests/base/text_cases.json");
     const nlohmann::json cases = nlohmann::json::parse(file);

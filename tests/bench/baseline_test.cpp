@@ -9,8 +9,8 @@
 #include "bench/sand/integer_n4.hpp"
 #include "bench/sand/piles.hpp"
 #include "bench/sand/relaxations.hpp"
-#include "tests/support/reference_sweep.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/reference_sweep.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

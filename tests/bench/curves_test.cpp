@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

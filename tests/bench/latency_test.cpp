@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

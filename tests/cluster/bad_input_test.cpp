@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "host/memory.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/mpirun.hpp"
+#include "tests/support/processes/mpirun.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 
 #include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/small_disk.hpp"
+#include "tests/support/machine/small_disk.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

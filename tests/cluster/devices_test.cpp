@@ -9,7 +9,7 @@
 
 #include "scene/import/esri_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

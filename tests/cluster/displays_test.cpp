@@ -4,9 +4,9 @@
 #include "pictures/png_file.hpp"
 #include "pictures/stereo_packing.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/x_monitors.hpp"
-#include "tests/support/x_screen.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/screens/x_monitors.hpp"
+#include "tests/support/screens/x_screen.hpp"
+#include "tests/support/screens/x_server.hpp"
 
 namespace {
 

@@ -89,7 +89,7 @@ TEST_F(Drill, AHapticLinkThatIsSilentOrGarbledComesBackByItself) {
 
 using FloatEnvironment = SessionTest;
 
-// The driver changes the rounding of its rank at the start and in every frame (tests/support/rough_driver.cpp).
+// The driver changes the rounding of its rank at the start and in every frame (tests/support/machine/rough_driver.cpp).
 TEST_F(FloatEnvironment, ADriverThatChangesItIsReportedAndTheSandStaysTheSame) {
     environment_ = {"LD_PRELOAD=" + support::linkTo("rough-driver.so", folder_), "SANDWALL_ROUGH_RANK=2",
                     "SANDWALL_EVENTS=1"};

@@ -2,8 +2,8 @@
 #include <csignal>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/mpirun.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/mpirun.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

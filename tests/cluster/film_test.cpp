@@ -144,7 +144,7 @@ TEST_F(Film, ATruncatedJournalIsShownToItsLastWholeRecord) {
     EXPECT_EQ(frames(), (steps + 9) / 10);
 }
 
-// One journal that cannot be filmed. tests/master/pictures/film_test.cpp and tests/scripts/film_test.py test the other
+// One journal that cannot be filmed. tests/master/pictures/film_test.cpp and tests/scripts/launcher/film_test.py test the other
 // refusals.
 TEST_F(Film, RefusesADamagedJournalInOneLine) {
     const std::filesystem::path journal = journalCopy();

@@ -2,9 +2,9 @@
 #include <algorithm>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/events.hpp"
-#include "tests/support/mpirun.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/events.hpp"
+#include "tests/support/processes/mpirun.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 // Pictures are compared with EXPECT_TRUE, because EXPECT_EQ would print them as text.
 namespace {

@@ -4,7 +4,7 @@
 #include "base/not_yet_error.hpp"
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/mpirun.hpp"
+#include "tests/support/processes/mpirun.hpp"
 
 namespace {
 

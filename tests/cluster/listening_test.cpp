@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/mpirun.hpp"
+#include "tests/support/processes/mpirun.hpp"
 
 namespace {
 

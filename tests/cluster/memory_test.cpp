@@ -6,8 +6,8 @@
 #include <set>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/mpirun.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/processes/mpirun.hpp"
+#include "tests/support/screens/x_server.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include "base/not_yet_error.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/processes/run_program.hpp"
+#include "tests/support/screens/x_server.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

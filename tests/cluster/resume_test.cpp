@@ -13,7 +13,7 @@
 #include "master/journal/checkpoint.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 
@@ -157,7 +157,7 @@ protected:
         }
         return all;
     }
-    /// Sets the time of day of the master an hour ahead (tests/support/other_clock.cpp).
+    /// Sets the time of day of the master an hour ahead (tests/support/machine/other_clock.cpp).
     void setDateOfMasterAhead() {
         environment_ = {"LD_PRELOAD=" + support::linkTo("other-clock.so", folder_), "SANDWALL_CLOCK_RANK=0",
                         "SANDWALL_DATE_AHEAD=3600"};

@@ -4,7 +4,7 @@
 #include "pictures/compare.hpp"
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/wall_text.hpp"
+#include "tests/support/files/wall_text.hpp"
 #include "walls/canvas.hpp"
 
 namespace {

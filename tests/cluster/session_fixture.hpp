@@ -17,11 +17,11 @@
 #include <thread>
 #include <vector>
 
-#include "tests/support/child_process.hpp"
-#include "tests/support/control_client.hpp"
-#include "tests/support/events.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/child_process.hpp"
+#include "tests/support/processes/control_client.hpp"
+#include "tests/support/processes/events.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 inline constexpr double kLong = 120;      // [s], for work that takes a few seconds on an idle machine
 inline constexpr int kLevels = 8;         // largest difference of a channel in equal pictures

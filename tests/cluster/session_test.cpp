@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

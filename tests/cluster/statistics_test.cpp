@@ -7,8 +7,8 @@
 
 #include "pictures/png_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
-#include "tests/support/x_screen.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/screens/x_screen.hpp"
+#include "tests/support/screens/x_server.hpp"
 
 namespace {
 
@@ -143,7 +143,7 @@ protected:
     // The tests bound no real time: a session that ignores the clocks is wrong by this much.
     static constexpr double kAhead = 1000;  // [s]
 
-    /// Sets the clock of this rank ahead (tests/support/other_clock.cpp).
+    /// Sets the clock of this rank ahead (tests/support/machine/other_clock.cpp).
     void setAhead(int rank) {
         environment_ = {"LD_PRELOAD=" + support::linkTo("other-clock.so", folder_),
                         "SANDWALL_CLOCK_RANK=" + std::to_string(rank),

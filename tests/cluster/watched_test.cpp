@@ -12,8 +12,8 @@ protected:
     // [s] for a limit of 18 s: a watchdog that gets little of a busy machine counts only the time in which it runs.
     static constexpr double kLongest = 300;
 
-    /// Runs five frames on two tiles. `rank` hangs in `function` (tests/support/hang_at.cpp). The start may take
-    /// `startSeconds`: on a busy machine the ranks that do not hang need many seconds.
+    /// Runs five frames on two tiles. `rank` hangs in `function` (tests/support/machine/hang_at.cpp). The start may
+    /// take `startSeconds`: on a busy machine the ranks that do not hang need many seconds.
     Ended hang(int rank, const std::string& function, int startSeconds = 120, bool stopped = false) {
         environment_ = {"LD_PRELOAD=" + support::linkTo("hang-at.so", folder_),
                         "SANDWALL_HANG_RANK=" + std::to_string(rank), "SANDWALL_HANG_AT=" + function,

@@ -6,7 +6,7 @@
 #include "scene/load/scene_file.hpp"
 #include "tests/cluster/session_fixture.hpp"
 #include "tests/haptic_bridge/client/sand_server.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "tests/described/rank_types.hpp"
 #include "tests/described/samples.hpp"
 #include "tests/described/types.hpp"
-#include "tests/support/heap_count.hpp"
+#include "tests/support/machine/heap_count.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

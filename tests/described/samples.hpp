@@ -7,7 +7,7 @@
 
 #include "sand/tin/geometry/tin_start.hpp"
 #include "tests/described/filler.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 #include "walls/wall.hpp"
 
 namespace described {

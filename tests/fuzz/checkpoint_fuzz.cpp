@@ -6,7 +6,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 SANDWALL_FUZZER(checkpoint) {
     if (size == 0) {

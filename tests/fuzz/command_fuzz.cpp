@@ -6,7 +6,7 @@
 #include "sand/model/step.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/wall_check.hpp"
 

@@ -5,7 +5,7 @@
 #include "journal/memory_parts.hpp"
 #include "journal/recording.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "tests/fuzz/checksummed.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/scratch_folder.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 SANDWALL_FUZZER(saved) {
     if (size == 0) {

@@ -7,7 +7,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 SANDWALL_FUZZER(state) {
     if (size == 0) {

@@ -7,7 +7,7 @@
 #include "haptic_bridge/loop/tick_replay.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "scene/model/scene.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
 #include "tests/fuzz/plain_sand.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "tests/support/events.hpp"
+#include "tests/support/processes/events.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 
 #include "base/input_error.hpp"
 #include "host/build_id.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@
 
 #include "host/event.hpp"
 #include "host/print_line.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

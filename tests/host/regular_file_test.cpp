@@ -18,8 +18,8 @@
 
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 
 namespace {
 

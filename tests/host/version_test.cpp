@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host/build_id.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

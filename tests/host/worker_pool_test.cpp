@@ -15,9 +15,9 @@
 
 #include "base/float_environment.hpp"
 #include "sand/grid/erosion.hpp"
-#include "tests/support/other_floats.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/machine/other_floats.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

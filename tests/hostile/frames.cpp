@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace hostile {
 

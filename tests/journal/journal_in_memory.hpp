@@ -10,7 +10,7 @@
 
 #include "journal/memory_parts.hpp"
 #include "journal/reader.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
 

@@ -6,7 +6,7 @@
 
 #include "base/input_error.hpp"
 #include "tests/journal/journal_in_memory.hpp"
-#include "tests/support/overlong.hpp"
+#include "tests/support/files/overlong.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/input_error.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

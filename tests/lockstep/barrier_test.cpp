@@ -6,7 +6,7 @@
 #include <sstream>
 #include <string>
 
-#include "tests/support/run_ranks.hpp"
+#include "tests/support/processes/run_ranks.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tests/support/run_ranks.hpp"
+#include "tests/support/processes/run_ranks.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // The measurement of clocks between ranks that MPI has started.
 #include <gtest/gtest.h>
 
-#include "tests/support/run_ranks.hpp"
+#include "tests/support/processes/run_ranks.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include "sand/grid/dunes.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

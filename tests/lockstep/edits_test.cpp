@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "tests/support/run_ranks.hpp"
+#include "tests/support/processes/run_ranks.hpp"
 
 namespace {
 

@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "base/input_error.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/virtual_time.hpp"
+#include "tests/support/machine/virtual_time.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 
 namespace {
 

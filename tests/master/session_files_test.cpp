@@ -12,8 +12,8 @@
 #include "master/measure/incidents.hpp"
 #include "master/measure/recovery.hpp"
 #include "master/measure/summary.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 
 namespace {
 

@@ -9,10 +9,10 @@
 
 #include "master/journal/journal.hpp"
 #include "master/measure/recovery.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/no_steps.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/small_disk.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/machine/small_disk.hpp"
+#include "tests/support/sand/no_steps.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "base/not_yet_error.hpp"
 #include "host/build_id.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace {

@@ -12,8 +12,8 @@
 
 #include "base/input_error.hpp"
 #include "pictures/png_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tests/support/seed.hpp"
 
 namespace pictures {

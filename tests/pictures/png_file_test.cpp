@@ -12,8 +12,8 @@
 #include <string>
 
 #include "base/input_error.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 #include "tests/support/seed.hpp"
 
 namespace pictures {

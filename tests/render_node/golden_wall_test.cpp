@@ -12,9 +12,9 @@
 
 #include "pictures/png_file.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/golden_pictures.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/pictures/golden_pictures.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

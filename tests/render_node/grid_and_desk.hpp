@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "render_node/gl/gl_context.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 #include "walls/stereo_change.hpp"
 
 /// A small wall with screens in two planes, and the dunes that it shows. Tests of what viewers see share it.

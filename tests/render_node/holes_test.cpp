@@ -12,8 +12,8 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sample_scene.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/pictures/sample_scene.hpp"
 #include "walls/projection.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sample_scene.hpp"
+#include "tests/support/pictures/sample_scene.hpp"
 
 int main() try {
     const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);

@@ -10,7 +10,7 @@
 
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sample_scene.hpp"
+#include "tests/support/pictures/sample_scene.hpp"
 
 namespace {
 

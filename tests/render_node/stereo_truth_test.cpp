@@ -10,7 +10,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "pictures/compare.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

@@ -13,9 +13,9 @@
 
 #include "master/journal/journal.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/run_program.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
 

@@ -15,8 +15,8 @@
 #include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/replay/replay_fixture.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 
 #include "sand/grid/erosion.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace audits {
 

@@ -8,9 +8,9 @@
 
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

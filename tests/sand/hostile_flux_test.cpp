@@ -9,10 +9,10 @@
 
 #include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/hostile_sand.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/hostile_sand.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand of a height field that no session has made. tests/sand/tin/hostile_sand_test.cpp does the same with a TIN.
-#include "tests/support/hostile_sand.hpp"
+#include "tests/support/sand/hostile_sand.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,9 +11,9 @@
 
 #include "sand/model/ground.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/memory_limit.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/machine/memory_limit.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

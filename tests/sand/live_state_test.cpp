@@ -8,11 +8,11 @@
 
 #include "sand/replica.hpp"
 #include "tests/sand/spread/sessions.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/tin_scene.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include "host/worker_pool.hpp"
 #include "tests/sand/spread/sessions.hpp"
-#include "tests/support/border_scenes.hpp"
+#include "tests/support/borders/border_scenes.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -7,8 +7,8 @@
 #include "host/worker_pool.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

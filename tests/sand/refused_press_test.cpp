@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "sand/replica.hpp"
-#include "tests/support/high_sand.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/sand/high_sand.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace {
 

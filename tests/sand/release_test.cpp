@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "sand/replica.hpp"
-#include "tests/support/sand_release.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_release.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace release {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "base/float_environment.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/other_floats.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/machine/other_floats.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "sand/replica.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

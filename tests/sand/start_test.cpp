@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

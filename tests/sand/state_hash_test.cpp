@@ -7,9 +7,9 @@
 
 #include "sand/grid/snapshot.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/distinct_hashes.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/distinct_hashes.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace state_hash {
 namespace {

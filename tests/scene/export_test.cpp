@@ -9,7 +9,7 @@
 #include "scene/export/raster.hpp"
 #include "scene/export/tin_raster.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace exported {
 namespace {

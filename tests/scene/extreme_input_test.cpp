@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "scene/load/scene_file.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "scene/load/scene_file.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // nan and inf in place of every number of a scene file.
-#include "tests/support/not_finite_toml.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/files/not_finite_toml.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 
 namespace {
 

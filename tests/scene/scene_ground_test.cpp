@@ -6,7 +6,7 @@
 
 #include "sand/grid/erosion.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 
 #include "scene/import/raster_memory.hpp"
 #include "scene/load/memory.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/scene_fixture.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 #include "base/input_error.hpp"
 #include "scene/import/esri_file.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -18,7 +18,7 @@
 #include "scene/export/tin_raster.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/sand/tin/same_session.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include "sand/tin/geometry/lattice.hpp"
 #include "scene/export/tin_raster.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 #include <sstream>
 
+#include "tests/support/files/text_forms.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/text_forms.hpp"
 #include "tests/tracking/tracking_samples.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tracking/head_trace.hpp"
 #include "tracking/udp_tracker.hpp"
 

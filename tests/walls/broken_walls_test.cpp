@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

@@ -11,8 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "tests/support/run_program.hpp"
-#include "tests/support/wall_text.hpp"
+#include "tests/support/files/wall_text.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tests/walls/sample_walls.hpp"
 #include "walls/wall_map.hpp"
 #include "walls/wall_measure.hpp"

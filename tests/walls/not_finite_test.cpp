@@ -5,7 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/support/not_finite_toml.hpp"
+#include "tests/support/files/not_finite_toml.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/run_program.hpp"
+#include "tests/support/processes/run_program.hpp"
 #include "tests/walls/sample_walls.hpp"
 
 namespace walls {

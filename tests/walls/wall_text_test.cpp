@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/wall_text.hpp"
+#include "tests/support/files/wall_text.hpp"
 
 #include <gtest/gtest.h>
 

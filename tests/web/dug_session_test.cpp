@@ -9,7 +9,7 @@
 #include "journal/journal.hpp"
 #include "journal/memory_parts.hpp"
 #include "journal/verification.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

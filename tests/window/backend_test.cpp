@@ -8,7 +8,7 @@
 #include "base/input_error.hpp"
 #include "pictures/compare.hpp"
 #include "render_node/gl/gl_module.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/screens/x_server.hpp"
 #include "tests/window/probe_fixture.hpp"
 
 namespace {

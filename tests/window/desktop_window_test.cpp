@@ -8,9 +8,9 @@
 
 #include "base/input_error.hpp"
 #include "render_node/gl/gl_context.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/x_screen.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/screens/x_screen.hpp"
+#include "tests/support/screens/x_server.hpp"
 
 namespace {
 

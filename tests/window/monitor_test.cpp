@@ -5,9 +5,9 @@
 #include <chrono>
 #include <thread>
 
-#include "tests/support/x_monitors.hpp"
-#include "tests/support/x_screen.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/screens/x_monitors.hpp"
+#include "tests/support/screens/x_screen.hpp"
+#include "tests/support/screens/x_server.hpp"
 #include "tests/window/probe_fixture.hpp"
 
 namespace {

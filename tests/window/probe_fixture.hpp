@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "pictures/png_file.hpp"
-#include "tests/support/child_process.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/child_process.hpp"
 
 /// Runs window_probe in separate processes, each with a folder for its pictures. Times are bounds, never measurements.
 class ProbeTest : public test::FolderTest {

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/not_yet_error.hpp"
-#include "tests/support/x_screen.hpp"
-#include "tests/support/x_server.hpp"
+#include "tests/support/screens/x_screen.hpp"
+#include "tests/support/screens/x_server.hpp"
 #include "tests/window/probe_fixture.hpp"
 
 namespace {

@@ -17,7 +17,7 @@ SCRIPTS = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(SCRIPTS / "launcher"), str(SCRIPTS / "checks")]
 import draw
 import table
-from command_line import Parser
+from base.command_line import Parser
 from workspace import ROOT, DoesNotCompile, Workspace
 
 TABLES = ROOT / "tests" / "mutations"
@@ -28,7 +28,7 @@ SLOW = {"cluster_tests", "latency_tests", "sand_oracle_tests", "delaunay_oracle_
 SESSIONS = "cluster_tests Lockstep.*:Resuming.*:WrongServer.*:Devices.*"
 SEES_EVERY_CHANGE = "mutations_test"  # fails if a line of a row is not there, whatever replaces it
 # Python tests that start neither sessions nor windows.
-SCRIPT_TESTS = re.compile(r"^sandwall_python_test\((\w+) LABELS unit", re.MULTILINE)
+SCRIPT_TESTS = re.compile(r"^sandwall_python_test\(([\w/]+) LABELS unit", re.MULTILINE)
 
 
 class TableBug:
@@ -122,11 +122,12 @@ def tests_for(name, programs):
         near = {program: common(name, folder) for program, folder in programs.items() if program not in SLOW}
         units = sorted((program for program, depth in near.items() if depth > 0), key=lambda program: (-near[program], program))
         return [*units, SESSIONS]
-    files = set(SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())) - {SEES_EVERY_CHANGE}
+    listed = SCRIPT_TESTS.findall((ROOT / "tests" / "scripts" / "CMakeLists.txt").read_text())
+    paths = [path for path in listed if not path.endswith(SEES_EVERY_CHANGE)]
     stem = pathlib.PurePath(name).stem
     module = re.compile(rf"\b{stem}\b")
-    return [f"{file}.py" for file in sorted(files, key=lambda file: (
-        file != f"{stem}_test", not module.search((ROOT / "tests" / "scripts" / f"{file}.py").read_text())))]
+    return [f"{path.rpartition('/')[2]}.py" for path in sorted(paths, key=lambda path: (
+        not path.endswith(f"/{stem}_test"), not module.search((ROOT / "tests" / "scripts" / f"{path}.py").read_text())))]
 
 
 def parse(arguments):

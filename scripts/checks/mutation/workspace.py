@@ -153,11 +153,11 @@ class Workspace:
     def run(self, test, limit=LONGEST):
         """Runs a test and returns the name of its first failure, or None if it passes.
 
-        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of tests/scripts.
+        A test is "PROGRAM FILTER" of googletest, or "FILE.py [CLASS.TEST]" of a folder in tests/scripts.
         """
         program, _, which = test.partition(" ")
         if program.endswith(".py"):
-            file = self.folder / "tests" / "scripts" / program
+            file = next((self.folder / "tests" / "scripts").rglob(program))
             command = ["python3", str(file), *which.split(), *(["--failfast"] if "unittest.main()" in file.read_text() else [])]
         else:
             command = [str(self.bin / program), f"--gtest_filter={which or '*'}", "--gtest_fail_fast"]

@@ -7,9 +7,9 @@
 
 #include "sand/grid/dunes.hpp"
 #include "sand/tin/refine/start_maker.hpp"
-#include "tests/support/laws.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/laws.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace structure {
 namespace {

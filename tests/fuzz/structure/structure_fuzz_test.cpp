@@ -16,7 +16,7 @@
 #include "journal/recording.hpp"
 #include "tests/fuzz/structure/journals.hpp"
 #include "tests/fuzz/structure/states.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/haptic_bridge/client/linked_client.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "haptic_bridge/client/client.hpp"
 #include "tests/haptic_bridge/client/fake_server.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace test {
 

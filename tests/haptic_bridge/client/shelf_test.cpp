@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "haptic_bridge/client/grant.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "haptic_bridge/devices/trace.hpp"
 #include "haptic_bridge/hand/hand_mapping.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/jittery_trace.hpp"
+#include "tests/support/hand/jittery_trace.hpp"
 #include "tests/support/refusal.hpp"
 #include "tests/support/seed.hpp"
 

@@ -11,8 +11,8 @@
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/loop/guards/passivity_observer.hpp"
 #include "haptic_bridge/loop/tick_track.hpp"
+#include "tests/support/processes/server_process.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/server_process.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "haptic_bridge/devices/device_module.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

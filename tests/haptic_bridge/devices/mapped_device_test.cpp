@@ -10,7 +10,7 @@
 #include "base/input_error.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include "base/input_error.hpp"
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "host/clock.hpp"
-#include "tests/support/arm_loop.hpp"
+#include "tests/support/hand/arm_loop.hpp"
 
 namespace {
 

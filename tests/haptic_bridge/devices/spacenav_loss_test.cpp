@@ -6,7 +6,7 @@
 #include "haptic_bridge/hand/device_troubles.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/devices/spacenav_daemon.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "haptic_bridge/devices/device_module.hpp"
 #include "haptic_bridge/devices/open_device.hpp"
 #include "tests/haptic_bridge/devices/spacenav_daemon.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 
 #include "haptic_bridge/devices/strokes.hpp"
 #include "haptic_bridge/devices/trace.hpp"
+#include "tests/support/files/text_forms.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/text_forms.hpp"
 
 namespace {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "haptic_bridge/hand/path_builder.hpp"
-#include "tests/support/border_scenes.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/borders/border_scenes.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

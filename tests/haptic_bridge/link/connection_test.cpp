@@ -7,7 +7,7 @@
 #include <boost/asio/write.hpp>
 
 #include "haptic_bridge/link/link_options.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

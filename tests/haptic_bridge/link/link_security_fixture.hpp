@@ -13,7 +13,7 @@
 #include "haptic_bridge/link/link_options.hpp"
 #include "haptic_bridge/link/protocol.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace test {
 

@@ -9,7 +9,7 @@
 
 #include "haptic_bridge/link/protocol.hpp"
 #include "tests/haptic_bridge/link/sample_messages.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -11,8 +11,8 @@
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/message_reader.hpp"
 #include "tests/haptic_bridge/link/sample_messages.hpp"
-#include "tests/support/overlong.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/overlong.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "haptic_bridge/link/protocol.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace haptic_bridge {
 

@@ -5,8 +5,8 @@
 
 #include "haptic_bridge/server/sand_thread.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/arm_on_sand.hpp"
-#include "tests/support/heap_count.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
+#include "tests/support/machine/heap_count.hpp"
 
 namespace {
 

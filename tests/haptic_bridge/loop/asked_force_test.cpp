@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts the outcomes of ticks in which the law asks for force, on a whole server under a virtual clock. The report's
-// line `force` judges these counts (scripts/launcher/session_lines.py).
+// line `force` judges these counts (scripts/launcher/ask/session_lines.py).
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/hand_in_sand.hpp"
+#include "tests/support/hand/hand_in_sand.hpp"
 
 namespace {
 

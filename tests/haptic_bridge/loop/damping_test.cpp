@@ -10,8 +10,8 @@
 
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/loop/guards/guards.hpp"
-#include "tests/support/arm_loop.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_loop.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "haptic_bridge/devices/mapped_device.hpp"
 #include "haptic_bridge/loop/felt_sand.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include "haptic_bridge/loop/haptic_tick.hpp"
 #include "sand/force/finite_law.hpp"
 #include "tests/haptic_bridge/loop/logging_arm.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

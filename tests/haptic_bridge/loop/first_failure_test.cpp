@@ -11,8 +11,8 @@
 #include "haptic_bridge/loop/device_hand.hpp"
 #include "haptic_bridge/loop/force_loop.hpp"
 #include "haptic_bridge/server/sand_thread.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

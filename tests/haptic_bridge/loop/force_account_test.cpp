@@ -7,7 +7,7 @@
 
 #include "haptic_bridge/hand/arm_presets.hpp"
 #include "haptic_bridge/loop/guards/limited_law.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace {
 

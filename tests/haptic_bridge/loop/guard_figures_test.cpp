@@ -8,7 +8,7 @@
 #include "haptic_bridge/loop/guards/guards.hpp"
 #include "haptic_bridge/loop/guards/limited_law.hpp"
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
-#include "tests/support/arm_loop.hpp"
+#include "tests/support/hand/arm_loop.hpp"
 
 namespace {
 

@@ -15,7 +15,7 @@
 #include "tests/haptic_bridge/loop/push_check.hpp"
 #include "tests/haptic_bridge/loop/strong_arm.hpp"
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace test {
 

@@ -12,8 +12,8 @@
 #include "haptic_bridge/loop/guards/velocity_window.hpp"
 #include "haptic_bridge/loop/haptic_tick.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/arm_loop.hpp"
-#include "tests/support/arm_on_sand.hpp"
+#include "tests/support/hand/arm_loop.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
 
 namespace {
 

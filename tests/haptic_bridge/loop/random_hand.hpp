@@ -9,7 +9,7 @@
 #include "haptic_bridge/hand/hand_settings.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/loop/dice.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace test {
 

@@ -9,9 +9,9 @@
 
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/arm_loop.hpp"
-#include "tests/support/arm_on_sand.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/hand/arm_loop.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
+#include "tests/support/sand/sand_of.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -17,11 +17,11 @@
 #include "haptic_bridge/loop/tick_replay.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/haptic_bridge/devices/fake_arm.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/overlong.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
-#include "tests/support/small_disk.hpp"
+#include "tests/support/files/overlong.hpp"
+#include "tests/support/machine/small_disk.hpp"
+#include "tests/support/processes/blocked_child.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

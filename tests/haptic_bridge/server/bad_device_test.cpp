@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faulty arms behind the real server. The server prints one line, and the wall continues.
 #include "scene/load/scene_file.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 
 #include "haptic_bridge/devices/open_device.hpp"
 #include "haptic_bridge/server/sand_thread.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

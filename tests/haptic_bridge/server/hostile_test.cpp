@@ -5,8 +5,8 @@
 
 #include "scene/load/scene_file.hpp"
 #include "tests/hostile/attack.hpp"
+#include "tests/support/processes/server_process.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/server_process.hpp"
 
 namespace {
 

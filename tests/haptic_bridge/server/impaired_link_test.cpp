@@ -9,8 +9,8 @@
 
 #include "host/clock.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace {
 

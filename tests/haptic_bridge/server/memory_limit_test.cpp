@@ -3,10 +3,10 @@
 // that claims more than the scene allows. Sanitizers map terabytes, so their programs cannot run under a limit.
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
-#include "tests/support/hostile_sand.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/run_program.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/hostile_sand.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 #ifdef SANDWALL_RELEASE
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "haptic_bridge/server/step_maker.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "scene/load/scene_file.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace test {
 

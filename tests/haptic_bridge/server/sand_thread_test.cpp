@@ -6,8 +6,8 @@
 #include "haptic_bridge/devices/open_device.hpp"
 #include "host/clock.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/arm_on_sand.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/hand/arm_on_sand.hpp"
+#include "tests/support/processes/server_process.hpp"
 
 namespace {
 

@@ -3,9 +3,9 @@
 #include "base/input_error.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/input_error.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include "host/clock.hpp"
 #include "tests/haptic_bridge/link/link_security_fixture.hpp"
 #include "tests/haptic_bridge/link/raw_peer.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "master/steps/recorded_steps.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/no_steps.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/sand/no_steps.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "master/measure/failure_report.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

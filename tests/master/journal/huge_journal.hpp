@@ -8,7 +8,7 @@
 #include "host/version.hpp"
 #include "journal/format.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace test {
 

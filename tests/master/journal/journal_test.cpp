@@ -14,9 +14,9 @@
 
 #include "base/input_error.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

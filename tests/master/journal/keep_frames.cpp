@@ -10,7 +10,7 @@
 
 #include "base/input_error.hpp"
 #include "master/journal/keeper.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 
 #include "base/input_error.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
-#include "tests/support/small_disk.hpp"
+#include "tests/support/machine/small_disk.hpp"
 
 namespace {
 

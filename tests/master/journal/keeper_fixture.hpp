@@ -10,8 +10,8 @@
 #include "master/journal/journal.hpp"
 #include "master/journal/keeper.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
 

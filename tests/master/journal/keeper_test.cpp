@@ -18,7 +18,7 @@
 #include "master/journal/file_parts.hpp"
 #include "master/journal/journal.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
-#include "tests/support/blocked_child.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

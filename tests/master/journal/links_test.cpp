@@ -15,7 +15,7 @@
 #include "master/journal/resume.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "tests/master/journal/keeper_fixture.hpp"
-#include "tests/support/blocked_child.hpp"
+#include "tests/support/processes/blocked_child.hpp"
 #include "tests/support/refusal.hpp"
 
 namespace {

@@ -11,7 +11,7 @@
 
 #include "base/byte_stream.hpp"
 #include "base/input_error.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

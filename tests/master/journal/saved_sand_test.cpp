@@ -9,9 +9,9 @@
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/blocked_child.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/blocked_child.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "master/journal/journal.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <iterator>
 #include <string>
 
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

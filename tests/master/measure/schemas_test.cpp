@@ -12,7 +12,7 @@
 #include "master/measure/failure_report.hpp"
 #include "master/measure/recovery.hpp"
 #include "master/measure/summary.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

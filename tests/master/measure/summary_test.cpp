@@ -7,7 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "tests/support/high_sand.hpp"
+#include "tests/support/sand/high_sand.hpp"
 
 namespace {
 

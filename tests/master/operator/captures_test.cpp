@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "base/input_error.hpp"
 #include "master/operator/control_socket.hpp"
 #include "master/operator/operator_command.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

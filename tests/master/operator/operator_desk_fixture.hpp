@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "master/operator/operator_desk.hpp"
-#include "tests/support/control_client.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/no_steps.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/control_client.hpp"
+#include "tests/support/sand/no_steps.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

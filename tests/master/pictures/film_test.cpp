@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "base/input_error.hpp"
-#include "tests/support/folder_test.hpp"
+#include "tests/support/files/folder_test.hpp"
 
 namespace {
 

@@ -10,8 +10,8 @@
 
 #include "master/steps/live_steps.hpp"
 #include "tests/haptic_bridge/client/sand_server.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/server_process.hpp"
+#include "tests/support/processes/server_process.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace test {
 

@@ -5,12 +5,12 @@
 
 #include <random>
 
-#include "tests/support/high_sand.hpp"
-#include "tests/support/hostile_sand.hpp"
-#include "tests/support/memory_limit.hpp"
-#include "tests/support/no_steps.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/machine/memory_limit.hpp"
+#include "tests/support/sand/high_sand.hpp"
+#include "tests/support/sand/hostile_sand.hpp"
+#include "tests/support/sand/no_steps.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

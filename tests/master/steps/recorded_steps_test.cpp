@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "tests/support/no_steps.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/no_steps.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

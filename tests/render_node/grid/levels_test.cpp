@@ -12,7 +12,7 @@
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/gl/gl_program.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

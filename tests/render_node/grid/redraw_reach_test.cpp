@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/model/scene.hpp"
-#include "tests/support/redraw_fixture.hpp"
+#include "tests/support/pictures/redraw_fixture.hpp"
 
 namespace {
 

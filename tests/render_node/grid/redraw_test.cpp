@@ -9,7 +9,7 @@
 
 #include "render_node/tool/force.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/redraw_fixture.hpp"
+#include "tests/support/pictures/redraw_fixture.hpp"
 
 namespace {
 

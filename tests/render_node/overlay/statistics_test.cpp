@@ -7,7 +7,7 @@
 
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

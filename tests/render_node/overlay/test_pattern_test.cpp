@@ -11,7 +11,7 @@
 
 #include "render_node/gl/gl_context.hpp"
 #include "render_node/overlay/dot_font.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

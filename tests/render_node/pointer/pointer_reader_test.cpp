@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 #include "walls/projection.hpp"
 
 namespace render_node {

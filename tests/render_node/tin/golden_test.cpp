@@ -8,8 +8,8 @@
 #include "render_node/gl/gl_context.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/golden_pictures.hpp"
-#include "tests/support/wall_painter.hpp"
+#include "tests/support/pictures/golden_pictures.hpp"
+#include "tests/support/pictures/wall_painter.hpp"
 
 namespace {
 

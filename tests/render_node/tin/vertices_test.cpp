@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "scene/model/scene.hpp"
-#include "tests/support/sample_tin.hpp"
+#include "tests/support/pictures/sample_tin.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 
 #include "sand/model/ground.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sample_scene.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/pictures/sample_scene.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 
 #include "sand/grid/settle.hpp"
 #include "sand/tin/flow/settle.hpp"
-#include "tests/support/border_experiments.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/borders/border_experiments.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
 
 namespace {
 

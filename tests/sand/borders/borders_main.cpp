@@ -7,9 +7,9 @@
 
 #include "host/command_line.hpp"
 #include "tests/sand/borders/random_scenes.hpp"
-#include "tests/support/border_planes.hpp"
-#include "tests/support/held_tools.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/borders/border_planes.hpp"
+#include "tests/support/borders/held_tools.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
 
 namespace {
 

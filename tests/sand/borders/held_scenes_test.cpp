@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
-#include "tests/support/border_experiments.hpp"
+#include "tests/support/borders/border_experiments.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/tool_kinds.hpp"
 
 namespace {
 

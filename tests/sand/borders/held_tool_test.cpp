@@ -2,8 +2,8 @@
 // Tools that are held in corners, half outside the field, and over walls, holes and rock while the sand settles.
 #include <gtest/gtest.h>
 
-#include "tests/support/held_tools.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/borders/held_tools.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
 
 namespace {
 

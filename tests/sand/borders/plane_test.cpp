@@ -3,7 +3,7 @@
 // cohesive sand.
 #include <gtest/gtest.h>
 
-#include "tests/support/border_planes.hpp"
+#include "tests/support/borders/border_planes.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/border_scenes.hpp"
+#include "tests/support/borders/border_scenes.hpp"
 
 namespace borders {
 namespace {

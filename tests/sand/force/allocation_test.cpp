@@ -4,7 +4,7 @@
 
 #include "tests/sand/force/force_samples.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
-#include "tests/support/heap_count.hpp"
+#include "tests/support/machine/heap_count.hpp"
 
 namespace {
 

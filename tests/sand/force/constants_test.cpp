@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "scene/load/scene_file.hpp"
+#include "tests/support/files/scene_fixture.hpp"
 #include "tests/support/refusal.hpp"
-#include "tests/support/scene_fixture.hpp"
 
 namespace {
 

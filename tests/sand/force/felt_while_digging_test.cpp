@@ -9,7 +9,7 @@
 #include "sand/force/law.hpp"
 #include "sand/replica.hpp"
 #include "tests/sand/force/force_samples.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace {
 

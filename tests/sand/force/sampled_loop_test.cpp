@@ -12,8 +12,8 @@
 #include "sand/force/law.hpp"
 #include "sand/replica.hpp"
 #include "tests/sand/force/force_samples.hpp"
-#include "tests/support/point_mass.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/hand/point_mass.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sand/tin/flow/erosion.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

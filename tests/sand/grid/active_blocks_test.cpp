@@ -6,8 +6,8 @@
 #include <random>
 
 #include "host/worker_pool.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "tests/support/oracles.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

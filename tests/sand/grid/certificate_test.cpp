@@ -8,9 +8,9 @@
 #include "sand/grid/dual_projection.hpp"
 #include "sand/grid/erosion.hpp"
 #include "sand/grid/quad_energy.hpp"
-#include "tests/support/reference_sweep.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tight_projection.hpp"
+#include "tests/support/sand/reference_sweep.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tight_projection.hpp"
 
 namespace {
 

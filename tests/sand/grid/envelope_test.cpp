@@ -6,10 +6,10 @@
 #include <cmath>
 #include <random>
 
-#include "tests/support/oracles.hpp"
-#include "tests/support/reference_sweep.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/reference_sweep.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

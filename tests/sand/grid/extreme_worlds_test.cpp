@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every extreme world comes to rest within its bound and keeps its volume. The report shows the same worlds.
-#include "tests/support/extreme_worlds.hpp"
+#include "tests/support/sand/extreme_worlds.hpp"
 
 #include <gtest/gtest.h>
 
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sand/model/ground.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

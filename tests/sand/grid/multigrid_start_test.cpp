@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "sand/grid/dual_projection.hpp"
-#include "tests/support/oracles.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

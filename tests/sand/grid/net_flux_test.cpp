@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sand/grid/settle.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <utility>
 
-#include "tests/support/oracles.hpp"
-#include "tests/support/reference_sweep.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/reference_sweep.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

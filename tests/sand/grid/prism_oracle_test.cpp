@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/oracles.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

@@ -16,8 +16,8 @@
 #include "base/code_path.hpp"
 #include "sand/grid/dunes.hpp"
 #include "sand/grid/erosion.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace worlds {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sand/grid/displacement.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
 
 namespace receivers {
 namespace {

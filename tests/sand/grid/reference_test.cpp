@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the solver bit for bit with direct sweeps of the law (tests/support/reference_sand.hpp).
+// Compares the solver bit for bit with direct sweeps of the law (tests/support/sand/reference_sand.hpp).
 #include <gtest/gtest.h>
 
 #include "tests/sand/grid/random_worlds.hpp"
-#include "tests/support/reference_sand.hpp"
+#include "tests/support/sand/reference_sand.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/oracles.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

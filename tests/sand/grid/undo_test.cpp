@@ -8,8 +8,8 @@
 #include "sand/grid/snapshot.hpp"
 #include "sand/grid/tile_hash.hpp"
 #include "sand/replica.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace grid_undo {
 namespace {

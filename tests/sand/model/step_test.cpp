@@ -6,9 +6,9 @@
 #include <random>
 #include <span>
 
-#include "tests/support/overlong.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/files/overlong.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

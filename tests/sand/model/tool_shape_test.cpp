@@ -13,10 +13,10 @@
 #include "sand/grid/dunes.hpp"
 #include "sand/model/tuning.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/relaxing.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tool_kinds.hpp"
+#include "tests/support/borders/tool_kinds.hpp"
+#include "tests/support/sand/relaxing.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include "host/worker_pool.hpp"
 #include "sand/grid/dunes.hpp"
 #include "scene/model/scene.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

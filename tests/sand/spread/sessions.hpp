@@ -10,8 +10,8 @@
 
 #include "sand/replica.hpp"
 #include "tests/sand/grid/random_worlds.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 /// Random sessions whose steps run as wholes and in parts.
 namespace spread {

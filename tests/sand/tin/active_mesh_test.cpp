@@ -6,7 +6,7 @@
 #include <random>
 
 #include "sand/tin/flow/erosion.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace active_mesh {
 namespace {

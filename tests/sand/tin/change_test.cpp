@@ -5,7 +5,7 @@
 #include <map>
 
 #include "tests/sand/tin/mesh_checks.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace {
 

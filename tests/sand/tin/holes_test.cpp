@@ -21,7 +21,7 @@
 #include "sand/tin/refine/start_maker.hpp"
 #include "tests/sand/tin/mesh_checks.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace holes {
 namespace {

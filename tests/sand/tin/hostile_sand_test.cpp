@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sand that no session has made: it must be refused, or else every step can be applied to it.
-#include "tests/support/hostile_sand.hpp"
+#include "tests/support/sand/hostile_sand.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,10 +10,10 @@
 
 #include "sand/replica.hpp"
 #include "sand/tin/surface.hpp"
-#include "tests/support/memory_limit.hpp"
-#include "tests/support/overlong.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/tin_scene.hpp"
+#include "tests/support/files/overlong.hpp"
+#include "tests/support/machine/memory_limit.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/tin_scene.hpp"
 
 namespace {
 

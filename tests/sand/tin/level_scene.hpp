@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "scene/model/scene.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace tin_samples {
 

@@ -11,9 +11,9 @@
 #include "sand/tin/flow/settle.hpp"
 #include "sand/tin/flow/weights.hpp"
 #include "sand/tin/refine/start_maker.hpp"
-#include "tests/support/oracles.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace open_tables {
 namespace {

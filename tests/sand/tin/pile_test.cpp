@@ -10,8 +10,8 @@
 #include "sand/model/height_field.hpp"
 #include "sand/tin/flow/erosion.hpp"
 #include "sand/tin/flow/settle.hpp"
-#include "tests/support/oracles.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace piles {
 namespace {

@@ -8,7 +8,7 @@
 #include "sand/replica.hpp"
 #include "sand/tin/refine/start_maker.hpp"
 #include "tests/sand/tin/tool_fixture.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace tin_refused_press {
 namespace {

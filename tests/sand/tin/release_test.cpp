@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "tests/sand/tin/level_scene.hpp"
-#include "tests/support/sand_release.hpp"
+#include "tests/support/sand/sand_release.hpp"
 
 namespace release {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/sand/tin/level_scene.hpp"
 #include "tests/sand/tin/tin_replica.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace tin_rests {
 namespace {

@@ -11,7 +11,7 @@
 #include "sand/tin/geometry/surface_view.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/sand/tin/tin_replica.hpp"
-#include "tests/support/other_floats.hpp"
+#include "tests/support/machine/other_floats.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "tests/sand/tin/mesh_checks.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 /// Sand on meshes of bad shape, its bytes and its energy.
 namespace rough_layers {

@@ -10,8 +10,8 @@
 
 #include "base/byte_stream.hpp"
 #include "sand/tin/flow/dual_projection.hpp"
-#include "tests/support/oracles.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/oracles.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace settling {
 namespace {

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "tests/support/distinct_hashes.hpp"
-#include "tests/support/tin_piles.hpp"
+#include "tests/support/sand/distinct_hashes.hpp"
+#include "tests/support/sand/tin_piles.hpp"
 
 namespace tin_hash {
 namespace {

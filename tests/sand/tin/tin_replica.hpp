@@ -13,8 +13,8 @@
 
 #include "sand/replica.hpp"
 #include "scene/load/scene_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/sand_of.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/sand/sand_of.hpp"
 
 namespace tin_samples {
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "tests/sand/tin/mesh_checks.hpp"
-#include "tests/support/relaxing.hpp"
+#include "tests/support/sand/relaxing.hpp"
 
 namespace vertex_sand {
 namespace {

@@ -9,8 +9,8 @@
 #include "base/input_error.hpp"
 #include "host/whole_file.hpp"
 #include "scene/import/esri_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/text_forms.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/files/text_forms.hpp"
 
 namespace {
 

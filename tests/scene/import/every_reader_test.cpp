@@ -13,7 +13,7 @@
 #include "scene/import/raster_file.hpp"
 #include "tests/scene/import/classic_netcdf.hpp"
 #include "tests/scene/import/import_fixture.hpp"
-#include "tests/support/text_forms.hpp"
+#include "tests/support/files/text_forms.hpp"
 
 namespace {
 

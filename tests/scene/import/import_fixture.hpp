@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "scene/load/scene_file.hpp"
-#include "tests/support/run_program.hpp"
-#include "tests/support/scene_fixture.hpp"
+#include "tests/support/files/scene_fixture.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 /// Number that writeRaster() adds to a negative byte with a sign. GDAL 3.6 has no type for such bytes, and takes bytes
 /// without a sign for them.

@@ -3,7 +3,7 @@
 
 #include "scene/import/points_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
-#include "tests/support/text_forms.hpp"
+#include "tests/support/files/text_forms.hpp"
 
 namespace {
 

@@ -16,8 +16,8 @@
 #include "scene/import/importer.hpp"
 #include "scene/load/scene_file.hpp"
 #include "tests/scene/import/import_fixture.hpp"
-#include "tests/support/sand_of.hpp"
-#include "tests/support/sand_samples.hpp"
+#include "tests/support/sand/sand_of.hpp"
+#include "tests/support/sand/sand_samples.hpp"
 
 namespace {
 

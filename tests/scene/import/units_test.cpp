@@ -6,7 +6,7 @@
 #include "scene/import/prj_file.hpp"
 #include "tests/scene/import/classic_netcdf.hpp"
 #include "tests/scene/import/units_fixture.hpp"
-#include "tests/support/text_forms.hpp"
+#include "tests/support/files/text_forms.hpp"
 
 namespace {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "scene/import/esri_file.hpp"
-#include "tests/support/folder_test.hpp"
-#include "tests/support/run_program.hpp"
+#include "tests/support/files/folder_test.hpp"
+#include "tests/support/processes/run_program.hpp"
 
 /// Runs sandwall-relax on files of its own folder.
 class Relax : public test::FolderTest {

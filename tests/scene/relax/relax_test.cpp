@@ -10,9 +10,9 @@
 #include "sand/grid/settle.hpp"
 #include "scene/relax/steepness.hpp"
 #include "tests/scene/relax/relax_fixture.hpp"
-#include "tests/support/reference_sweep.hpp"
-#include "tests/support/sand_samples.hpp"
-#include "tests/support/tight_projection.hpp"
+#include "tests/support/sand/reference_sweep.hpp"
+#include "tests/support/sand/sand_samples.hpp"
+#include "tests/support/sand/tight_projection.hpp"
 
 namespace {
 

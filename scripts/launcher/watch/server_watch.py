@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Watches the haptic server of a session, and starts it again if it has ended or hangs (docs/recovery.md)."""
+
+import json
+import time
+
+from base import session_folder
+from base.console import print_line
+from watch import failed_processes
+from watch.process_failure import Failure, ending_of, how_ended
+
+HUNG_SECONDS = 10  # time without a link, while the wall shows frames, after which the server counts as hung
+RECOVERIES = "recoveries.jsonl"
+
+
+class ServerWatch:
+    """Watches `server`, a processes.HapticServer.
+
+    `may_go_on(failure)` prints a failure and returns whether the server may be started again. `wait()` returns how long to
+    wait before that [s]. Both look functions take the job_log.JobLog of the running job.
+    """
+
+    def __init__(self, server, out, may_go_on, wait):
+        self.server, self.out = server, out
+        self.may_go_on, self.wait = may_go_on, wait
+        self.due = None  # time at which the server is started again [s]
+        self.hung = False
+        self.missed = False  # without restarts: whether the server has ended
+        self.loads = False  # whether the server was restarted and does not listen yet
+        self.failure = None  # the failure after which the server is not linked yet
+
+    def look(self, log):
+        """Starts the server again on its port if it has ended. The master connects to it again by itself.
+
+        Returns False if it must not be started again.
+        """
+        status = self.server.process.poll()
+        if status is None:
+            self.write_recovery(log)
+            self.end_hung(log)
+        elif self.due is not None:
+            if time.monotonic() >= self.due:
+                self.due = None
+                self.server.start()
+                self.loads = True
+                log.hand, log.refused, log.linked = None, False, None  # the values belong to the previous server
+        else:
+            how = "was hung" if self.hung else how_ended(status)
+            failure = Failure(f"{failed_processes.SERVER} {how}", how="hung" if self.hung else ending_of(status))
+            failure.frame, failure.step = log.frame, log.step
+            self.hung = False
+            if not self.may_go_on(failure):
+                return False
+            self.failure = failure
+            self.due = time.monotonic() + self.wait()
+        return True
+
+    def look_without_restarts(self, failed):
+        """Prints once that the server has ended, and adds it to `failed`, a failed_processes.FailedProcesses."""
+        status = self.server.process.poll()
+        if status is None or self.missed:
+            return
+        self.missed = True
+        failure = Failure(f"{failed_processes.SERVER} {how_ended(status)}", how=ending_of(status))
+        print_line(f"{failure.text}; the session continues without it, because of --restarts 0")
+        failed.add(failure, restarted=False)
+
+    def write_recovery(self, log):
+        """Writes the recovery of a restarted server when its hand is linked. The master writes the recoveries of the job."""
+        failure = self.failure
+        if failure is None or log.linked is None:
+            return
+        self.failure = None
+        # The wall has continued meanwhile, so the values about a replay are null.
+        recovery = {"failure": failure.text, "failed_rank": None, "failed_how": failure.how, "seconds_to_next_frame": None,
+                    "seconds_to_link": log.linked - failure.noticed, "step": log.step or failure.step or 0,
+                    "frame": log.frame or failure.frame or 0, "state_hash": None,
+                    "checkpoint_step": None, "replayed_steps": None, "cut_bytes": None}
+        try:
+            session_folder.append_line(self.out / RECOVERIES, json.dumps(recovery))
+        except OSError as error:
+            print_line(f"{self.out / RECOVERIES}: cannot be written ({error.strerror})")
+
+    def end_hung(self, log):
+        """Kills a running server without a link for HUNG_SECONDS, because it will not recover by itself."""
+        if self.loads and self.server.listens():
+            self.loads = False
+            log.miss_hand()
+        if log.hand is not None and time.monotonic() - log.hand > HUNG_SECONDS and log.shown_at > log.hand + HUNG_SECONDS / 2:
+            log.hand = None
+            self.hung = True
+            self.server.process.kill()

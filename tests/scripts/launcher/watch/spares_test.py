@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Tests which spare host replaces a lost one."""
+
+import pathlib
+import re
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "support"))
+from supervisor_fixture import Supervised
+
+
+class Spares(Supervised):
+    def hosts(self, *lines):
+        return ["--hosts", self.write("hosts", "\n".join(lines) + "\n")]
+
+    def placed(self):
+        """Returns the hosts of the ranks of each try."""
+        return [re.findall(r"--host (\S+):\d+", command) for command in self.commands()]
+
+    def test_a_host_that_cannot_be_reached_at_the_start_is_replaced(self):
+        self.tries("exit 0")
+        status, _, error = self.ended(["-"] * 3, *self.hosts("node1", "away1 slots=2", "small1 spare", "away2 spare slots=2",
+                                                            "node7 slots=2 spare", "node8 slots=2 spare"))
+        self.assertEqual((status, self.placed()), (0, [["node1", "node7"]]), error)
+        self.assertEqual(error, "sandwall: spare away2 cannot be reached either\n"
+                         "sandwall: away1 (rank 2): cannot be reached: ssh: connect to host away1 port 22: No route to host; "
+                         "docs/hosts.md; spare node7 takes its place (ranks 2, 3)\n")
+
+    def test_a_host_that_has_gone_is_replaced_when_the_session_is_started_again(self):
+        self.tries("progress 1 1; mv $folder/bin/agent $folder/bin/there; sed 's/away/node2|away/' $folder/bin/there > $folder/bin/agent; "
+                   "chmod +x $folder/bin/agent; dies 2 node2 9", "exit 0")
+        status, _, error = self.ended(["-"] * 2, *self.hosts("node1", "node2", "node3 spare"))
+        self.assertEqual((status, self.placed()), (0, [["node1", "node2"], ["node1", "node3"]]), error)
+
+    def test_a_broken_host_is_replaced_at_once(self):
+        self.tries("""progress 1 1; told '{"what": "broken", "rank": 2, "host": "node2", "message": "rank 2 is broken"}'; ends 0 1""",
+                   "exit 0")
+        status, _, error = self.ended(["-"] * 2, *self.hosts("node1", "node2", "node3 spare"))
+        self.assertEqual((status, self.placed()), (0, [["node1", "node2"], ["node1", "node3"]]), error)
+        self.assertIn("sandwall: node2: its ranks have failed too often; spare node3 takes its place (rank 2)", error)
+
+    def test_a_host_that_fails_twice_is_replaced(self):
+        self.tries(*["progress 1 1; dies 1 node1 9"] * 2, "exit 0")
+        status, _, error = self.ended(["-"] * 2, *self.hosts("node1", "node2", "node3 spare"))
+        self.assertEqual((status, self.placed()), (0, [["node1", "node2"]] * 2 + [["node3", "node2"]]), error)
+
+    def test_without_a_spare_a_host_that_fails_is_tried_again(self):
+        self.tries(*["progress 1 1; dies 1 node1 9"] * 2, "exit 0")
+        self.assertEqual(self.ended(["-"] * 2, *self.hosts("node1", "node2"))[0], 0)
+
+    def test_without_a_spare_a_host_that_has_gone_is_the_end(self):
+        self.tries("progress 1 1; mv $folder/bin/agent $folder/bin/there; sed 's/away/node2|away/' $folder/bin/there > $folder/bin/agent; "
+                   "chmod +x $folder/bin/agent; dies 2 node2 9")
+        status, _, error = self.ended(["-"] * 2, *self.hosts("node1", "node2"))
+        self.assertEqual(status, 1)
+        self.assertIn("sandwall: the session is given up: node2 (rank 2): cannot be reached", error)
+        self.assertIn("rank 2 on node2 was killed by SIGKILL", error)
+
+    def test_spares_draw_nothing_while_all_is_well(self):
+        self.assertEqual(self.printed(["-"] * 2, *self.hosts("node1 spare", "node2 slots=2")),
+                         self.printed(["-"] * 2, *self.hosts("node2 slots=2")))
+
+
+if __name__ == "__main__":
+    unittest.main()
