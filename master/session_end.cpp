@@ -102,7 +102,7 @@ Summary Session::summary() {
         summary.framesBefore = resumed->frame;
         summary.stepsBefore = resumed->step;
     }
-    summary.pace = options_.recording ? "replay" : options_.pace == haptic_bridge::Pace::fast ? "fast" : "realtime";
+    summary.pace = options_.recording ? "replay" : base::nameOf(options_.pace);
     summary.refreshHz = 1 / clock_.period();
     check_.fill(summary);
     summary.unhealed += (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "base/names.hpp"
 #include "haptic_bridge/link/address.hpp"
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/protocol.hpp"
@@ -41,6 +42,16 @@ enum class Link : std::uint8_t {
     lost,        // an earlier handshake had succeeded, and the connection has ended
     stopped      // stop() was called
 };
+constexpr auto valuesOf(Link) {
+    return std::array{base::Named{Link::connecting, "connecting"},
+                      base::Named{Link::refused, "refused"},
+                      base::Named{Link::offered, "offered"},
+                      base::Named{Link::granting, "granting"},
+                      base::Named{Link::linked, "linked"},
+                      base::Named{Link::streaming, "streaming"},
+                      base::Named{Link::lost, "lost"},
+                      base::Named{Link::stopped, "stopped"}};
+}
 
 /// State of the link, with a line for the user.
 struct LinkStatus {

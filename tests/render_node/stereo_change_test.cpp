@@ -83,10 +83,10 @@ TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
                                               {"anaglyph", 2 * kEye + kColour},
                                               {"anaglyph_half", 2 * kEye + kColour},
                                               {"anaglyph_dubois", 2 * kEye + kColour}};
-    for (const std::string& name : walls::stereoNames()) {
-        const walls::Wall shown = walls::shownIn(wall, walls::stereoNamed(name));
+    for (const auto& [stereo, name] : valuesOf(walls::Stereo{})) {
+        const walls::Wall shown = walls::shownIn(wall, stereo);
         const render_node::TilePainter painter(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
-        EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(name) * kPixels) << name;
+        EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(std::string(name)) * kPixels) << name;
     }
 }
 
