@@ -176,8 +176,6 @@ public:
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 
-    /// Silence of the server after which the client drops the link [ns]. Pongs come four times a second.
-    static constexpr std::int64_t kSilenceNs = 10'000'000'000;
     static constexpr std::size_t kMaxQueued = 1024;      // [step] that may wait
     static constexpr std::size_t kMaxPositions = 16384;  // [position] that may wait, 1 s of a device read at 16 kHz
     static constexpr std::size_t kMaxTicks = 8 << 20;    // [byte] of tick pieces that may wait, 1.5 min of a hand

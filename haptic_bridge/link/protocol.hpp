@@ -33,6 +33,9 @@ inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits");
 inline constexpr std::size_t kMaxReason = 512;  // [byte] of the reason in a Refusal or a Bye; the rest is cut off
 inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step takes at most about 1.5 KiB
+// [ns], silence of the other side after which either end drops the link. Each end sends a message once a second or more
+// often.
+inline constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 // Messages from the master to the server.
 
