@@ -181,8 +181,8 @@ public:
     static constexpr std::size_t kMaxTicks = 8 << 20;    // [byte] of tick pieces that may wait, 1.5 min of a hand
 
 private:
-    class Session;
-    std::unique_ptr<Session> session_;
+    class Conversation;
+    std::unique_ptr<Conversation> conversation_;
 };
 
 }  // namespace haptic_bridge

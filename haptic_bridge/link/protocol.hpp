@@ -53,7 +53,7 @@ struct ForceShare {
     friend bool operator==(const ForceShare&, const ForceShare&) = default;
 };
 /// Lets the server number the steps. The server's first step is stepNumber + 1 of `epoch`.
-struct Start {
+struct StartMessage {
     std::uint32_t epoch = 0;
     std::uint64_t stepNumber = 0;
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() at stepNumber
@@ -65,7 +65,7 @@ struct Start {
         visit("state_hash", it.stateHash);
         visit("force", it.force);
     }
-    friend bool operator==(const Start&, const Start&) = default;
+    friend bool operator==(const StartMessage&, const StartMessage&) = default;
 };
 /// The whole sand at Start's step. Answers a NeedState.
 struct State {
@@ -241,9 +241,9 @@ struct Bye {
 };
 
 /// One message of any type. The type byte on the wire is the type's place in this list, counted from 1.
-using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
-                             TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting,
-                             Position, Challenge, Proof, CatchUp>;
+using Message = std::variant<Hello, Welcome, Refusal, StartMessage, Ready, NeedState, State, StepMessage, TimingTest,
+                             Shown, TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece,
+                             PositionGreeting, Position, Challenge, Proof, CatchUp>;
 
 /// Returns the bytes of `message` on the wire: length, type, payload.
 [[nodiscard]] base::Bytes encode(const Message& message);
