@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -24,6 +25,16 @@ template <class Enum>
 concept NamedEnum = std::is_enum_v<Enum> && requires {
     valuesOf(Enum{});
 };
+
+/// Returns the names of all values, in the order of valuesOf().
+template <NamedEnum Enum>
+[[nodiscard]] constexpr auto namesOf() {
+    std::array<std::string_view, valuesOf(Enum{}).size()> names;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        names[i] = valuesOf(Enum{})[i].name;
+    }
+    return names;
+}
 
 /// Returns the name of a value, or an empty text if valuesOf() does not list it.
 template <NamedEnum Enum>

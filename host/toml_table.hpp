@@ -46,11 +46,8 @@ public:
     /// Returns the value whose name the key's text is (base/names.hpp), or `fallback` if the key is absent.
     template <base::NamedEnum Enum>
     [[nodiscard]] Enum valueOr(std::string_view key, Enum fallback) const {
-        std::vector<std::string_view> names;
-        for (const auto& known : valuesOf(Enum{})) {
-            names.push_back(known.name);
-        }
-        const int index = choiceOr(key, names, -1);
+        const auto names = base::namesOf<Enum>();
+        const int index = choiceOr(key, {names.begin(), names.end()}, -1);
         return index < 0 ? fallback : valuesOf(Enum{})[static_cast<std::size_t>(index)].value;
     }
     /// Returns a list of exactly `count` finite numbers.

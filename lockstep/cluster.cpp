@@ -176,9 +176,8 @@ base::Bytes Cluster::broadcast(const base::Bytes& fromMaster) const {
     MPI_Bcast(&size, 1, MPI_UINT64_T, kMaster, frames_);
     base::Bytes bytes = fromMaster;
     bytes.resize(size);
-    constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
-    for (std::uint64_t done = 0; done < size; done += kPiece) {
-        MPI_Bcast(bytes.data() + done, static_cast<int>(std::min(kPiece, size - done)), MPI_BYTE, kMaster, frames_);
+    for (std::uint64_t done = 0; done < size; done += kMpiPiece) {
+        MPI_Bcast(bytes.data() + done, static_cast<int>(std::min(kMpiPiece, size - done)), MPI_BYTE, kMaster, frames_);
     }
     return bytes;
 }

@@ -21,6 +21,7 @@
 namespace lockstep {
 
 inline constexpr int kMaster = 0;
+inline constexpr std::uint64_t kMpiPiece = 1 << 30;  // [byte], most in one call of MPI, which counts in int
 
 /// The MPI job of a session. Initialises MPI, ends it in the destructor, and holds one communicator per purpose.
 ///

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/field_forms.hpp"
+#include "base/names.hpp"
 #include "lockstep/frame_barrier.hpp"
 #include "sand/replica.hpp"
 
@@ -30,6 +31,10 @@ struct Divergence {
         journal,   // no majority, or a wrong one; the journal gave the right sand
         master     // no majority and no usable journal; the master's sand counts as right
     };
+    friend constexpr auto valuesOf(Judge) {
+        return std::array{base::Named{Judge::majority, "majority"}, base::Named{Judge::journal, "journal"},
+                          base::Named{Judge::master, "master"}};
+    }
     std::uint64_t rightHash = 0;  // state hash of the right sand
     Judge judge = Judge::majority;
     bool outvoted = false;                   // Arbiter::overrules: the journal has outvoted a majority

@@ -10,7 +10,6 @@ namespace lockstep {
 namespace {
 
 enum PassTag : int { kLengthTag = 20, kPieceTag };
-constexpr std::uint64_t kPiece = 1 << 30;  // [byte], because MPI counts in int
 
 }  // namespace
 
@@ -44,8 +43,8 @@ base::Bytes FrameBarrier::pass(int from, const std::vector<int>& to, const base:
     }
     // One pointer serves both directions; a rank that sends only reads from it.
     std::uint8_t* const data = sends ? const_cast<std::uint8_t*>(bytes.data()) : got.data();
-    for (std::uint64_t done = 0; done < length; done += kPiece) {
-        move(data + done, std::min(kPiece, length - done), kPieceTag);
+    for (std::uint64_t done = 0; done < length; done += kMpiPiece) {
+        move(data + done, std::min(kMpiPiece, length - done), kPieceTag);
     }
     return got;
 }

@@ -12,7 +12,7 @@
 #include "host/event.hpp"
 #include "host/print_line.hpp"
 #include "master/measure/failure_report.hpp"
-#include "master/measure/frame_cost.hpp"
+#include "master/measure/slowest_host.hpp"
 
 namespace master {
 namespace {

@@ -13,6 +13,7 @@
 #include "master/measure/recovery.hpp"
 #include "master/pictures/wall_pictures.hpp"
 #include "master/session.hpp"
+#include "sand/surface_factory.hpp"
 
 namespace master {
 
@@ -89,7 +90,7 @@ Summary Session::summary() {
     }
     summary.incidents = incidents();
     // Computes the initial volume from the scene, because the sand of a resumed session may already have lost volume.
-    summary.volumeInitial = scene_.volume();
+    summary.volumeInitial = sand::volumeOf(scene_);
     summary.volumeFinal = sand.volume();
     summary.volumeOutflow = sand.outflow();
     summary.seconds = clock_.seconds();
@@ -102,7 +103,7 @@ Summary Session::summary() {
         summary.framesBefore = resumed->frame;
         summary.stepsBefore = resumed->step;
     }
-    summary.pace = options_.recording ? "replay" : options_.pace == haptic_bridge::Pace::fast ? "fast" : "realtime";
+    summary.pace = options_.recording ? "replay" : base::nameOf(options_.pace);
     summary.refreshHz = 1 / clock_.period();
     check_.fill(summary);
     summary.unhealed += (steps_->serverUnhealed() ? 1 : 0) + (steps_->strayed() ? 1 : 0);

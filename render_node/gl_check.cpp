@@ -38,9 +38,10 @@ int probe(const Options& options) {
         context = makeContext(options.backend, wall, wall.tiles[static_cast<std::size_t>(rank - 1)]);
     }
     if (options.json) {
-        nlohmann::ordered_json found{
-            {"backend", context->name()}, {"renderer", context->renderer()}, {"shortcomings", context->shortcomings()}};
-        if (const auto area = context->workArea()) {
+        nlohmann::ordered_json found{{"backend", context->name()},
+                                     {"renderer", context->renderer()},
+                                     {"shortcomings", context->windows().shortcomings()}};
+        if (const auto area = context->windows().workArea()) {
             const glm::ivec2 size = area->high - area->low;
             found["work_area"] = {{"x", area->low.x}, {"y", area->low.y}, {"width", size.x}, {"height", size.y}};
         }
@@ -48,7 +49,7 @@ int probe(const Options& options) {
         return 0;
     }
     fmt::print("{}: {}\n", context->name(), context->renderer());
-    for (const std::string& line : context->shortcomings()) {
+    for (const std::string& line : context->windows().shortcomings()) {
         fmt::print("{}\n", line);
     }
     return 0;

@@ -105,7 +105,7 @@ public:
             if (faults_.garbles(frame.frame)) {
                 barrier.garble();
             }
-            const glm::ivec2 window = context_->followedWindow();
+            const glm::ivec2 window = context_->windows().followedSize(0);
             lockstep::Arrival mine{frame.frame,
                                    arrived - clockAhead,
                                    lastSwap,
@@ -117,7 +117,7 @@ public:
                                    cost_.sweepNs,
                                    cost_.hashNs,
                                    {window.x, window.y}};
-            const std::vector<base::MonitorState> monitors = context_->monitorStates();
+            const std::vector<base::MonitorState> monitors = context_->windows().monitorStates();
             for (std::size_t i = 0; i < std::min(monitors.size(), mine.monitors.size()); ++i) {
                 mine.monitors.at(i) = static_cast<std::uint8_t>(monitors[i]);
             }
@@ -155,12 +155,12 @@ private:
             return;
         }
         for (std::int64_t left = until - monotonicNs(); left > 0; left = until - monotonicNs()) {
-            context_->awaitEvents(static_cast<double>(left) * 1e-9);
+            context_->windows().awaitEvents(static_cast<double>(left) * 1e-9);
         }
     }
 
     [[nodiscard]] haptic_bridge::PointerReport readPointer(const lockstep::ViewState& view, std::int64_t clockAhead) {
-        return pointer_.read(context_->takePointer(), *replica_, view, painter_->heightsEver(), clockAhead);
+        return pointer_.read(context_->windows().takePointer(), *replica_, view, painter_->heightsEver(), clockAhead);
     }
 
     /// Draws a frame from the current sand and presents it.
@@ -217,7 +217,7 @@ private:
 
     /// Returns the next key that was pressed in a window. The other keys wait for the next frames.
     [[nodiscard]] base::Keystroke nextKey() {
-        const std::vector<base::Keystroke> pressed = context_->takeKeys();
+        const std::vector<base::Keystroke> pressed = context_->windows().takeKeys();
         keys_.insert(keys_.end(), pressed.begin(), pressed.end());
         return takeNextKey(keys_);
     }
@@ -245,7 +245,7 @@ private:
             views.pixels == 0 ? 0 : static_cast<double>(views.pixelsDrawn) / static_cast<double>(views.pixels);
         return {lockstep::hostName(),
                 context_->renderer(),
-                context_->swapLock(),
+                context_->windows().swapLock(),
                 drawMs_.percentile(0.5),
                 drawMs_.percentile(0.99),
                 drawMs_.largest(),
@@ -292,8 +292,8 @@ int showTile(const lockstep::Cluster& cluster, Backend backend, const base::Exec
         readiness.tile = session->tile();
         readiness.otherFloats = session->otherFloats();
         readiness.renderer = session->context().renderer();
-        readiness.shortcomings = session->context().shortcomings();
-        readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().framesToIgnore());
+        readiness.shortcomings = session->context().windows().shortcomings();
+        readiness.framesToIgnore = static_cast<std::uint32_t>(session->context().windows().framesToIgnore());
     } catch (const std::exception& error) {
         readiness.error = error.what();
         readiness.mayStillCome = dynamic_cast<const base::NotYetError*>(&error) != nullptr;

@@ -80,7 +80,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
         stepNumber_ = step.number;
         return;
     }
-    const Hand before{rules_.tuning, probe_, heading_};
+    const ToolState before{rules_.tuning, probe_, heading_};
     const std::int64_t refusedBefore = surface_->refusedPresses().count;
     try {
         applyToSand(step, moved);
@@ -92,7 +92,7 @@ void Replica::apply(const Step& step, const std::function<void()>& moved) {
     refusedPress_ = surface_->refusedPresses().count != refusedBefore;
 }
 
-void Replica::skip(const Step& step, const Hand& before, const char* why) {
+void Replica::skip(const Step& step, const ToolState& before, const char* why) {
     leftOut_ = std::string("skipped: ") + why;
     stepNumber_ = step.number;
     // The sand may be half changed, and holds no copy of itself from before the step.

@@ -180,7 +180,7 @@ public:
 
 private:
     /// Values that a step changes along with the sand.
-    struct Hand {
+    struct ToolState {
         Tuning tuning;
         ProbePoint probe;
         Heading heading;
@@ -200,7 +200,7 @@ private:
     void press();
     void applyToSand(const Step& step, const std::function<void()>& moved);
     /// Ends a step whose application has failed. `before` is from before the step.
-    void skip(const Step& step, const Hand& before, const char* why);
+    void skip(const Step& step, const ToolState& before, const char* why);
     /// Restores the sand that is kept for an undo. Returns false if no sand is kept, or if it is not possible sand.
     bool restoreKept();
     /// Does a reset, an undo or a load. Returns false if the edit restores no sand.

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sand/model/grid_codec.hpp"
-#include "sand/surface_factory.hpp"
 
 namespace sand {
 
@@ -102,8 +101,6 @@ std::int32_t Start::referenceHeight() const {
     const std::int64_t cells = std::int64_t{terrain.columns()} * terrain.rows();
     return static_cast<std::int32_t>(terrain.volume() / cells);
 }
-
-std::int64_t Start::volume() const { return tin != nullptr ? makeSurface(*this)->volume() : terrain.volume(); }
 
 std::int64_t Start::leastBytes() const {
     if (tin != nullptr) {

@@ -68,8 +68,6 @@ struct Start {
     [[nodiscard]] std::optional<Start> middle(int most) const;
     /// Returns the mean height of the sand as a whole number [unit]. Devices hover and dig relative to it.
     [[nodiscard]] std::int32_t referenceHeight() const;
-    /// Returns the exact volume of the sand, in the unit of Replica::volume(). Triangulates a TIN.
-    [[nodiscard]] std::int64_t volume() const;
 
     /// Returns a lower bound of the memory for a replica and this Start [byte].
     [[nodiscard]] std::int64_t leastBytes() const;

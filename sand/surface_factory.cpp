@@ -17,6 +17,10 @@ std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* e
                                                grid::Erosion::Options{.executor = executor});
 }
 
+std::int64_t volumeOf(const Start& start) {
+    return start.tin != nullptr ? makeSurface(start)->volume() : start.terrain.volume();
+}
+
 HeightAt startHeights(const Start& start) {
     if (start.tin != nullptr) {
         const std::shared_ptr<const Surface> tin = makeSurface(start);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "base/executor.hpp"
@@ -13,6 +14,9 @@ namespace sand {
 /// Returns the sand that a replica begins with. `executor` shares out the work of a height field's sweeps, and must
 /// outlive the sand. If it is null, the calling thread does all work.
 [[nodiscard]] std::unique_ptr<Surface> makeSurface(const Start& start, const base::Executor* executor = nullptr);
+
+/// Returns the exact volume of the sand that `start` begins with, in the unit of Replica::volume(). Triangulates a TIN.
+[[nodiscard]] std::int64_t volumeOf(const Start& start);
 
 /// Returns the height of the sand that `start` begins with, at each place. It is continuous: a height field is
 /// interpolated between its cells. Outside the field, it is the height of the nearest place in it. `start` must outlive

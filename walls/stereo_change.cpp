@@ -56,12 +56,11 @@ Wall shownOnItsOutputs(const Wall& wall, Stereo stereo) {
 
 std::vector<std::string> otherModesOf(const Wall& wall) {
     std::vector<std::string> names;
-    for (const std::string& name : stereoNames()) {
-        const Stereo stereo = stereoNamed(name);
+    for (const auto& [stereo, name] : valuesOf(Stereo{})) {
         try {
             if (stereo != wall.stereo) {
                 (void)onItsOutputs(wall, stereo);
-                names.push_back(name);
+                names.emplace_back(name);
             }
         } catch (const base::InputError&) {
             // These outputs cannot show this mode.

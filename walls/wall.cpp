@@ -25,21 +25,11 @@ void exchangeEyes(std::vector<Output>& outputs) {
 
 }  // namespace
 
-const std::vector<std::string>& stereoNames() {
-    static const std::vector<std::string> kNames = [] {
-        std::vector<std::string> names;
-        for (const auto& mode : valuesOf(Stereo{})) {
-            names.emplace_back(mode.name);
-        }
-        return names;
-    }();
-    return kNames;
-}
-
 Stereo stereoNamed(const std::string& name) {
     const auto found = base::valueNamed<Stereo>(name);
     if (!found) {
-        throw base::InputError(fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(stereoNames(), ", ")));
+        throw base::InputError(
+            fmt::format("no stereo mode '{}'; there are {}", name, fmt::join(base::namesOf<Stereo>(), ", ")));
     }
     return *found;
 }

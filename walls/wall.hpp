@@ -67,8 +67,6 @@ constexpr auto valuesOf(Stereo) {
 
 [[nodiscard]] inline std::string_view eyeName(Eye eye) { return base::nameOf(eye); }
 [[nodiscard]] inline std::string_view stereoName(Stereo stereo) { return base::nameOf(stereo); }
-/// Returns the names of all modes, in the order of Stereo.
-[[nodiscard]] const std::vector<std::string>& stereoNames();
 /// Returns the mode with this name. Throws base::InputError, which lists all names, if there is no such mode.
 [[nodiscard]] Stereo stereoNamed(const std::string& name);
 /// Returns the eyes that a mode draws, in the order of drawing. They are the middle for `mono`, one eye for `left` and

@@ -71,10 +71,9 @@ sand::ProbePoint handAt(const sand::Rules& rules, std::int32_t level, double sec
         radius = radius > 0.13 ? radius - 0.04 : 0.6;
     }
     const double half = rules.columns / 2.0 * sand::kProbePerCell;
-    constexpr std::int32_t kUnitsPerProbe = sand::kUnitsPerCell / sand::kProbePerCell;
     return {static_cast<std::int32_t>(half * (1 + radius * std::cos(left / radius))),
             static_cast<std::int32_t>(half * (1 + radius * std::sin(left / radius))),
-            level / kUnitsPerProbe + rules.tuning.tool.radius / 2};
+            level / sand::kUnitsPerProbe + rules.tuning.tool.radius / 2};
 }
 
 /// Applies the `steps` steps of one frame. Each step has as many samples of the hand as a device gives.

@@ -30,51 +30,51 @@ void LinkCounters::add(const LinkCounters& other) {
 }
 
 Client::Client(Address address, Offer offer, LinkSecurity security, LinkClock clock)
-    : session_(std::make_unique<Session>(std::move(address), std::move(offer), std::move(security), std::move(clock))) {
-}
+    : conversation_(std::make_unique<Conversation>(std::move(address), std::move(offer), std::move(security),
+                                                   std::move(clock))) {}
 
 Client::~Client() = default;
 
-LinkStatus Client::link() const { return session_->shelf.status(); }
+LinkStatus Client::link() const { return conversation_->shelf.status(); }
 
 void Client::grant(std::uint32_t epoch, std::uint64_t stepNumber, std::uint64_t stateHash, base::Bytes state,
                    StepRing recent) {
-    session_->grant({epoch, stepNumber, stateHash}, std::move(state), std::move(recent));
+    conversation_->grant({epoch, stepNumber, stateHash}, std::move(state), std::move(recent));
 }
 
-std::vector<TimedStep> Client::drain(std::size_t most) { return session_->drain(most); }
+std::vector<TimedStep> Client::drain(std::size_t most) { return conversation_->drain(most); }
 
-void Client::shown(const Shown& frame) { session_->shown(frame); }
+void Client::shown(const Shown& frame) { conversation_->shown(frame); }
 
-void Client::request(const sand::Edit& edit) { session_->request({edit}); }
+void Client::request(const sand::Edit& edit) { conversation_->request({edit}); }
 
-void Client::shareForce(const ForceShare& share) { session_->shareForce(share); }
+void Client::shareForce(const ForceShare& share) { conversation_->shareForce(share); }
 
-std::vector<base::Bytes> Client::drainTicks() { return session_->shelf.drainTicks(); }
+std::vector<base::Bytes> Client::drainTicks() { return conversation_->shelf.drainTicks(); }
 
-std::vector<TimedPosition> Client::drainPositions() { return session_->drainPositions(); }
+std::vector<TimedPosition> Client::drainPositions() { return conversation_->drainPositions(); }
 
-std::uint64_t Client::floods() const { return session_->shelf.floods(); }
+std::uint64_t Client::floods() const { return conversation_->shelf.floods(); }
 
-std::int64_t Client::clockOffsetNs() const { return session_->shelf.clockOffsetNs(); }
+std::int64_t Client::clockOffsetNs() const { return conversation_->shelf.clockOffsetNs(); }
 
-std::optional<Report> Client::report() const { return session_->shelf.report(); }
+std::optional<Report> Client::report() const { return conversation_->shelf.report(); }
 
-LinkCounters Client::counters() const { return session_->shelf.counters(); }
+LinkCounters Client::counters() const { return conversation_->shelf.counters(); }
 
-std::string Client::lastFailure() const { return session_->shelf.failure(); }
+std::string Client::lastFailure() const { return conversation_->shelf.failure(); }
 
-std::uint32_t Client::stepsPerSecond() const { return session_->shelf.stepsPerSecond(); }
+std::uint32_t Client::stepsPerSecond() const { return conversation_->shelf.stepsPerSecond(); }
 
-std::optional<double> Client::forceCeiling() const { return session_->shelf.forceCeiling(); }
+std::optional<double> Client::forceCeiling() const { return conversation_->shelf.forceCeiling(); }
 
-void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { session_->drill(drill, length); }
+void Client::drill(LinkDrill drill, std::chrono::milliseconds length) { conversation_->drill(drill, length); }
 
-void Client::stop() { session_->stop(); }
+void Client::stop() { conversation_->stop(); }
 
 // Link with a server that has no sand and streams positions of its hand.
 
-void Client::Session::take(Link link, const PositionGreeting& greeting) {
+void Client::Conversation::take(Link link, const PositionGreeting& greeting) {
     if (isUp(link)) {
         outOfTurn();
         return;
@@ -97,7 +97,7 @@ void Client::Session::take(Link link, const PositionGreeting& greeting) {
                                                  peer(), greeting.name));
 }
 
-void Client::Session::take(Link link, const Position& position) {
+void Client::Conversation::take(Link link, const Position& position) {
     if (link != Link::streaming) {
         outOfTurn();
     } else if (shelf.add(TimedPosition{position, host::monotonicNs()})) {
@@ -105,7 +105,7 @@ void Client::Session::take(Link link, const Position& position) {
     }
 }
 
-std::vector<TimedPosition> Client::Session::drainPositions() {
+std::vector<TimedPosition> Client::Conversation::drainPositions() {
     bool resume = false;
     std::vector<TimedPosition> positions = shelf.drainPositions(resume);
     if (resume) {
@@ -116,7 +116,7 @@ std::vector<TimedPosition> Client::Session::drainPositions() {
 
 // Drills: faults of the link on purpose.
 
-void Client::Session::drill(LinkDrill drill, std::chrono::milliseconds length) {
+void Client::Conversation::drill(LinkDrill drill, std::chrono::milliseconds length) {
     boost::asio::post(io_, [this, drill, length] {
         if (!connection_) {
             return;

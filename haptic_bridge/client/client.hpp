@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "base/names.hpp"
 #include "haptic_bridge/link/address.hpp"
 #include "haptic_bridge/link/handshake.hpp"
 #include "haptic_bridge/link/protocol.hpp"
@@ -41,6 +42,16 @@ enum class Link : std::uint8_t {
     lost,        // an earlier handshake had succeeded, and the connection has ended
     stopped      // stop() was called
 };
+constexpr auto valuesOf(Link) {
+    return std::array{base::Named{Link::connecting, "connecting"},
+                      base::Named{Link::refused, "refused"},
+                      base::Named{Link::offered, "offered"},
+                      base::Named{Link::granting, "granting"},
+                      base::Named{Link::linked, "linked"},
+                      base::Named{Link::streaming, "streaming"},
+                      base::Named{Link::lost, "lost"},
+                      base::Named{Link::stopped, "stopped"}};
+}
 
 /// State of the link, with a line for the user.
 struct LinkStatus {
@@ -165,15 +176,13 @@ public:
     /// Says goodbye, waits at most half a second for the server's last report, and ends the network thread.
     void stop();
 
-    /// Silence of the server after which the client drops the link [ns]. Pongs come four times a second.
-    static constexpr std::int64_t kSilenceNs = 10'000'000'000;
     static constexpr std::size_t kMaxQueued = 1024;      // [step] that may wait
     static constexpr std::size_t kMaxPositions = 16384;  // [position] that may wait, 1 s of a device read at 16 kHz
     static constexpr std::size_t kMaxTicks = 8 << 20;    // [byte] of tick pieces that may wait, 1.5 min of a hand
 
 private:
-    class Session;
-    std::unique_ptr<Session> session_;
+    class Conversation;
+    std::unique_ptr<Conversation> conversation_;
 };
 
 }  // namespace haptic_bridge

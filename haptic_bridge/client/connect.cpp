@@ -9,7 +9,7 @@
 
 namespace haptic_bridge {
 
-void Client::Session::connect() {
+void Client::Conversation::connect() {
     if (stopping_) {  // the retry was already due when stop() cancelled it
         return;
     }
@@ -17,7 +17,7 @@ void Client::Session::connect() {
                                   [this](const std::string& why) { failed(why); }});
 }
 
-void Client::Session::connected(Connection::Socket socket) {
+void Client::Conversation::connected(Connection::Socket socket) {
     connection_ = std::make_shared<Connection>(std::move(socket), greeter_.openTls());
     connection_->limit(kMaxGreeting);
     greeter_.forget();
@@ -32,14 +32,14 @@ void Client::Session::connected(Connection::Socket socket) {
                         false, [this] { greet(); }});
 }
 
-void Client::Session::failed(const std::string& why) {
+void Client::Conversation::failed(const std::string& why) {
     shelf.fail(fmt::format("no answer ({})", why));
     shelf.setStatus(shelf.counters().links > 0 ? Link::lost : Link::connecting,
                     fmt::format("haptic server {} does not answer ({}); trying again", address_.text(), why));
     retry();
 }
 
-void Client::Session::closed(const std::string& why) {
+void Client::Conversation::closed(const std::string& why) {
     const Link before = shelf.link();
     if (stopping_) {
         io_.stop();
@@ -57,11 +57,11 @@ void Client::Session::closed(const std::string& why) {
     retry();
 }
 
-void Client::Session::countRefusal(RefusalCode code) {
+void Client::Conversation::countRefusal(RefusalCode code) {
     shelf.count([code](LinkCounters& counters) { ++counters.refused[static_cast<std::size_t>(code) - 1]; });
 }
 
-void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
+void Client::Conversation::refuse(const std::string& why, Connection::Fault fault) {
     shelf.fail(why);
     if (fault) {
         countRefusal(*fault);
@@ -75,7 +75,7 @@ void Client::Session::refuse(const std::string& why, Connection::Fault fault) {
     retry();
 }
 
-void Client::Session::retry() {
+void Client::Conversation::retry() {
     if (connection_) {
         const auto gone = std::exchange(connection_, nullptr);
         gone->finish();

@@ -28,7 +28,7 @@ bool greets(const Message& message, Link link) {
 
 }  // namespace
 
-Client::Session::Session(Address address, Offer offer, LinkSecurity security, LinkClock clock)
+Client::Conversation::Conversation(Address address, Offer offer, LinkSecurity security, LinkClock clock)
     : address_(std::move(address)),
       limits_(offer.limits),
       greeter_(std::move(offer), std::move(security)),
@@ -39,7 +39,7 @@ Client::Session::Session(Address address, Offer offer, LinkSecurity security, Li
 }
 
 /// Runs until io_ is stopped. An error ends only the link; this thread and the wall continue.
-void Client::Session::run() {
+void Client::Conversation::run() {
     const auto work = asio::make_work_guard(io_);
     while (!io_.stopped()) {
         try {
@@ -56,7 +56,7 @@ void Client::Session::run() {
     }
 }
 
-void Client::Session::stop() {
+void Client::Conversation::stop() {
     if (!thread_.joinable()) {
         return;
     }
@@ -79,7 +79,7 @@ void Client::Session::stop() {
     shelf.setStatus(Link::stopped, peer() + ": link closed");
 }
 
-void Client::Session::greet() {
+void Client::Conversation::greet() {
     if (!greeter_.greets(connection_->address())) {
         refuse("is not on this machine: a link over a network needs --secret-file on both sides (docs/security.md)",
                RefusalCode::secret);
@@ -89,14 +89,14 @@ void Client::Session::greet() {
 }
 
 /// Ends the link, because the server has been silent for too long.
-void Client::Session::fallSilent() {
+void Client::Conversation::fallSilent() {
     if (!up()) {  // the server accepted the connection and never greeted
         countRefusal(RefusalCode::limit);
     }
     connection_->close(fmt::format("silent for {} s", kSilenceNs / 1'000'000'000));
 }
 
-void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
+void Client::Conversation::grant(StartMessage start, base::Bytes state, StepRing recent) {
     if (!shelf.beginGranting()) {
         return;
     }
@@ -111,7 +111,7 @@ void Client::Session::grant(Start start, base::Bytes state, StepRing recent) {
     });
 }
 
-void Client::Session::shareForce(const ForceShare& share) {
+void Client::Conversation::shareForce(const ForceShare& share) {
     asio::post(io_, [this, share] {
         force_ = share;
         const Link link = shelf.link();
@@ -121,7 +121,7 @@ void Client::Session::shareForce(const ForceShare& share) {
     });
 }
 
-void Client::Session::request(const EditRequest& request) {
+void Client::Conversation::request(const EditRequest& request) {
     asio::post(io_, [this, request] {
         if (connection_ && shelf.link() == Link::linked) {
             grant_->asked(request.edit);
@@ -130,7 +130,7 @@ void Client::Session::request(const EditRequest& request) {
     });
 }
 
-void Client::Session::receive(Message&& message) {
+void Client::Conversation::receive(Message&& message) {
     silence_.heard();
     shelf.count([this](LinkCounters& counters) {
         counters.bytesIn = connection_->bytesIn();
@@ -150,15 +150,15 @@ void Client::Session::receive(Message&& message) {
     std::visit([this, link](auto& kind) { take(link, kind); }, message);
 }
 
-void Client::Session::take(Link, const Refusal& refusal) {
+void Client::Conversation::take(Link, const Refusal& refusal) {
     shelf.count(
         [code = refusal.code](LinkCounters& counters) { ++counters.refusedHere[static_cast<std::size_t>(code) - 1]; });
     refuse("refuses: " + refusal.text, std::nullopt);
 }
 
-void Client::Session::take(Link, const Bye& bye) { connection_->close("it says goodbye: " + bye.reason); }
+void Client::Conversation::take(Link, const Bye& bye) { connection_->close("it says goodbye: " + bye.reason); }
 
-void Client::Session::take(Link link, const Challenge& challenge) {
+void Client::Conversation::take(Link link, const Challenge& challenge) {
     if (isUp(link)) {
         outOfTurn();
     } else if (const auto proof = greeter_.answer(challenge)) {
@@ -168,7 +168,7 @@ void Client::Session::take(Link link, const Challenge& challenge) {
     }
 }
 
-void Client::Session::take(Link link, const Welcome& greeting) {
+void Client::Conversation::take(Link link, const Welcome& greeting) {
     if (isUp(link)) {
         outOfTurn();
         return;
@@ -188,7 +188,7 @@ void Client::Session::take(Link link, const Welcome& greeting) {
     });
 }
 
-void Client::Session::countLink() {
+void Client::Conversation::countLink() {
     shelf.linked();
     shelf.count([](LinkCounters& counters) {
         counters.reconnects += counters.links > 0 ? 1 : 0;
@@ -196,11 +196,13 @@ void Client::Session::countLink() {
     });
 }
 
-void Client::Session::take(Link, const Pong& pong) { shelf.setClockOffset(pings_.answered(pong, host::monotonicNs())); }
+void Client::Conversation::take(Link, const Pong& pong) {
+    shelf.setClockOffset(pings_.answered(pong, host::monotonicNs()));
+}
 
-void Client::Session::take(Link, const Report& report) { shelf.keep(report); }
+void Client::Conversation::take(Link, const Report& report) { shelf.keep(report); }
 
-void Client::Session::take(Link link, const NeedState& need) {
+void Client::Conversation::take(Link link, const NeedState& need) {
     if (link != Link::granting || !grant_ || !grant_->mayHandOver()) {
         outOfTurn();
         return;
@@ -214,7 +216,7 @@ void Client::Session::take(Link link, const NeedState& need) {
     }
 }
 
-void Client::Session::take(Link link, const Ready& ready) {
+void Client::Conversation::take(Link link, const Ready& ready) {
     if (link != Link::granting || !grant_) {
         outOfTurn();
         return;
@@ -222,7 +224,7 @@ void Client::Session::take(Link link, const Ready& ready) {
     grant_->begun();
     shelf.setForceCeiling(ready.forceCeiling);
     retryPause_.linked(host::monotonicNs());
-    const Start& start = grant_->start();
+    const StartMessage& start = grant_->start();
     shelf.setStatus(Link::linked,
                     fmt::format("{}: linked, epoch {} from step {}", peer(), start.epoch, start.stepNumber + 1));
 }

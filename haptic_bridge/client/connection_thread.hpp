@@ -23,15 +23,15 @@ namespace haptic_bridge {
 
 /// Implementation of Client. Its network thread runs the whole conversation, and puts the results on the shelf for the
 /// callers.
-class Client::Session {
+class Client::Conversation {
 public:
-    Session(Address address, Offer offer, LinkSecurity security, LinkClock clock);
-    ~Session() { stop(); }
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
+    Conversation(Address address, Offer offer, LinkSecurity security, LinkClock clock);
+    ~Conversation() { stop(); }
+    Conversation(const Conversation&) = delete;
+    Conversation& operator=(const Conversation&) = delete;
 
     // These functions may be called by any thread.
-    void grant(Start start, base::Bytes state, StepRing recent);
+    void grant(StartMessage start, base::Bytes state, StepRing recent);
     std::vector<TimedStep> drain(std::size_t most);
     void shown(const Shown& frame);
     void request(const EditRequest& request);

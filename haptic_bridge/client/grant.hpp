@@ -16,10 +16,10 @@ namespace haptic_bridge {
 class Grant {
 public:
     Grant() = default;
-    Grant(const Start& start, base::Bytes state, StepRing recent)
+    Grant(const StartMessage& start, base::Bytes state, StepRing recent)
         : start_(start), state_(std::move(state)), recent_(std::move(recent)), lastStep_(start.stepNumber) {}
 
-    [[nodiscard]] const Start& start() const { return start_; }
+    [[nodiscard]] const StartMessage& start() const { return start_; }
     [[nodiscard]] std::uint64_t lastStep() const { return lastStep_; }
     /// Returns whether the server may ask for sand. It may ask twice.
     [[nodiscard]] bool mayHandOver() const { return handOvers_ < 2; }
@@ -48,7 +48,7 @@ public:
     [[nodiscard]] Shown bounded(const Shown& frame) const;
 
 private:
-    Start start_;
+    StartMessage start_;
     base::Bytes state_;
     StepRing recent_;
     std::deque<sand::Edit> asked_;  // edits that are in no step yet, oldest first

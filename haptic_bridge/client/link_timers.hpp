@@ -55,7 +55,7 @@ public:
     SilenceWatch(boost::asio::io_context& io, LinkClock clock) : timer_(io), now_(std::move(clock)) {}
 
     void heard() { heardNs_ = now_(); }
-    /// Counts from now on. Calls `silent` if nothing was heard for Client::kSilenceNs. While excused() is true, the
+    /// Counts from now on. Calls `silent` if nothing was heard for kSilenceNs. While excused() is true, the
     /// server counts as heard.
     void start(std::function<bool()> excused, std::function<void()> silent) {
         heard();
@@ -78,7 +78,7 @@ private:
             }
             const std::int64_t now = now_();
             heardNs_ = excused_() ? now : heardNs_;
-            if (now - heardNs_ > Client::kSilenceNs) {
+            if (now - heardNs_ > kSilenceNs) {
                 silent_();
             } else {
                 look();

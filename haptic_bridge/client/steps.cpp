@@ -13,12 +13,12 @@ namespace haptic_bridge {
 
 namespace asio = boost::asio;
 
-void Client::Session::take(Link, const TimingTest& test) {
+void Client::Conversation::take(Link, const TimingTest& test) {
     connection_->send(TimingEcho{test.id, Leg::received});
     shelf.addTest(test.id, grant_ ? grant_->lastStep() : 0);
 }
 
-void Client::Session::take(Link link, StepMessage& message) {
+void Client::Conversation::take(Link link, StepMessage& message) {
     if (const std::string why = message.step.refusal(limits_); !why.empty()) {
         connection_->close(why, RefusalCode::garbage);
         return;
@@ -47,9 +47,9 @@ void Client::Session::take(Link link, StepMessage& message) {
     }
 }
 
-void Client::Session::take(Link, TickPiece& piece) { shelf.addTicks(std::move(piece.bytes)); }
+void Client::Conversation::take(Link, TickPiece& piece) { shelf.addTicks(std::move(piece.bytes)); }
 
-std::vector<TimedStep> Client::Session::drain(std::size_t most) {
+std::vector<TimedStep> Client::Conversation::drain(std::size_t most) {
     bool resume = false;
     std::vector<TimedStep> steps = shelf.drain(most, resume);
     if (resume) {
@@ -58,7 +58,7 @@ std::vector<TimedStep> Client::Session::drain(std::size_t most) {
     return steps;
 }
 
-void Client::Session::resumeReading() {
+void Client::Conversation::resumeReading() {
     asio::post(io_, [this] {
         if (connection_ && !drill_.active()) {
             connection_->resume();
@@ -66,7 +66,7 @@ void Client::Session::resumeReading() {
     });
 }
 
-void Client::Session::shown(const Shown& frame) {
+void Client::Conversation::shown(const Shown& frame) {
     asio::post(io_, [this, frame, tests = shelf.takeTestsInFrame()] {
         if (!connection_ || drill_.active() || shelf.link() != Link::linked) {
             return;

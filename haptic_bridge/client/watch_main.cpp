@@ -130,8 +130,6 @@ private:
         connection_->finish();
     }
 
-    static constexpr std::int64_t kSilenceNs = 10'000'000'000;  // [ns]; a report comes once a second
-
     asio::steady_timer timer_;
     const LinkSecurity& security_;
     std::shared_ptr<Connection> connection_;

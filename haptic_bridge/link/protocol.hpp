@@ -33,6 +33,9 @@ inline constexpr std::size_t kMaxState = 256 * 1024 * 1024;
 static_assert(sand::kMaxSandBytes + kMaxMessage <= kMaxState, "a load fits");
 inline constexpr std::size_t kMaxReason = 512;  // [byte] of the reason in a Refusal or a Bye; the rest is cut off
 inline constexpr std::size_t kMaxCatchUp = 16;  // [step] in one CatchUp; a step takes at most about 1.5 KiB
+// [ns], silence of the other side after which either end drops the link. Each end sends a message once a second or more
+// often.
+inline constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 // Messages from the master to the server.
 
@@ -50,7 +53,7 @@ struct ForceShare {
     friend bool operator==(const ForceShare&, const ForceShare&) = default;
 };
 /// Lets the server number the steps. The server's first step is stepNumber + 1 of `epoch`.
-struct Start {
+struct StartMessage {
     std::uint32_t epoch = 0;
     std::uint64_t stepNumber = 0;
     std::uint64_t stateHash = 0;  // sand::Replica::stateHash() at stepNumber
@@ -62,7 +65,7 @@ struct Start {
         visit("state_hash", it.stateHash);
         visit("force", it.force);
     }
-    friend bool operator==(const Start&, const Start&) = default;
+    friend bool operator==(const StartMessage&, const StartMessage&) = default;
 };
 /// The whole sand at Start's step. Answers a NeedState.
 struct State {
@@ -238,9 +241,9 @@ struct Bye {
 };
 
 /// One message of any type. The type byte on the wire is the type's place in this list, counted from 1.
-using Message = std::variant<Hello, Welcome, Refusal, Start, Ready, NeedState, State, StepMessage, TimingTest, Shown,
-                             TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece, PositionGreeting,
-                             Position, Challenge, Proof, CatchUp>;
+using Message = std::variant<Hello, Welcome, Refusal, StartMessage, Ready, NeedState, State, StepMessage, TimingTest,
+                             Shown, TimingEcho, Ping, Pong, Report, Bye, EditRequest, ForceShare, TickPiece,
+                             PositionGreeting, Position, Challenge, Proof, CatchUp>;
 
 /// Returns the bytes of `message` on the wire: length, type, payload.
 [[nodiscard]] base::Bytes encode(const Message& message);

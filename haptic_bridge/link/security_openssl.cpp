@@ -44,9 +44,9 @@ void require(bool good, const std::string& what) {
     }
 }
 
-class Session : public TlsSession {
+class OpensslSession : public TlsSession {
 public:
-    Session(SSL_CTX* context, bool server) : ssl_(SSL_new(context)) {
+    OpensslSession(SSL_CTX* context, bool server) : ssl_(SSL_new(context)) {
         BIO* in = BIO_new(BIO_s_mem());
         BIO* out = BIO_new(BIO_s_mem());
         require(ssl_ && in != nullptr && out != nullptr, "out of memory");
@@ -140,7 +140,7 @@ class OpenTls : public TlsContext {
 public:
     OpenTls(Context context, bool server) : context_(std::move(context)), server_(server) {}
     [[nodiscard]] std::unique_ptr<TlsSession> open() const override {
-        return std::make_unique<Session>(context_.get(), server_);
+        return std::make_unique<OpensslSession>(context_.get(), server_);
     }
 
 private:

@@ -21,7 +21,7 @@ namespace haptic_bridge {
 struct Commands {
     struct Grant {
         std::uint32_t session = 0;
-        Start start;
+        StartMessage start;
     };
     struct Frame {
         Shown shown;

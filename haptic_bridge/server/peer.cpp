@@ -17,7 +17,6 @@ using std::chrono::milliseconds;
 namespace {
 
 constexpr std::int64_t kGreetingNs = 3'000'000'000;  // [ns], time in which an unauthenticated connection must greet
-constexpr std::int64_t kSilenceNs = 10'000'000'000;  // [ns]; a master sends a Ping four times a second
 constexpr std::uint64_t kGreetingBytes = 16 * 1024;  // [byte]; a greeting takes some hundreds, TLS some hundreds more
 
 }  // namespace

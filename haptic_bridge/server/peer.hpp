@@ -44,7 +44,7 @@ private:
     void take(const Proof& proof);
     void take(const Ping& ping);
     void take(const Bye& bye);
-    void take(const Start& start);
+    void take(const StartMessage& start);
     void take(State& state);
     void take(CatchUp& catchUp);
     void take(const Shown& shown);

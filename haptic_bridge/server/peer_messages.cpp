@@ -82,7 +82,7 @@ void Peer::take(const Bye&) {
     }
 }
 
-void Peer::take(const Start& start) {
+void Peer::take(const StartMessage& start) {
     if (phase_ != Phase::waiting) {
         outOfTurn();
         return;

@@ -34,7 +34,7 @@ public:
     SandThread& operator=(const SandThread&) = delete;
 
     // Any thread may call these. The answers come through Output. Commands limits how much waits meanwhile.
-    void start(std::uint32_t session, const Start& start) { post(Commands::Grant{session, start}); }
+    void start(std::uint32_t session, const StartMessage& start) { post(Commands::Grant{session, start}); }
     void state(base::Bytes bytes) { post(State{std::move(bytes)}); }
     void catchUp(CatchUp steps) { post(std::move(steps)); }
     void shown(const Shown& frame, std::int64_t nowNs) { post(Commands::Frame{frame, nowNs}); }

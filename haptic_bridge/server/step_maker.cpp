@@ -36,7 +36,7 @@ bool StepMaker::asGranted() {
     return replica_.stepNumber() == start_.stepNumber && replica_.stateHash() == start_.stateHash;
 }
 
-void StepMaker::start(std::uint32_t session, const Start& start) {
+void StepMaker::start(std::uint32_t session, const StartMessage& start) {
     session_ = session;
     start_ = start;
     if (asGranted()) {

@@ -48,7 +48,7 @@ public:
 
     /// Begins the master's epoch if the replica has the sand of `start`. Otherwise asks the master for that sand, and
     /// waits for state() or catchUp().
-    void start(std::uint32_t session, const Start& start);
+    void start(std::uint32_t session, const StartMessage& start);
     /// Loads the sand of a State and begins the epoch. Reports `unusable` if this is not the sand of Start, or if this
     /// machine has no memory for it. Ignored unless it was asked for.
     void state(const base::Bytes& bytes);
@@ -102,7 +102,7 @@ private:
     StepClock clock_;
     SweepBudget budget_;
     std::uint32_t session_ = 0;
-    Start start_;
+    StartMessage start_;
     enum class Phase { idle, awaitingState, running } phase_ = Phase::idle;
     bool asksForSand_ = false;  // steps did not lead to the sand of Start, and the whole sand was asked for
     sand::Edit edit_;           // of the next step

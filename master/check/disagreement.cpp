@@ -24,11 +24,6 @@ std::string replayProgram() {
     return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "sandwall-replay").string();
 }
 
-std::string judgeName(lockstep::Divergence::Judge judge) {
-    using Judge = lockstep::Divergence::Judge;
-    return judge == Judge::majority ? "majority" : judge == Judge::journal ? "journal" : "master";
-}
-
 }  // namespace
 
 void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesystem::path& journal) {
@@ -49,7 +44,7 @@ void emitDivergence(const DivergedFrame& diverged, int ranks, const std::filesys
     host::emitEvent("divergence", {{"frame", diverged.frame},
                                    {"step", diverged.step},
                                    {"state_hash", fmt::format("{:016x}", divergence.rightHash)},
-                                   {"judge", judgeName(divergence.judge)},
+                                   {"judge", base::nameOf(divergence.judge)},
                                    {"agreeing", divergence.agreeing},
                                    {"ranks", ranks},
                                    {"odd", host::Json{odd.dump()}},

@@ -89,13 +89,9 @@ scene::ToolChange parseTool(std::string_view text) {
         } else if (const auto radius = numberIn(word)) {
             change.radius = radius;
         } else if (!word.empty()) {
-            std::string shapes;
-            for (const auto& known : valuesOf(sand::ToolKind{})) {
-                shapes += fmt::format("{}, ", known.name);
-            }
             throw base::InputError(
-                fmt::format("a tool is one of {}or has radius=, width=, heading=, foot=left or right, got '{}'", shapes,
-                            word.substr(0, 80)));
+                fmt::format("a tool is one of {}, or has radius=, width=, heading=, foot=left or right, got '{}'",
+                            fmt::join(base::namesOf<sand::ToolKind>(), ", "), word.substr(0, 80)));
         }
     }
     return change;

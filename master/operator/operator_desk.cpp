@@ -36,7 +36,7 @@ Json materialNow(const scene::Material& material) {
 }  // namespace
 
 OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& material, const walls::Wall& wall,
-                           std::filesystem::path out, const DeskOptions& options, Session session)
+                           std::filesystem::path out, const DeskOptions& options, SessionParts session)
     : wall_(wall),
       shown_(wall),
       place_(SandPlace::of(scene)),

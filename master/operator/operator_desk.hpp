@@ -42,7 +42,7 @@ struct DeskOptions {
 class OperatorDesk {
 public:
     /// The parts of a session that the desk uses.
-    struct Session {
+    struct SessionParts {
         const MasterSand& sand;
         StepRequests* requests;                  // null for a replay, whose only command is stop
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
@@ -53,7 +53,7 @@ public:
     /// `material` is the material of the scene, or of the resumed session. The wall and the objects that `session`
     /// refers to must outlive the desk. Throws base::InputError if the tracker cannot be opened.
     OperatorDesk(const scene::Scene& scene, const scene::Material& material, const walls::Wall& wall,
-                 std::filesystem::path out, const DeskOptions& options, Session session);
+                 std::filesystem::path out, const DeskOptions& options, SessionParts session);
 
     /// Carries out the commands since the last call, and the keys in `arrivals` that were pressed in the ranks'
     /// windows. Answers the askers of jobs that have ended.
@@ -112,7 +112,7 @@ private:
     const scene::MaterialGrid grid_;
     scene::Material material_;  // with all changes that operators have asked for
     const std::filesystem::path out_;
-    const Session session_;
+    const SessionParts session_;
     ViewSource views_;
     OperatorInput input_;
     std::optional<ControlSocket> control_;  // nullopt for a replay

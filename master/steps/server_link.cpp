@@ -8,34 +8,6 @@
 #include "host/print_line.hpp"
 
 namespace master {
-namespace {
-
-using haptic_bridge::Link;
-
-/// Returns the name of a state in the event `link`.
-const char* nameOf(Link link) {
-    switch (link) {
-        case Link::connecting:
-            return "connecting";
-        case Link::refused:
-            return "refused";
-        case Link::offered:
-            return "offered";
-        case Link::granting:
-            return "granting";
-        case Link::linked:
-            return "linked";
-        case Link::streaming:
-            return "streaming";
-        case Link::lost:
-            return "lost";
-        case Link::stopped:
-            return "stopped";
-    }
-    return "";
-}
-
-}  // namespace
 
 ServerLink::ServerLink(std::optional<haptic_bridge::Address> server, haptic_bridge::Offer offer,
                        haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock, int fastStepsPerSecond)
@@ -80,7 +52,7 @@ haptic_bridge::LinkStatus ServerLink::follow(std::uint32_t epoch) {
     haptic_bridge::LinkStatus status = client_->link();
     if (status.changes != changes_) {
         changes_ = status.changes;
-        host::emitEvent("link", {{"state", nameOf(status.link)}, {"epoch", epoch}, {"server", address()}});
+        host::emitEvent("link", {{"state", base::nameOf(status.link)}, {"epoch", epoch}, {"server", address()}});
         if (!status.message.empty()) {
             host::printLine("haptic link: {}", status.message);
         }

@@ -159,7 +159,7 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& request) {
+extern "C" GlPlatform* sandwallGlPlatform8(const PlatformRequest& request) {
     return new Egl(request.software ? Devices().software() : request.device);
 }
 

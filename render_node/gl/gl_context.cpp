@@ -17,27 +17,6 @@
 namespace render_node {
 namespace {
 
-/// Context without windows: the pictures stay in their frame buffers.
-class OffscreenContext final : public GlContext {
-public:
-    OffscreenContext(Backend backend, std::unique_ptr<GlPlatform> platform)
-        : backend_(backend), platform_(std::move(platform)) {
-        makeCurrent();
-        loadFunctions(*platform_);
-    }
-    void makeCurrent() override { platform_->makeCurrent(0); }
-    void present(std::span<const OutputPicture> /* outputs */, const PixelRect& /* changed */,
-                 std::uint64_t /* frame */) override {
-        finishFrame();
-    }
-    [[nodiscard]] std::string name() const override { return std::string(base::nameOf(backend_)); }
-    [[nodiscard]] std::optional<ScreenRect> workArea() const override { return platform_->workArea(); }
-
-private:
-    Backend backend_;
-    std::unique_ptr<GlPlatform> platform_;
-};
-
 std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& request) {
     if (const std::string fault = environmentFault(backend); !fault.empty()) {
         throw base::InputError(fault);
@@ -46,9 +25,9 @@ std::unique_ptr<GlContext> contextOf(Backend backend, const PlatformRequest& req
     try {
         std::unique_ptr<GlPlatform> platform = loadPlatform(backend, request);
         if (request.windows.empty()) {
-            context = std::make_unique<OffscreenContext>(backend, std::move(platform));
+            context = std::make_unique<GlContext>(backend, std::move(platform));
         } else {
-            context = makeWindowContext(std::move(platform), request.windows);
+            context = makeWindowContext(backend, std::move(platform), request.windows);
         }
     } catch (const base::NotYetError&) {
         throw;  // a display or monitor is missing, which no variable of Mesa changes
@@ -88,13 +67,22 @@ Backend backendFor(Backend backend, const walls::Tile& tile) {
     return shown ? Backend::glfw : kInMemory;
 }
 
-void loadFunctions(GlPlatform& platform) {
+GlContext::GlContext(Backend backend, std::unique_ptr<GlPlatform> platform)
+    : backend_(backend), platform_(std::move(platform)) {
+    makeCurrent();
     const auto load = [](void* from, const char* name) -> GLADapiproc {
         return static_cast<GlPlatform*>(from)->functionNamed(name);
     };
-    if (gladLoadGLUserPtr(load, &platform) < GLAD_MAKE_VERSION(3, 3)) {
+    if (gladLoadGLUserPtr(load, platform_.get()) < GLAD_MAKE_VERSION(3, 3)) {
         throw base::InputError("the OpenGL context lacks functions of OpenGL 3.3; install or update the driver");
     }
+}
+
+std::string GlContext::name() const { return std::string(base::nameOf(backend_)); }
+
+void GlContext::present(std::span<const OutputPicture> /* outputs */, const PixelRect& /* changed */,
+                        std::uint64_t /* frame */) {
+    finishFrame();
 }
 
 std::string GlContext::renderer() const {

@@ -4,11 +4,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "base/names.hpp"
 #include "render_node/gl/gl_platform.hpp"
@@ -43,23 +40,25 @@ struct OutputPicture {
     const EyeTarget* right = nullptr;    // the right picture; null unless the stereo mode is active
 };
 
-/// OpenGL 3.3 core context and, if the backend has windows, the windows of the tile.
+/// OpenGL 3.3 core context. It draws off screen; WindowContext shows its pictures in windows.
 ///
 /// The context is current on the thread that made it, and only that thread uses it. Destroy objects that own GL
 /// objects, such as EyeTarget and ScenePainter, before the context.
-///
-/// A backend without windows draws off screen: each function that has a body here then does what this body does.
 class GlContext {
 public:
-    GlContext() = default;
+    /// Makes context 0 of `platform` current, and loads OpenGL's functions through it. Throws base::InputError if one
+    /// is missing.
+    GlContext(Backend backend, std::unique_ptr<GlPlatform> platform);
     GlContext(const GlContext&) = delete;
     GlContext& operator=(const GlContext&) = delete;
     virtual ~GlContext() = default;
 
-    virtual void makeCurrent() = 0;
-    [[nodiscard]] virtual std::string name() const = 0;  // backend's name for --gl, such as "osmesa"
+    void makeCurrent() { platform_->makeCurrent(0); }
+    [[nodiscard]] std::string name() const;  // backend's name for --gl, such as "osmesa"
     /// Returns the renderer, from GL_RENDERER and GL_VERSION. The context must be current.
     [[nodiscard]] std::string renderer() const;
+    /// Returns the platform, for the events and the properties of its windows.
+    [[nodiscard]] GlPlatform& windows() const { return *platform_; }
 
     /// Copies the pictures of the outputs to the back buffers of the windows, and waits until GL has copied them. Off
     /// screen, only waits until GL has drawn them. Throws std::runtime_error, which names the output, if a window is
@@ -70,34 +69,11 @@ public:
     /// @param changed  Pixels that differ from the last call's pictures, in any output. A software renderer copies only
     ///                 these. The first call copies everything.
     /// @param frame    Number of the wall's frame. If the eyes are shown in turn, even frames show the left eye.
-    virtual void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame) = 0;
+    virtual void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame);
     /// Returns true for active stereo in windows without quad buffers: each frame then shows one eye.
     [[nodiscard]] virtual bool showsEyesInTurn() const { return false; }
     /// Shows the presented pictures. Call it after all ranks have agreed.
     virtual void swap() {}
-    /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
-    [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
-    /// Returns the events of the pointer in the windows since the last call, in the order of time. Returns an empty
-    /// list if the context was made without the pointer.
-    [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
-    /// Waits for an event of the window system, at most `seconds` [s].
-    virtual void awaitEvents(double /* seconds */) {}
-    /// Returns the present size of the window that the picture follows [pixel], or 0 × 0 without such a window.
-    [[nodiscard]] virtual glm::ivec2 followedWindow() const { return {}; }
-    /// Returns the states of the monitors that the outputs name, in the order of tile.outputs. Empty without windows.
-    [[nodiscard]] virtual std::vector<base::MonitorState> monitorStates() const { return {}; }
-    /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
-    [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
-    /// Returns how hardware locks the swaps of the windows:
-    /// - "joined": all cards with a sync signal swap together.
-    /// - "joined, no barrier": the windows of one card swap together.
-    /// - "refused" or "no extension": nothing is locked, because the driver refuses it or cannot do it.
-    /// - "none": the context has no windows.
-    [[nodiscard]] virtual std::string swapLock() const { return "none"; }
-    /// Returns the number of frames after the start in which a hardware barrier settles. The skew leaves them out.
-    [[nodiscard]] virtual int framesToIgnore() const { return 0; }
-    /// Calls GlPlatform::workArea().
-    [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
     /// Returns a lower bound of the memory of the windows' back buffers [byte].
     [[nodiscard]] virtual std::int64_t frameBufferBytes() const { return 0; }
 
@@ -108,6 +84,8 @@ protected:
     [[nodiscard]] std::uint64_t framesFinished() const { return frames_; }
 
 private:
+    Backend backend_;
+    std::unique_ptr<GlPlatform> platform_;
     std::uint64_t frames_ = 0;
 };
 

@@ -37,7 +37,7 @@ std::unique_ptr<GlPlatform> loadPlatform(Backend backend, const PlatformRequest&
          .ifMissing = "build Sandwall with Debian's " + std::string(packages.headers),
          .ifNotLoaded = "install Debian's " + std::string(packages.library) + ", or choose another --gl"},
         folders);
-    return std::unique_ptr<GlPlatform>(reinterpret_cast<decltype(&sandwallGlPlatform7)>(symbol)(request));
+    return std::unique_ptr<GlPlatform>(reinterpret_cast<decltype(&sandwallGlPlatform8)>(symbol)(request));
 }
 
 }  // namespace render_node

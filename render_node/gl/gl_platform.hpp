@@ -80,19 +80,19 @@ public:
     /// Returns the part of the first monitor that the desktop leaves to windows; nullopt without a display.
     [[nodiscard]] virtual std::optional<ScreenRect> workArea() const { return std::nullopt; }
 
-    // The functions below are for windows. They are not called off screen.
+    // The functions below are for windows. `window` is an index in PlatformRequest::windows. Without windows, each
+    // function does what its body here does.
+
     [[nodiscard]] virtual bool quadBuffers(std::size_t /* window */) const { return false; }
-    /// Returns the present size of a window that the picture follows [pixel].
-    [[nodiscard]] virtual glm::ivec2 size(std::size_t /* window */) const { return {}; }
+    /// Returns the present size of a window that the picture follows [pixel], or 0 × 0 of another window.
+    [[nodiscard]] virtual glm::ivec2 followedSize(std::size_t /* window */) const { return {}; }
     /// Says that a window has another size since the last swap(). For some frames keepsPicture() is then false.
     virtual void resized(std::size_t /* window */) {}
     /// Processes the events of the window system, and puts each window of a named monitor where that monitor is. Throws
     /// std::runtime_error, which names the output, if a window is lost.
     virtual void check() {}
-    /// Returns the state of the monitor that a window's output names, as of the last check().
-    [[nodiscard]] virtual base::MonitorState monitorState(std::size_t /* window */) const {
-        return base::MonitorState::on;
-    }
+    /// Returns the states of the monitors that the windows' outputs name, as of the last check().
+    [[nodiscard]] virtual std::vector<base::MonitorState> monitorStates() const { return {}; }
     /// Returns whether the back buffer of a window keeps its picture when the window is swapped. Then only pixels that
     /// change must be drawn into it.
     [[nodiscard]] virtual bool keepsPicture(std::size_t /* window */) const { return false; }
@@ -103,17 +103,25 @@ public:
     virtual void swap(std::uint64_t /* frame */, std::span<const PixelRect> /* changed */) {}
     /// Returns the keys that were pressed in the windows since the last call. Closing a window is Escape.
     [[nodiscard]] virtual std::vector<base::Keystroke> takeKeys() { return {}; }
-    /// Returns the events of the pointer since the last call, in the order of time.
+    /// Returns the events of the pointer in the windows since the last call, in the order of time. Returns an empty
+    /// list if the request was without the pointer.
     [[nodiscard]] virtual std::vector<PointerEvent> takePointer() { return {}; }
     /// Waits until the window system has an event, and at most `seconds` [s]. Processes the events.
     virtual void awaitEvents(double /* seconds */) {}
+    /// Returns one line for the operator for each request of the wall file that this machine cannot meet.
     [[nodiscard]] virtual std::vector<std::string> shortcomings() const { return {}; }
+    /// Returns how hardware locks the swaps of the windows:
+    /// - "joined": all cards with a sync signal swap together.
+    /// - "joined, no barrier": the windows of one card swap together.
+    /// - "refused" or "no extension": nothing is locked, because the driver refuses it or cannot do it.
+    /// - "none": there are no windows.
     [[nodiscard]] virtual std::string swapLock() const { return "none"; }
+    /// Returns the number of frames after the start in which a hardware barrier settles. The skew leaves them out.
     [[nodiscard]] virtual int framesToIgnore() const { return 0; }
 };
 
 /// The only symbol of a module. Its number changes with this header. Throws base::InputError.
-extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& request);
-inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform7";
+extern "C" GlPlatform* sandwallGlPlatform8(const PlatformRequest& request);
+inline constexpr const char* kGlPlatformSymbol = "sandwallGlPlatform8";
 
 }  // namespace render_node

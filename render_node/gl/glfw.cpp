@@ -33,7 +33,7 @@ public:
           eyesInTurn_(request.eyesInTurn),
           mayClose_(request.pointer || request.onDesk) {
         if (request.windows.empty()) {
-            windows_.emplace_back(library_, watch_.name());
+            hidden_.emplace(library_, watch_.name());
         }
         for (const WindowRequest& wanted : request.windows) {
             windows_.emplace_back(library_, watch_.name(), wanted, request,
@@ -53,9 +53,11 @@ public:
             lockSwaps(drawables);
         }
     }
-    ~Glfw() override { glfwMakeContextCurrent(windows_.front().handle()); }
+    ~Glfw() override { makeCurrent(0); }
 
-    void makeCurrent(std::size_t context) override { glfwMakeContextCurrent(windows_.at(context).handle()); }
+    void makeCurrent(std::size_t context) override {
+        glfwMakeContextCurrent((hidden_ ? *hidden_ : windows_.at(context)).handle());
+    }
     [[nodiscard]] GlFunction functionNamed(const char* name) override { return glfwGetProcAddress(name); }
 
     [[nodiscard]] bool quadBuffers(std::size_t window) const override { return windows_.at(window).quadBuffers(); }
@@ -81,10 +83,16 @@ public:
         }
     }
 
-    [[nodiscard]] base::MonitorState monitorState(std::size_t window) const override {
-        return follower_ ? follower_->state(window) : base::MonitorState::on;
+    [[nodiscard]] std::vector<base::MonitorState> monitorStates() const override {
+        std::vector<base::MonitorState> states;
+        for (std::size_t i = 0; i < windows_.size(); ++i) {
+            states.push_back(follower_ ? follower_->state(i) : base::MonitorState::on);
+        }
+        return states;
     }
-    [[nodiscard]] glm::ivec2 size(std::size_t window) const override { return windows_.at(window).pixels(); }
+    [[nodiscard]] glm::ivec2 followedSize(std::size_t window) const override {
+        return windows_.at(window).followedPixels();
+    }
     // Mesa's software renderer gives a back buffer its new size only after a swap. Until then a copy of a part beyond
     // the former size is refused by the X server (MIT-SHM, BadValue), which would end the rank.
     void resized(std::size_t window) override { wholeSwaps_.at(window) = kWholeSwaps; }
@@ -182,6 +190,7 @@ private:
     // The order matters. The windows are destroyed first, then the library, then the handlers of X errors.
     XWatch watch_;
     GlfwLibrary library_;
+    std::optional<GlfwWindow> hidden_;  // off screen, for its context
     std::vector<GlfwWindow> windows_;
     std::optional<MonitorFollower> follower_;  // nullopt if no output names a monitor
     std::shared_ptr<WindowInput> input_ = std::make_shared<WindowInput>();
@@ -198,6 +207,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& request) { return new Glfw(request); }
+extern "C" GlPlatform* sandwallGlPlatform8(const PlatformRequest& request) { return new Glfw(request); }
 
 }  // namespace render_node

@@ -57,9 +57,8 @@ public:
     [[nodiscard]] bool quadBuffers() const { return quadBuffers_; }
     /// Returns whether the wall file gives the window a place.
     [[nodiscard]] bool isPlaced() const { return walls::isPlaced(wanted_.output); }
-    /// Returns the size of the window [pixel]: the present one if the picture follows it, otherwise the one that was
-    /// asked for.
-    [[nodiscard]] glm::ivec2 pixels() const { return listener_ ? listener_->pixels : wanted_.pixels; }
+    /// Returns the present size of the window if the picture follows it [pixel], otherwise 0 × 0.
+    [[nodiscard]] glm::ivec2 followedPixels() const { return wanted_.follows ? listener_->pixels : glm::ivec2(0); }
     /// Appends the input of this window to `input` from now on. `index` is the number of the window in its events. With
     /// `pointer`, the events of the pointer are appended, too.
     void sendInputTo(const std::shared_ptr<WindowInput>& input, std::size_t index, bool pointer);

@@ -52,6 +52,6 @@ private:
 
 }  // namespace
 
-extern "C" GlPlatform* sandwallGlPlatform7(const PlatformRequest& /* request */) { return new Osmesa; }
+extern "C" GlPlatform* sandwallGlPlatform8(const PlatformRequest& /* request */) { return new Osmesa; }
 
 }  // namespace render_node

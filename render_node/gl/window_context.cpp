@@ -54,95 +54,77 @@ void copyToTopLeft(glm::ivec2 picture, glm::ivec2 buffer) {
 
 class WindowContext final : public GlContext {
 public:
-    WindowContext(std::unique_ptr<GlPlatform> platform, const std::vector<WindowRequest>& windows)
-        : platform_(std::move(platform)), windows_(windows), readers_(windows.size()), changed_(windows.size()) {
-        platform_->makeCurrent(0);
-        loadFunctions(*platform_);
-        for (std::size_t i = 0; i < windows_.size(); ++i) {
-            platform_->makeCurrent(i);
+    WindowContext(Backend backend, std::unique_ptr<GlPlatform> platform, const std::vector<WindowRequest>& requests)
+        : GlContext(backend, std::move(platform)),
+          requests_(requests),
+          readers_(requests.size()),
+          changed_(requests.size()) {
+        for (std::size_t i = 0; i < requests_.size(); ++i) {
+            windows().makeCurrent(i);
             glGenFramebuffers(1, &readers_[i]);
-            changed_[i] = allPixels(windows_[i].pixels);
-            sizes_.push_back(windows_[i].pixels);
+            changed_[i] = allPixels(requests_[i].pixels);
+            sizes_.push_back(requests_[i].pixels);
         }
-        platform_->makeCurrent(0);
+        makeCurrent();
     }
-    void makeCurrent() override { platform_->makeCurrent(0); }
-    [[nodiscard]] std::string name() const override { return "glfw"; }
 
     void present(std::span<const OutputPicture> outputs, const PixelRect& changed, std::uint64_t frame) override {
-        if (outputs.size() != windows_.size()) {
-            throw std::logic_error(std::to_string(outputs.size()) + " pictures for " + std::to_string(windows_.size()) +
-                                   " windows in frame " + std::to_string(frame));
+        if (outputs.size() != requests_.size()) {
+            throw std::logic_error(std::to_string(outputs.size()) + " pictures for " +
+                                   std::to_string(requests_.size()) + " windows in frame " + std::to_string(frame));
         }
         frame_ = frame;
-        platform_->check();
+        windows().check();
         glFinish();  // other contexts may read only finished pictures
         // From the last window to the first, so that the drawing context is current at the end.
-        inTurn_ = outputs.front().right != nullptr && !platform_->quadBuffers(0);
-        for (std::size_t i = windows_.size(); i-- > 0;) {
+        inTurn_ = outputs.front().right != nullptr && !windows().quadBuffers(0);
+        for (std::size_t i = requests_.size(); i-- > 0;) {
             const bool resized = sizeOf(i) != std::exchange(sizes_[i], sizeOf(i));
             if (resized) {
-                platform_->resized(i);
+                windows().resized(i);
             }
             const bool fits = glm::ivec2(outputs[i].picture->width(), outputs[i].picture->height()) == sizes_[i];
-            const bool inPart = platform_->keepsPicture(i) && outputs[i].right == nullptr && !resized && fits;
+            const bool inPart = windows().keepsPicture(i) && outputs[i].right == nullptr && !resized && fits;
             changed_[i] = around(changed_[i], inPart ? changed : allPixels(sizes_[i]));
             if (!changed_[i].empty()) {
-                show(i, copiesOf(outputs[i], platform_->quadBuffers(i), frame));
+                show(i, copiesOf(outputs[i], windows().quadBuffers(i), frame));
             }
         }
         finishFrame();
     }
     [[nodiscard]] bool showsEyesInTurn() const override { return inTurn_; }
     void swap() override {
-        for (std::size_t i = 0; i < windows_.size(); ++i) {
-            if (platform_->takeExposed(i)) {
+        for (std::size_t i = 0; i < requests_.size(); ++i) {
+            if (windows().takeExposed(i)) {
                 // The window may have grown since present(). Its back buffer has the size of then.
                 changed_[i] = allPixels(sizes_[i]);
             }
         }
-        platform_->swap(frame_, changed_);
-        changed_.assign(windows_.size(), {});
-        platform_->check();
+        windows().swap(frame_, changed_);
+        changed_.assign(requests_.size(), {});
+        windows().check();
     }
-    [[nodiscard]] std::vector<base::Keystroke> takeKeys() override { return platform_->takeKeys(); }
-    [[nodiscard]] std::vector<PointerEvent> takePointer() override { return platform_->takePointer(); }
-    void awaitEvents(double seconds) override { platform_->awaitEvents(seconds); }
-    [[nodiscard]] std::vector<std::string> shortcomings() const override { return platform_->shortcomings(); }
-    [[nodiscard]] std::vector<base::MonitorState> monitorStates() const override {
-        std::vector<base::MonitorState> states;
-        for (std::size_t i = 0; i < windows_.size(); ++i) {
-            states.push_back(platform_->monitorState(i));
-        }
-        return states;
-    }
-    [[nodiscard]] std::string swapLock() const override { return platform_->swapLock(); }
-    [[nodiscard]] int framesToIgnore() const override { return platform_->framesToIgnore(); }
-    [[nodiscard]] std::optional<ScreenRect> workArea() const override { return platform_->workArea(); }
     [[nodiscard]] std::int64_t frameBufferBytes() const override {
         std::int64_t bytes = 0;
-        for (std::size_t i = 0; i < windows_.size(); ++i) {
-            bytes += std::int64_t{platform_->quadBuffers(i) ? 8 : 4} * sizes_[i].x * sizes_[i].y;
+        for (std::size_t i = 0; i < requests_.size(); ++i) {
+            bytes += std::int64_t{windows().quadBuffers(i) ? 8 : 4} * sizes_[i].x * sizes_[i].y;
         }
         return bytes;
-    }
-    [[nodiscard]] glm::ivec2 followedWindow() const override {
-        return windows_.front().follows ? platform_->size(0) : glm::ivec2(0);
     }
 
 private:
     [[nodiscard]] glm::ivec2 sizeOf(std::size_t window) const {
-        return windows_[window].follows ? platform_->size(window) : windows_[window].pixels;
+        return requests_[window].follows ? windows().followedSize(window) : requests_[window].pixels;
     }
     void show(std::size_t window, const std::vector<Copy>& copies) {
         std::vector<Colours> sources;
         sources.reserve(copies.size());
-        platform_->makeCurrent(0);
+        makeCurrent();
         for (const Copy& copy : copies) {
             sources.push_back(coloursOf(*copy.picture));
         }
         if (window != 0) {
-            platform_->makeCurrent(window);
+            windows().makeCurrent(window);
         }
         // A scissor rectangle that is left from drawing would cut off the copy.
         const GLboolean scissor = glIsEnabled(GL_SCISSOR_TEST);
@@ -153,8 +135,8 @@ private:
             const EyeTarget& picture = *copies[i].picture;
             const glm::ivec2 size = sizes_[window];
             const glm::ivec2 pictureSize(picture.width(), picture.height());
-            if (pictureSize != size && !windows_[window].follows) {
-                throw std::logic_error("output " + windows_[window].output.name + " got a picture of " +
+            if (pictureSize != size && !requests_[window].follows) {
+                throw std::logic_error("output " + requests_[window].output.name + " got a picture of " +
                                        std::to_string(picture.width()) + " x " + std::to_string(picture.height()));
             }
             attach(sources[i]);
@@ -175,8 +157,7 @@ private:
         }
     }
 
-    std::unique_ptr<GlPlatform> platform_;
-    std::vector<WindowRequest> windows_;
+    std::vector<WindowRequest> requests_;
     std::vector<glm::ivec2> sizes_;   // [pixel], of each window at the last present()
     std::vector<GLuint> readers_;     // one frame buffer object in each window's context, which destroys it
     std::vector<PixelRect> changed_;  // of each window, since its last swap
@@ -196,9 +177,9 @@ std::vector<Copy> copiesOf(const OutputPicture& output, bool quadBuffers, std::u
     return {{frame % 2 == 0 ? output.picture : output.right, BackBuffer::only}};
 }
 
-std::unique_ptr<GlContext> makeWindowContext(std::unique_ptr<GlPlatform> platform,
+std::unique_ptr<GlContext> makeWindowContext(Backend backend, std::unique_ptr<GlPlatform> platform,
                                              const std::vector<WindowRequest>& windows) {
-    return std::make_unique<WindowContext>(std::move(platform), windows);
+    return std::make_unique<WindowContext>(backend, std::move(platform), windows);
 }
 
 }  // namespace render_node

@@ -32,12 +32,8 @@ struct Copy {
 [[nodiscard]] PlatformRequest platformRequest(Backend backend, const walls::Wall& wall, const walls::Tile& tile,
                                               const std::string& sceneName = {});
 
-/// Loads OpenGL's functions through `platform`. Its context 0 must be current. Throws base::InputError if one is
-/// missing.
-void loadFunctions(GlPlatform& platform);
-
 /// Returns a context that shows its pictures in the platform's windows, one for each of `windows`.
-[[nodiscard]] std::unique_ptr<GlContext> makeWindowContext(std::unique_ptr<GlPlatform> platform,
+[[nodiscard]] std::unique_ptr<GlContext> makeWindowContext(Backend backend, std::unique_ptr<GlPlatform> platform,
                                                            const std::vector<WindowRequest>& windows);
 
 }  // namespace render_node

@@ -16,8 +16,8 @@ using sand::tin::Triangle;
 using sand::tin::Triangles;
 using sand::tin::Vertex;
 
-// Height units per probe unit. Normals are computed in height units.
-constexpr double kUnitsPerProbe = double{sand::kUnitsPerCell} / sand::kProbePerCell;
+// Normals are computed in height units.
+constexpr double kUnitsPerProbe = sand::kUnitsPerProbe;
 constexpr int kCell = sand::tin::kLatticePerCell;
 
 struct Pair {

@@ -15,9 +15,6 @@ namespace {
 // sign. With 0.01, as many sweeps followed.
 constexpr double kRelativeExcess = 0.03;
 constexpr double kIterationsPerCell = 40;  // per cell of the box's width and height; the slowest known start needed 4
-// Fluxes are rounded to one unit, so that slopes change by up to 4 units. If the slope were exactly the talus, the
-// whole slope would creep. With this allowance, a pile at 512² rests after 18 sweeps instead of 1100.
-constexpr double kSlack = 1.0 / 16384;
 constexpr double kLeastExcess = 4.0 / kUnitsPerCell;  // [cell], excess that the sweeps leave
 
 std::int64_t rounded(double flux) { return static_cast<std::int64_t>(flux < 0 ? flux - 0.5 : flux + 0.5); }
@@ -111,7 +108,7 @@ bool DualProjection::iterate(double momentum, Measures* measures) {
                                   .before = before_,
                                   .momentum = momentum,
                                   .step = 0.25 / (twist_ * twist_),
-                                  .threshold = (1 - kSlack) * rules_.tuning.threshold / kUnitsPerCell,
+                                  .threshold = (1 - kTalusSlack) * rules_.tuning.threshold / kUnitsPerCell,
                                   .northing = northing_,
                                   .twist = twist_,
                                   .heldWest = open && box_.x0 == domain_.x0,

@@ -16,7 +16,6 @@ void undersidesOfSphere(const SphereRow& row, std::int32_t* __restrict underside
     const auto most = static_cast<double>(row.square), centre = static_cast<double>(row.centre);
     const auto first = static_cast<double>(row.first);
     constexpr double kHighest = kMaxHeight;
-    constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
     for (int i = 0; i < row.count; ++i) {
         const double x = first + kProbePerCell * static_cast<double>(i);
         const double square = most - x * x;

@@ -104,7 +104,6 @@ public:
 
 private:
     static constexpr std::int64_t kRing = 2 * kProbePerCell;  // width of the ring around a sphere [probe unit]
-    static constexpr std::int32_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
 
     /// Place in the tool's own axes: along the heading and to the left of it. A mirrored tool's axes are mirrored.
     struct ToolPoint {

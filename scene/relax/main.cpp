@@ -71,10 +71,8 @@ void checkKind(const Options& options, bool toMesh) {
 
 /// Returns the values of --scheme.
 std::vector<std::string> schemes() {
-    std::vector<std::string> names;
-    for (const auto& known : valuesOf(sand::Scheme{})) {
-        names.emplace_back(known.name);
-    }
+    constexpr auto kSchemes = base::namesOf<sand::Scheme>();
+    std::vector<std::string> names(kSchemes.begin(), kSchemes.end());
     names.emplace_back("settle");
     return names;
 }

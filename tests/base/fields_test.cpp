@@ -342,6 +342,7 @@ TEST(Names, AreFoundBothWays) {
     EXPECT_EQ(base::nameOf(static_cast<described::Colour>(2)), "");
     EXPECT_EQ(base::valueNamed<described::Colour>("red"), described::Colour::red);
     EXPECT_EQ(base::valueNamed<described::Colour>("Red"), std::nullopt);
+    EXPECT_EQ(base::namesOf<described::Colour>(), (std::array<std::string_view, 2>{"red", "green"}));
 }
 
 }  // namespace

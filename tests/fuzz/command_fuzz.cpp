@@ -12,22 +12,15 @@
 
 namespace {
 
-constexpr std::string_view kWall = R"([viewer]
-eye = [0.0, 1.6, 2.0]
-[stereo]
-mode = "passive"
-[grid]
-rows = 1
-columns = 2
-tile_size = [1.024, 0.768]
-tile_pixels = [512, 384]
-lower_left = [-1.024, 0.9, 0.0]
-[stage]
-centre = [0.0, 1.25, -0.3]
-width = 1.6
-tilt_deg = 40
-)";
 constexpr std::size_t kMostLines = 8;
+
+walls::Wall passiveWall() {
+    walls::Wall wall;
+    wall.stereo = walls::Stereo::passive;
+    wall.grid = walls::Grid{.rows = 1, .columns = 2};
+    wall.tiles = walls::tilesOf(*wall.grid, wall.stereo);
+    return wall;
+}
 
 void change(scene::Material& material, const scene::Material& wanted, const scene::MaterialGrid& grid) {
     sand::Step step;
@@ -46,7 +39,7 @@ void change(scene::Material& material, const scene::Material& wanted, const scen
 
 void carryOut(const master::Command& command, const scene::MaterialGrid& grid, scene::Material& material) {
     using master::Verb;
-    static const walls::Wall kOpened = walls::parseWall(kWall, "wall.toml");
+    static const walls::Wall kOpened = passiveWall();
     switch (command.verb) {
         case Verb::tool:
             change(material, scene::withTool(material, command.tool, grid), grid);

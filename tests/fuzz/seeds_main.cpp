@@ -55,7 +55,7 @@ void writeWire(Folder folder) {
                                    CatchUp{true, {step(3)}},
                                    PositionGreeting{kProtocolVersion, "glove", {5}},
                                    Refusal{RefusalCode::scene, "no"},
-                                   Start{1, 2, 3},
+                                   StartMessage{1, 2, 3},
                                    Ready{},
                                    NeedState{},
                                    State{{1, 2, 3, 4}},

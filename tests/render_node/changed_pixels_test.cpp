@@ -39,8 +39,7 @@ bool equalOutside(const PixelRect& rect, const Image& a, const Image& b) {
 
 // A window of a software renderer shows only these pixels of a frame.
 TEST_F(ChangedPixels, AreAllThatDiffersFromTheFrameBefore) {
-    for (const std::string& name : walls::stereoNames()) {
-        const Stereo stereo = walls::stereoNamed(name);
+    for (const auto& [stereo, name] : valuesOf(Stereo{})) {
         walls::Wall wall = gridAndDesk(stereo);
         wall.tiles[0].pixels = {640, 480};
         ASSERT_GT(render_node::helpSheet({0, 1, wall.tiles[0].pixels}, wall.tiles[0].pixels).size().y, 0);

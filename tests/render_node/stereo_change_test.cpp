@@ -10,23 +10,14 @@
 
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
+#include "tests/render_node/small_wall.hpp"
 #include "tests/support/pictures/sample_scene.hpp"
 
 namespace {
 
 using walls::Stereo;
 
-walls::Wall smallWall() {
-    walls::Wall wall;
-    wall.viewer.eye = {1, 1, 3};
-    wall.clip = {0.1, 20};
-    walls::Tile tile;
-    tile.name = "only";
-    tile.screen = {{0, 0.25, 0}, {2, 0.25, 0}, {0, 1.75, 0}};
-    tile.pixels = {80, 60};
-    wall.tiles = {tile};
-    return walls::shownIn(wall, Stereo::anaglyphColour);
-}
+walls::Wall smallWall() { return walls::shownIn(test::smallWall(), Stereo::anaglyphColour); }
 
 using Pictures = std::vector<std::vector<std::uint8_t>>;
 
@@ -83,10 +74,10 @@ TEST(FrameBuffers, HoldTheEyesOfAModeAndWhatItComposesOfThem) {
                                               {"anaglyph", 2 * kEye + kColour},
                                               {"anaglyph_half", 2 * kEye + kColour},
                                               {"anaglyph_dubois", 2 * kEye + kColour}};
-    for (const std::string& name : walls::stereoNames()) {
-        const walls::Wall shown = walls::shownIn(wall, walls::stereoNamed(name));
+    for (const auto& [stereo, name] : valuesOf(walls::Stereo{})) {
+        const walls::Wall shown = walls::shownIn(wall, stereo);
         const render_node::TilePainter painter(shown, shown.tiles[0], scene, "host", sand::GridData{scene.terrain});
-        EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(name) * kPixels) << name;
+        EXPECT_EQ(painter.frameBufferBytes(), perPixel.at(std::string(name)) * kPixels) << name;
     }
 }
 

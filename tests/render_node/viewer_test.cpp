@@ -171,8 +171,7 @@ protected:
 
 // A wall has a grid and a screen in another plane, so that several outputs of a mode are compared.
 TEST_F(Viewer, SeesWithEachEyeItsPictureOnEveryOutputInEveryMode) {
-    for (const std::string& name : walls::stereoNames()) {
-        const Stereo stereo = walls::stereoNamed(name);
+    for (const auto& [stereo, name] : valuesOf(Stereo{})) {
         const walls::Wall wall = gridAndDesk(stereo);
         for (std::size_t tile = 0; tile < wall.tiles.size(); ++tile) {
             TilePainter painter(wall, wall.tiles[tile], scene_, "host", sand::GridData{scene_.terrain});
@@ -244,8 +243,7 @@ Eye throughSwappedGlasses(Eye eye) { return eye == Eye::left ? Eye::right : Eye:
 // The viewer's glasses are exchanged, so that each eye looks through the glass of the other. The wall swaps its eyes.
 TEST_F(Viewer, SeesThroughExchangedGlassesItsPictureOnAWallThatSwapsEyes) {
     int compared = 0;
-    for (const std::string& name : walls::stereoNames()) {
-        const Stereo stereo = walls::stereoNamed(name);
+    for (const auto& [stereo, name] : valuesOf(Stereo{})) {
         if (walls::eyesOf(stereo).size() < 2) {
             continue;
         }

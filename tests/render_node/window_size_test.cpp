@@ -8,23 +8,11 @@
 
 #include "render_node/tile_painter.hpp"
 #include "scene/model/scene.hpp"
+#include "tests/render_node/small_wall.hpp"
 #include "tests/support/pictures/sample_scene.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
-
-walls::Wall wallInAWindow() {
-    walls::Wall wall;
-    wall.viewer.eye = {1, 1, 3};
-    wall.clip = {0.1, 20};
-    walls::Tile tile;
-    tile.name = "only";
-    tile.screen = {{0, 0.25, 0}, {2, 0.25, 0}, {0, 1.75, 0}};
-    tile.pixels = {80, 60};
-    tile.outputs = walls::outputsOf(walls::Stereo::mono, tile.name);
-    wall.tiles = {tile};
-    return wall;
-}
 
 // A tile whose window changes its size while a hand digs must show what a tile of that size shows that was just
 // started.
@@ -35,7 +23,7 @@ TEST(WindowSize, AfterAHundredChangesOfItWhileDiggingThePictureIsThatOfAFreshTil
     const auto between = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
     const auto context = render_node::makeOffscreenContext(render_node::Backend::automatic);
     const scene::Scene scene = sample::duneScene(48);
-    const walls::Wall wall = wallInAWindow();
+    const walls::Wall wall = test::smallWall();
     lockstep::ViewState view;
     std::copy_n(glm::value_ptr(wall.viewer.eye), 3, view.head.begin());
     sand::Replica replica(scene);

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/float_environment.hpp"
+#include "sand/surface_factory.hpp"
 #include "scene/model/scene.hpp"
 #include "tests/support/machine/other_floats.hpp"
 #include "tests/support/sand/sand_of.hpp"
@@ -292,8 +293,8 @@ TEST(Start, OfAHeightFieldAnswersForItsCells) {
     std::mt19937 random(43);
     scene.terrain = samples::randomField(40, 24, sand::kUnitsPerCell, random);
     ASSERT_NE(scene.terrain.volume(), 0);
-    EXPECT_EQ(scene.volume(), scene.terrain.volume());
-    EXPECT_EQ(scene.volume(), Replica(scene).volume());
+    EXPECT_EQ(sand::volumeOf(scene), scene.terrain.volume());
+    EXPECT_EQ(sand::volumeOf(scene), Replica(scene).volume());
     EXPECT_EQ(scene.leastBytes(), 16 * 40 * 24);
     EXPECT_EQ(scene.bytesToDraw(), 0) << "the cells of the replica are drawn";
     EXPECT_EQ(scene.sizeText().what, "40 x 24 cells");

@@ -18,17 +18,17 @@ walls::Wall sampleWall(const char* name) {
 /// Returns the modes that the wall's outputs can show.
 std::set<std::string> shownBy(const walls::Wall& wall) {
     std::set<std::string> names;
-    for (const std::string& name : walls::stereoNames()) {
+    for (const auto& [stereo, name] : valuesOf(walls::Stereo{})) {
         try {
-            const walls::Wall other = walls::shownOnItsOutputs(wall, walls::stereoNamed(name));
-            EXPECT_EQ(walls::stereoName(other.stereo), name);
+            const walls::Wall other = walls::shownOnItsOutputs(wall, stereo);
+            EXPECT_EQ(other.stereo, stereo);
             EXPECT_EQ(walls::shownOnItsOutputs(wall, wall.stereo), wall) << "and back";
             for (std::size_t i = 0; i < wall.tiles.size(); ++i) {
                 EXPECT_EQ(other.tiles[i].outputs.size(), wall.tiles[i].outputs.size());
                 EXPECT_EQ(walls::outputPixels(other.stereo, other.tiles[i].pixels),
                           walls::outputPixels(wall.stereo, wall.tiles[i].pixels));
             }
-            names.insert(name);
+            names.emplace(name);
         } catch (const base::InputError& error) {
             EXPECT_NE(std::string(error.what()).find("--stereo"), std::string::npos) << error.what();
         }

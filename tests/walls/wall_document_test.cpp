@@ -83,7 +83,7 @@ TEST(WallDocument, HasExamplesThatAreWalls) {
 
 TEST(WallDocument, NamesEveryMode) {
     const std::string text = document();
-    for (const std::string& name : stereoNames()) {
+    for (const std::string_view name : base::namesOf<Stereo>()) {
         EXPECT_NE(text.find(fmt::format("`{}`", name)), std::string::npos) << name;
     }
 }

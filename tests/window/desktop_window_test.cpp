@@ -45,7 +45,7 @@ protected:
             if (std::chrono::steady_clock::now() > until) {
                 return false;
             }
-            context_->awaitEvents(0.1);
+            context_->windows().awaitEvents(0.1);
         }
         return true;
     }
@@ -66,59 +66,60 @@ TEST_F(DesktopWindow, ClosingItIsTheQuitKeyInEverySession) {
     open({200, 100}, 2);
     screen_->askToClose(window_);
     std::vector<base::Keystroke> keys;
-    EXPECT_TRUE(comes([&] { return !(keys = context_->takeKeys()).empty(); }));
+    EXPECT_TRUE(comes([&] { return !(keys = context_->windows().takeKeys()).empty(); }));
     EXPECT_EQ(keys, std::vector{base::Keystroke{base::Keystroke::kEscape}});
 }
 
 TEST_F(DesktopWindow, BeginsWithTheSizeInTheWallFileIfItFits) {
     open({200, 100});
-    EXPECT_EQ(context_->followedWindow(), glm::ivec2(200, 100));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(200, 100));
 }
 
 TEST_F(DesktopWindow, BeginsWithAtMostNineTenthsOfTheScreen) {
     open({1000, 500});
-    EXPECT_EQ(context_->followedWindow(), glm::ivec2(576, 288));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(576, 288));
 }
 
 TEST_F(DesktopWindow, BeginsLargerByTheScaleOfTheMonitor) {
     support::XScreen(server_->display()).setScale(1.5);
     open({200, 100});
-    EXPECT_EQ(context_->followedWindow(), glm::ivec2(300, 150));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(300, 150));
 }
 
 TEST_F(DesktopWindow, OpensWithoutAMonitor) {
     support::XScreen(server_->display()).switchMonitorOff();
     open({200, 100});
-    EXPECT_EQ(context_->followedWindow(), glm::ivec2(200, 100));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(200, 100));
     screen_->type(window_, support::XScreen::kF11);
     screen_->resize(window_, 300, 200);
-    EXPECT_TRUE(comes([&] { return context_->followedWindow() == glm::ivec2(300, 200); })) << "no monitor to fill";
+    EXPECT_TRUE(comes([&] { return context_->windows().followedSize(0) == glm::ivec2(300, 200); }))
+        << "no monitor to fill";
 }
 
 TEST_F(DesktopWindow, ContinuesWhenItsMonitorGoesAway) {
     open({200, 100});
     screen_->type(window_, support::XScreen::kF11);
-    ASSERT_TRUE(comes([&] { return context_->followedWindow() == glm::ivec2(640, 480); }));
+    ASSERT_TRUE(comes([&] { return context_->windows().followedSize(0) == glm::ivec2(640, 480); }));
     screen_->switchMonitorOff();
     // The size of a window may change, and that of a full screen may not.
     EXPECT_TRUE(comes([&] {
         screen_->resize(window_, 300, 200);
-        return context_->followedWindow() == glm::ivec2(300, 200);
+        return context_->windows().followedSize(0) == glm::ivec2(300, 200);
     }));
-    EXPECT_EQ(context_->takeKeys().size(), 1U) << "F11 alone; the session does not end";
+    EXPECT_EQ(context_->windows().takeKeys().size(), 1U) << "F11 alone; the session does not end";
 }
 
 TEST_F(DesktopWindow, ReportsItsPresentSize) {
     open({200, 100});
     for (const glm::ivec2 size : {glm::ivec2(300, 333), glm::ivec2(1, 1), glm::ivec2(700, 50)}) {
         screen_->resize(window_, size.x, size.y);
-        EXPECT_TRUE(comes([&] { return context_->followedWindow() == size; })) << size.x;
+        EXPECT_TRUE(comes([&] { return context_->windows().followedSize(0) == size; })) << size.x;
     }
 }
 
 TEST_F(DesktopWindow, OfAWallOfSeveralTilesKeepsItsSize) {
     open({200, 100}, 2);
-    EXPECT_EQ(context_->followedWindow(), glm::ivec2(0));
+    EXPECT_EQ(context_->windows().followedSize(0), glm::ivec2(0));
 }
 
 TEST_F(DesktopWindow, OnWaylandWithoutXwaylandNamesWhatToInstall) {

@@ -47,8 +47,8 @@ protected:
             if (std::chrono::steady_clock::now() > until) {
                 return false;
             }
-            context_->awaitEvents(0.1);
-            const auto events = context_->takePointer();
+            context_->windows().awaitEvents(0.1);
+            const auto events = context_->windows().takePointer();
             seen_.insert(seen_.end(), events.begin(), events.end());
         }
         return true;
@@ -82,7 +82,7 @@ TEST_F(Pointer, ReportsMotionsButtonsAndTheWheelWithTheirPlacesInOrder) {
     }
     EXPECT_EQ(kinds, (std::vector{Kind::press, Kind::release, Kind::turnPress, Kind::viewRelease, Kind::wheel}));
     EXPECT_EQ(seen_.back().notches, 1);
-    EXPECT_TRUE(context_->takePointer().empty()) << "they are taken";
+    EXPECT_TRUE(context_->windows().takePointer().empty()) << "they are taken";
 }
 
 TEST_F(Pointer, OfAnotherSessionIsNotRead) {
@@ -93,10 +93,10 @@ TEST_F(Pointer, OfAnotherSessionIsNotRead) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     Keys keys;
     while (keys.empty() && std::chrono::steady_clock::now() < until) {
-        keys = context_->takeKeys();
+        keys = context_->windows().takeKeys();
     }
     EXPECT_EQ(keys, (Keys{{'x', 0, 0}})) << "events before this one have come";
-    EXPECT_TRUE(context_->takePointer().empty());
+    EXPECT_TRUE(context_->windows().takePointer().empty());
 }
 
 TEST_F(Pointer, KeysAreCodesAndModifiers) {
@@ -115,7 +115,7 @@ TEST_F(Pointer, KeysAreCodesAndModifiers) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     Keys keys;
     while (keys.size() < 10 && std::chrono::steady_clock::now() < until) {
-        const Keys more = context_->takeKeys();
+        const Keys more = context_->windows().takeKeys();
         keys.insert(keys.end(), more.begin(), more.end());
     }
     using base::Keystroke;
@@ -137,7 +137,7 @@ TEST_F(Pointer, ClosingAWindowIsTheQuitKey) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     Keys keys;
     while (keys.empty() && std::chrono::steady_clock::now() < until) {
-        keys = context_->takeKeys();
+        keys = context_->windows().takeKeys();
     }
     EXPECT_EQ(keys, (Keys{{base::Keystroke::kEscape, 0, 0}}));
 }
@@ -152,8 +152,8 @@ TEST_F(Pointer, AReleaseThatTheHiddenWindowDoesNotGetComesAllTheSame) {
     }
     ASSERT_TRUE(comes(Kind::press));
     for (int looks = 0; looks < 5; ++looks) {  // as a rank that shows frames
-        context_->awaitEvents(0.05);
-        const auto events = context_->takePointer();
+        context_->windows().awaitEvents(0.05);
+        const auto events = context_->windows().takePointer();
         seen_.insert(seen_.end(), events.begin(), events.end());
     }
     const auto released = [](const PointerEvent& event) { return event.kind == Kind::release; };

@@ -107,7 +107,7 @@ void obey(const Options& options, render_node::GlContext& context, std::vector<r
             context.swap();
             std::cout << "part shown" << std::endl;
         } else if (word == "keys") {
-            for (const base::Keystroke key : context.takeKeys()) {
+            for (const base::Keystroke key : context.windows().takeKeys()) {
                 std::cout << "key " << key.code << "\n";
             }
             std::cout << "keys taken" << std::endl;
@@ -115,7 +115,7 @@ void obey(const Options& options, render_node::GlContext& context, std::vector<r
             context.present(outputs, {}, 0);
             context.swap();
             std::cout << "monitors";
-            for (const base::MonitorState state : context.monitorStates()) {
+            for (const base::MonitorState state : context.windows().monitorStates()) {
                 std::cout << ' ' << base::nameOf(state);
             }
             std::cout << std::endl;
@@ -154,11 +154,11 @@ int show(const Options& options) {
     context->present(outputs, {0, 0, options.width, options.height}, 0);
     context->swap();
     printLibraries();
-    for (const std::string& line : context->shortcomings()) {
+    for (const std::string& line : context->windows().shortcomings()) {
         std::cout << "shortcoming " << line << "\n";
     }
-    std::cout << "swap lock " << context->swapLock() << ", ignore " << context->framesToIgnore() << "\nframe 0 shown"
-              << std::endl;
+    std::cout << "swap lock " << context->windows().swapLock() << ", ignore " << context->windows().framesToIgnore()
+              << "\nframe 0 shown" << std::endl;
     obey(options, *context, outputs, left, right);
     return 0;
 }

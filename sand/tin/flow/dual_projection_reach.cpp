@@ -9,11 +9,6 @@
 #include "sand/tin/flow/weights.hpp"
 
 namespace sand::tin {
-namespace {
-
-constexpr double kSlack = 1.0 / 16384;  // as for a grid: fluxes are rounded, which changes slopes
-
-}  // namespace
 
 DualProjection::DualProjection(const VertexSand& layer, double slope, Rim rim)
     : layer_(layer), slope_(slope), rim_(rim) {
@@ -68,7 +63,7 @@ DualProjection::Facet DualProjection::facetOf(std::int32_t slot, const std::vect
                    [&](Vertex vertex) { return local.empty() ? vertex : local[index(vertex)]; });
     facet.first = {(c.y - a.y) / area, (a.x - c.x) / area};
     facet.second = {(a.y - b.y) / area, (b.x - a.x) / area};
-    facet.most = (1 - kSlack) * slope_ + slackOf(a, b, c);
+    facet.most = (1 - kTalusSlack) * slope_ + slackOf(a, b, c);
     return facet;
 }
 

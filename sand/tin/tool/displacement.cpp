@@ -152,7 +152,6 @@ bool Displacement::reachesSand(const VertexSand& layer, const Chunk& chunk) cons
 }
 
 double Displacement::lowestUnderside(std::int64_t z) const {
-    constexpr std::int64_t kUnitsPerProbe = kUnitsPerCell / kProbePerCell;
     return static_cast<double>((z - tool_.radius) * kUnitsPerProbe);
 }
 

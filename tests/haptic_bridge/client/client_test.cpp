@@ -159,7 +159,7 @@ TEST(Client, StopsThoughAnotherTimerBecomesDueMeanwhile) {
         }
         const auto welcomed = std::chrono::steady_clock::now();
         connection.send(Welcome{kIdentity, 60});
-        connection.await<Start>();
+        connection.await<StartMessage>();
         std::this_thread::sleep_until(welcomed + 470ms);
         connection.send(NeedState{});
         needed = true;

@@ -32,7 +32,7 @@ inline bool linkUp(FakeServer::Connection& connection) {
         return false;
     }
     connection.send(haptic_bridge::Welcome{kIdentity, 60});
-    if (!connection.await<haptic_bridge::Start>()) {
+    if (!connection.await<haptic_bridge::StartMessage>()) {
         return false;
     }
     connection.send(haptic_bridge::Ready{});

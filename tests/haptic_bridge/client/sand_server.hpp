@@ -61,7 +61,7 @@ private:
             return;
         }
         connection.send(haptic_bridge::Welcome{identity_, stepsPerSecond_});
-        const auto start = connection.await<haptic_bridge::Start>();
+        const auto start = connection.await<haptic_bridge::StartMessage>();
         if (!start || !reach(connection, *start)) {
             return;
         }
@@ -118,12 +118,12 @@ private:
         shares_.push_back(share);
     }
 
-    [[nodiscard]] bool isAt(const haptic_bridge::Start& start) {
+    [[nodiscard]] bool isAt(const haptic_bridge::StartMessage& start) {
         return sand_.stepNumber() == start.stepNumber && sand_.stateHash() == start.stateHash;
     }
 
     /// Gets the sand that the master begins with.
-    bool reach(FakeServer::Connection& connection, const haptic_bridge::Start& start) {
+    bool reach(FakeServer::Connection& connection, const haptic_bridge::StartMessage& start) {
         if (!lied_ && isAt(start)) {
             return true;
         }

@@ -75,7 +75,7 @@ TEST_F(LinkSecurityTest, TakesSoManyCatchUpsAndNoneAfterTheLast) {
         RawPeer master(server.port());
         master.send(hello());
         ASSERT_TRUE(master.receive()) << "the welcome";
-        master.send(Start{1, 5, 1});
+        master.send(StartMessage{1, 5, 1});
         const auto need = hear(master);
         ASSERT_TRUE(need && std::holds_alternative<NeedState>(*need));
         const std::size_t most = last ? 1 : StepRing::kSteps / kMaxCatchUp;

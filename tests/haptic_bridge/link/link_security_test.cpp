@@ -70,7 +70,7 @@ TEST_F(LinkSecurityTest, RefusesWhoDoesNotKnowTheSecretAndSaysSo) {
         proving.proves = true;
         pushes.send(proving);
         EXPECT_TRUE(pushes.receive()) << "the challenge";
-        pushes.send(Start{1, 0, 0});
+        pushes.send(StartMessage{1, 0, 0});
         EXPECT_NE(pushes.refusal().find("out of turn"), std::string::npos);
     }
     {

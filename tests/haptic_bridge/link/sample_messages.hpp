@@ -37,7 +37,7 @@ inline std::vector<Message> oneOfEach() {
     return {Hello{identity, Role::watch, true, true, {1, 2}},
             Welcome{identity, 60, Role::watch, {3, 4}},
             Refusal{RefusalCode::busy, "busy"},
-            Start{2, 40, 99, {0.5, true}},
+            StartMessage{2, 40, 99, {0.5, true}},
             Ready{0.25},
             NeedState{8, 9},
             State{{1, 2, 3}},

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/haptic_bridge/loop/strong_arm.hpp"
 #include "tests/haptic_bridge/loop/virtual_server.hpp"
 #include "tests/support/hand/arm_on_sand.hpp"
 
@@ -17,23 +18,10 @@ constexpr double kToolOfArm = 0.006;  // [m], radius of the tool, in metres of t
 
 class AskedForce : public testing::Test {
 protected:
-    static ArmPhysics arm() {
-        ArmPhysics arm;
-        arm.name = "strong";
-        arm.mass = 0.2;
-        arm.damping = 1;
-        arm.friction = 0.3;
-        arm.resolution = 2e-5;
-        arm.maxForce = 8;
-        arm.reach = 0.06;
-        arm.maxStiffness = 2000;
-        arm.delayTicks = 1;
-        return arm;
-    }
     /// Begins a server whose arm rests a tool's radius deep, or moves there to and fro by `swing` [m].
     void open(double ceiling = 1, double swing = 0) {
         server_ = std::make_unique<test::VirtualServer>(
-            scene_, arm(),
+            scene_, test::strongArm(),
             [this, swing](double time) {
                 return ArmReading{{swing * std::sin(6 * time), 0, -kToolOfArm}, true, clutch_, present_};
             },

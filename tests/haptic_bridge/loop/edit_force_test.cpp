@@ -55,18 +55,6 @@ protected:
     }
     /// Returns the force that the guards before the gate allow at the last tick.
     [[nodiscard]] bool crosses() const { return (server_->last().guards & bit(Guard::edit)) != 0; }
-    template <class Check>
-    void forEachLaw(const Check& check) {
-        for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
-            for (const auto& [between, name] : valuesOf(sand::Between{})) {
-                SCOPED_TRACE(std::string(name) + (law == sand::ForceLaw::repulse ? ", repulse" : ", control points"));
-                scene_.force.law = law;
-                scene_.force.maxForce = 1e5;
-                scene_.force.between = between;
-                check();
-            }
-        }
-    }
 
     Vec3 at_, way_;  // [m], [m/tick]
     bool first_ = true;
@@ -101,7 +89,7 @@ TEST_F(EditUnderLoad, NoEditLetsTheForceFallAtOnceWithAnyLaw) {
         {"undo of a smaller tool's stroke", [this] { (void)edit(toolOf(0.2)); },
          [] { return sand::Edit(sand::Edit::undo); }, false},
     };
-    forEachLaw([&] {
+    forEachLaw(1e5, [&] {
         const bool local = scene_.force.between == sand::Between::local;
         for (const Way& way : ways) {
             SCOPED_TRACE(way.name);

@@ -56,6 +56,19 @@ protected:
         }
         return most;
     }
+    /// Calls `check` with each law, and each way between two surfaces. The law's largest force is `most` [N].
+    template <class Check>
+    void forEachLaw(double most, const Check& check) {
+        for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
+            for (const auto& [between, name] : valuesOf(sand::Between{})) {
+                SCOPED_TRACE(std::string(name) + (law == sand::ForceLaw::repulse ? ", repulse" : ", control points"));
+                scene_.force.law = law;
+                scene_.force.maxForce = most;
+                scene_.force.between = between;
+                check();
+            }
+        }
+    }
     /// Returns the tuning of the sand with another talus [deg].
     [[nodiscard]] sand::Edit talus(double degrees) const {
         sand::Tuning tuning = server_->sand().rules().tuning;

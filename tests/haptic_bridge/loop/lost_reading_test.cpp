@@ -45,19 +45,6 @@ protected:
         }
         return sum / ticks;
     }
-    /// Calls `check` with each law, and each way between two surfaces.
-    template <class Check>
-    void forEachLaw(const Check& check) {
-        for (const auto law : {sand::ForceLaw::repulse, sand::ForceLaw::controlPoints}) {
-            for (const auto& [between, name] : valuesOf(sand::Between{})) {
-                SCOPED_TRACE(std::string(name) + (law == sand::ForceLaw::repulse ? ", repulse" : ", control points"));
-                scene_.force.law = law;
-                scene_.force.maxForce = 1e4;
-                scene_.force.between = between;
-                check();
-            }
-        }
-    }
 
     double place = 0;  // [m], of the arm, to the east
     int every_ = 0;    // every so many readings one is missing; 0: none
@@ -69,7 +56,7 @@ private:
 
 // A tenth of the force goes with each millisecond. It comes back by at most 1.5 slew limits per tick.
 TEST_F(LostReading, AtMostTenTakeATenthOfTheForceEachAndItComesBackWithoutARamp) {
-    forEachLaw([this] {
+    forEachLaw(1e4, [this] {
         openAndTouch();
         const double whole = force(), slew = server_->hand().guards().limits().slew;
         for (const int lost : {1, 2, 9}) {
@@ -89,7 +76,7 @@ TEST_F(LostReading, AtMostTenTakeATenthOfTheForceEachAndItComesBackWithoutARamp)
 }
 
 TEST_F(LostReading, ElevenAreAFaultWithARampOfTwoSeconds) {
-    forEachLaw([this] {
+    forEachLaw(1e4, [this] {
         openAndTouch();
         const double whole = force();
         lose(11);
@@ -108,7 +95,7 @@ TEST_F(LostReading, ElevenAreAFaultWithARampOfTwoSeconds) {
 }
 
 TEST_F(LostReading, OneIn250LeavesNineTenthsOfTheMeanForce) {
-    forEachLaw([this] {
+    forEachLaw(1e4, [this] {
         every_ = 0;
         openAndTouch(0.03);
         const double without = meanForce(2);

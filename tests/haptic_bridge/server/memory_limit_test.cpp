@@ -63,7 +63,7 @@ class HostileMaster : public testing::Test {
 protected:
     /// Greets, asks for the epoch of `start`, and waits for the answer.
     template <class Answer>
-    void grant(test::RawPeer& master, const haptic_bridge::Start& start) {
+    void grant(test::RawPeer& master, const haptic_bridge::StartMessage& start) {
         using namespace haptic_bridge;
         master.send(Hello{{kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"}});
         master.send(start);

@@ -277,7 +277,7 @@ TEST_F(HapticServer, AnswersGarbageHalfMessagesAndOtherVersionsWithAReason) {
         RawPeer liar(port);
         liar.send(haptic_bridge::Hello{mine});
         ASSERT_TRUE(liar.receive());
-        liar.send(haptic_bridge::Start{1, 0, 12345});
+        liar.send(haptic_bridge::StartMessage{1, 0, 12345});
         const auto answer = liar.receive();
         ASSERT_TRUE(answer && std::holds_alternative<haptic_bridge::NeedState>(*answer));
         liar.send(haptic_bridge::State{base::Bytes(100'000, 1)});
@@ -298,7 +298,7 @@ TEST_F(HapticServer, SendsTimingTestsAsLongAsAStepAndCountsEachLegOnce) {
     const Identity mine{kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), "small"};
     RawPeer master(server.port());
     master.send(Hello{mine});
-    master.send(Start{1, 0, sand::Replica(scene_).stateHash()});
+    master.send(StartMessage{1, 0, sand::Replica(scene_).stateHash()});
     std::size_t step = 0;
     unsigned tests = 0, compared = 0;  // the first test may come before there is a step
     while (tests < 3 || compared == 0) {

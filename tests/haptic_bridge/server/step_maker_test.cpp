@@ -38,7 +38,7 @@ public:
 /// A server without thread, clock and link, and the messages that it has sent.
 class StepMakerTest : public testing::Test {
 protected:
-    [[nodiscard]] static Start grantOf(sand::Replica sand, std::uint32_t epoch = 1) {
+    [[nodiscard]] static StartMessage grantOf(sand::Replica sand, std::uint32_t epoch = 1) {
         return {epoch, sand.stepNumber(), sand.stateHash()};
     }
     void step(std::size_t count = 1) {

@@ -27,7 +27,7 @@ TEST_F(LinkSecurityTest, AWatcherSeesTheStepsAndMovesNothing) {
     RawPeer pushy(server.port());
     pushy.send(asking);
     ASSERT_TRUE(pushy.receive());
-    pushy.send(Start{9, 0, 0});
+    pushy.send(StartMessage{9, 0, 0});
     ASSERT_TRUE(wall.follow(master, 60));
     std::uint64_t last = 0;
     while (last < 50) {

@@ -45,15 +45,15 @@ protected:
     void open(master::StepRequests* requests, const master::DeskOptions& options = {}) {
         desk_.reset();
         desk_.emplace(scene_, scene_.material, wall_, folder_, options,
-                      master::OperatorDesk::Session{sand_, requests,
-                                                    [this](std::int64_t bytes) {
-                                                        asked_ = bytes;
-                                                        return room_ && bytes <= most_;
-                                                    },
-                                                    [this](double share) { kept_.push_back(share); },
-                                                    [] {
-                                                        return json{{"frame", 42}};
-                                                    }});
+                      master::OperatorDesk::SessionParts{sand_, requests,
+                                                         [this](std::int64_t bytes) {
+                                                             asked_ = bytes;
+                                                             return room_ && bytes <= most_;
+                                                         },
+                                                         [this](double share) { kept_.push_back(share); },
+                                                         [] {
+                                                             return json{{"frame", 42}};
+                                                         }});
     }
     /// Sends a line from another thread. The future has the answer.
     std::future<json> send(const std::string& line) {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/float_environment.hpp"
+#include "sand/surface_factory.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
 #include "tests/sand/tin/same_session.hpp"
 #include "tests/sand/tin/tin_replica.hpp"
@@ -108,7 +109,7 @@ TEST_F(TinReplica, TravelsWholeWithItsScene) {
 
 TEST_F(TinReplica, AStartAnswersForItsVerticesAndItsNominalCells) {
     const scene::Scene start = scene();
-    EXPECT_EQ(start.volume(), Replica(start).volume());
+    EXPECT_EQ(sand::volumeOf(start), Replica(start).volume());
     const std::int64_t vertices = static_cast<std::int64_t>(start.tin->places.size());
     EXPECT_EQ(start.leastBytes(), 320 * vertices);
     EXPECT_EQ(start.bytesToDraw(), 4 * 64 * 64) << "a height per nominal cell";

@@ -38,8 +38,8 @@ KINDS = {
 }
 # Files of sand that belong to no kind, and ask whether a Start is a TIN.
 STARTS = {
-    "sand/start.cpp": "memory, volume, mean height and bytes of the sand",
-    "sand/surface_factory.cpp": "makes the sand, and the heights that a hand follows",
+    "sand/start.cpp": "memory, mean height and bytes of the sand",
+    "sand/surface_factory.cpp": "makes the sand, its volume, and the heights that a hand follows",
 }
 # Files outside sand/ and its drawing that know a kind of sand.
 KNOWING = {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "master/measure/frame_cost.hpp"
+#include "master/measure/slowest_host.hpp"
 
 #include <algorithm>
 #include <cstddef>
