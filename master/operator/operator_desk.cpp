@@ -11,6 +11,7 @@
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "master/operator/verbs.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/window_size.hpp"
 
@@ -53,7 +54,7 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       windows_(scene, out_, options.pointer,
                {views_, material_, paused_, walls::followsWindow(wall),
                 [this] { return session_.sand.replica().surface().heights(); },
-                [this](const Command& command, int rank) { (void)carryOut(command, Asker::at(rank)); }}) {
+                [this](const std::string& command, int rank) { carryOut(*this, command, Asker::at(rank)); }}) {
     if (session_.requests != nullptr) {
         control_.emplace(out_);
     }
@@ -88,7 +89,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
 
 void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     try {
-        if (carryOut(parseCommand(text), asker) && asker.client) {
+        if (carryOut(*this, text, asker) == Answered::atOnce && asker.client) {
             control_->answer(*asker.client, line({{"ok", true}}));
         }
     } catch (const base::InputError& error) {
@@ -96,64 +97,21 @@ void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     }
 }
 
-bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
-    switch (command.verb) {
-        case Verb::status:
-            answerClient(asker, status());
-            return false;
-        case Verb::reset:
-            askEdit(sand::Edit::reset, asker);
-            return false;
-        case Verb::undo:
-            askEdit(sand::Edit::undo, asker);
-            return false;
-        case Verb::settle:
-            askEdit(sand::Edit::settle, asker);
-            return false;
-        case Verb::tool:
-            askMaterial(scene::withTool(material_, command.tool, grid_), asker);
-            return false;
-        case Verb::material:
-            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), asker);
-            return false;
-        case Verb::save:
-            save(command.word, asker);
-            return false;
-        case Verb::load:
-            load(command.word, asker);
-            return false;
-        case Verb::capture:
-            captures_.ask(asker);
-            return false;
-        case Verb::pause:
-        case Verb::resume:
-            paused_ = command.verb == Verb::pause;
-            answerSettle({});  // a paused session would let the client wait
-            return true;
-        case Verb::pattern:
-            views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
-            return true;
-        case Verb::show:
-        case Verb::hide:
-            views_.show(command.layer, command.verb == Verb::show);
-            return true;
-        case Verb::eyeSeparation:
-            views_.separateEyes(command.number);
-            return true;
-        case Verb::force:
-            shareForce(command.number, asker);
-            return false;
-        case Verb::stereo:
-            showWall(command.stereo, window_, shown_.swapEyes);
-            return true;
-        case Verb::swapEyes:
-            swapEyes(command.on);
-            return true;
-        case Verb::stop:
-            input_.stop();
-            return true;
-    }
-    return true;
+void OperatorDesk::pause(bool paused) {
+    paused_ = paused;
+    answerSettle({});  // a paused session would let the client wait
+}
+
+void OperatorDesk::showPattern(std::optional<lockstep::Pattern> pattern) {
+    views_.show(pattern.value_or(lockstep::nextPattern(views_.pattern())));
+}
+
+void OperatorDesk::changeTool(const scene::ToolChange& change, const Asker& asker) {
+    askMaterial(scene::withTool(material_, change, grid_), asker);
+}
+
+void OperatorDesk::changeMaterial(const MaterialChange& change, const Asker& asker) {
+    askMaterial(scene::withNumber(material_, change.word, change.number, grid_), asker);
 }
 
 void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
@@ -344,7 +302,7 @@ void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barr
     captures_.take(frame, session_.sand, shown_, barrier, jobs_);
 }
 
-std::string OperatorDesk::status() const {
+void OperatorDesk::reportStatus(const Asker& asker) {
     Json status = session_.status();
     status["ok"] = true;
     status["paused"] = paused_;
@@ -356,14 +314,10 @@ std::string OperatorDesk::status() const {
     status["force_share"] = orNull(force_);
     status["force_ceiling"] = orNull(session_.requests->forceCeiling());
     status["edits_waiting"] = edits_.size();
-    return line(status);
-}
-
-void OperatorDesk::answerClient(const Asker& asker, const std::string& json) {
     if (asker.client) {
-        control_->answer(*asker.client, json);
+        control_->answer(*asker.client, line(status));
     } else {
-        fmt::print("{}\n", json);
+        fmt::print("{}\n", line(status));
         std::fflush(stdout);
     }
 }

@@ -15,8 +15,8 @@
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/captures.hpp"
 #include "master/operator/edit_queue.hpp"
-#include "master/operator/operator_command.hpp"
 #include "master/operator/operator_input.hpp"
+#include "master/operator/verb_arguments.hpp"
 #include "master/operator/view_source.hpp"
 #include "master/operator/window_desk.hpp"
 #include "master/steps/master_sand.hpp"
@@ -82,6 +82,25 @@ public:
     /// Waits for the background jobs, answers their askers, and removes the control socket.
     void close();
 
+    // What the verbs do (verbs.hpp). Each throws base::InputError if it refuses. A function with an `asker` answers it,
+    // at once or later.
+    void reportStatus(const Asker& asker);
+    void pause(bool paused);
+    /// Asks for an edit, after which the session has `material`.
+    void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
+    void showPattern(std::optional<lockstep::Pattern> pattern);  // nullopt: the next one
+    void showLayer(lockstep::Overlay layer, bool shown) { views_.show(layer, shown); }
+    void separateEyes(double metres) { views_.separateEyes(metres); }
+    void showStereo(walls::Stereo stereo) { showWall(stereo, window_, shown_.swapEyes); }
+    void swapEyes(bool swapEyes);
+    void changeTool(const scene::ToolChange& change, const Asker& asker);
+    void changeMaterial(const MaterialChange& change, const Asker& asker);
+    void save(const std::string& name, const Asker& asker);
+    void load(const std::string& name, const Asker& asker);
+    void capture(const Asker& asker) { captures_.ask(asker); }
+    void shareForce(double share, const Asker& asker);
+    void stop() { input_.stop(); }
+
 private:
     using Client = ControlSocket::Client;
     static constexpr std::int64_t kSettleNs = 60'000'000'000;  // [ns], longest wait of a client for the end of a settle
@@ -89,19 +108,9 @@ private:
     void answerSettle(std::optional<SettleEnd> end);
 
     void obeyLine(const std::string& line, const Asker& asker);
-    /// Returns whether the command is done, so that a client gets the answer "ok". Otherwise the answer comes later
-    /// or has been sent.
-    [[nodiscard]] bool carryOut(const Command& command, const Asker& asker);
-    void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
     void askMaterial(const scene::Material& material, const Asker& asker);
-    void shareForce(double share, const Asker& asker);
-    void swapEyes(bool swapEyes);
     void showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes);
-    void save(const std::string& name, const Asker& asker);
-    void load(const std::string& name, const Asker& asker);
     void finishJobs(bool wait);
-    [[nodiscard]] std::string status() const;
-    void answerClient(const Asker& asker, const std::string& json);
     void answerAll(const Askers& askers, const BackgroundJobs::Result& result);
     void refuse(const std::string& why, const Askers& askers);
 

@@ -171,6 +171,7 @@ LISTS = (
                                             "docs/schemas/status.schema.json")),
     ("walls/wall.hpp", r'base::Named\{(?!Eye)\w+, "([\w-]+)"\}', ("docs/stereo.md", "docs/wall_files.md")),
     ("lockstep/overlays.hpp", r'[{\s]"([\w-]+)"[,}]', ("docs/look.md", "docs/operator.md")),
+    ("master/operator/verbs.hpp", r'^ +\{"([\w-]+)", "', ("docs/operator.md",)),
     ("scene/load/scene_file.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/terrain.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/terrain_source.cpp", SCENE_KEY, ("docs/scenes.md",)),

@@ -10,54 +10,66 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/input_error.hpp"
 #include "master/operator/control_socket.hpp"
-#include "master/operator/operator_command.hpp"
 #include "tests/support/folder_test.hpp"
+#include "tests/support/noting_desk.hpp"
 
 namespace {
 
 using master::ControlSocket;
-using master::parseCommand;
-using master::Verb;
+using support::noted;
 
 std::string complaint(const std::string& line) {
     try {
-        (void)parseCommand(line);
+        (void)noted(line);
     } catch (const base::InputError& error) {
         return error.what();
     }
     return "accepted";
 }
 
-TEST(OperatorCommand, EveryVerbIsRead) {
-    EXPECT_EQ(parseCommand("status").verb, Verb::status);
-    EXPECT_EQ(parseCommand("undo").verb, Verb::undo);
-    EXPECT_EQ(parseCommand("stop").verb, Verb::stop);
-    EXPECT_EQ(parseCommand("pattern ramp").pattern, lockstep::Pattern::ramp);
-    EXPECT_EQ(parseCommand("pattern none").pattern, lockstep::Pattern::none);
-    EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
-    EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Overlay::hillShade);
-    EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Overlay::statistics);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
-    EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
-    EXPECT_EQ(parseCommand("swap-eyes on").verb, Verb::swapEyes);
-    EXPECT_TRUE(parseCommand("swap-eyes on").on);
-    EXPECT_FALSE(parseCommand("swap-eyes off").on);
-    EXPECT_EQ(parseCommand("tool 0.02").tool.radius, 0.02);
-    EXPECT_EQ(parseCommand("material talus 30").word, "talus");
-    EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
-    EXPECT_EQ(parseCommand("save a-B_1").word, "a-B_1");
-    EXPECT_EQ(parseCommand("load a-B_1").verb, Verb::load);
-    EXPECT_EQ(parseCommand("force off").verb, Verb::force);
-    EXPECT_DOUBLE_EQ(parseCommand("force off").number, 0);
-    EXPECT_DOUBLE_EQ(parseCommand("force on").number, 1);
-    EXPECT_DOUBLE_EQ(parseCommand("force scale 0.25").number, 0.25);
+TEST(OperatorCommand, EveryVerbAsksTheDeskForItsDeed) {
+    std::set<std::string> tried;
+    const auto deedOf = [&](const std::string& line) {
+        tried.insert(line.substr(0, line.find(' ')));
+        return noted(line);
+    };
+    for (const std::string verb : {"status", "pause", "resume", "capture", "stop"}) {
+        EXPECT_EQ(deedOf(verb).did, verb);
+    }
+    EXPECT_EQ(deedOf("reset").edit, sand::Edit::reset);
+    EXPECT_EQ(deedOf("undo").edit, sand::Edit::undo);
+    EXPECT_EQ(deedOf("settle").edit, sand::Edit::settle);
+    EXPECT_EQ(deedOf("pattern ramp").pattern, lockstep::Pattern::ramp);
+    EXPECT_EQ(noted("pattern none").pattern, lockstep::Pattern::none);
+    EXPECT_EQ(noted("pattern next").did, "pattern");
+    EXPECT_FALSE(noted("pattern next").pattern.has_value());
+    EXPECT_EQ(deedOf("show hill-shade").layer, lockstep::Overlay::hillShade);
+    EXPECT_EQ(noted("show hill-shade").did, "show");
+    EXPECT_EQ(deedOf("hide statistics").layer, lockstep::Overlay::statistics);
+    EXPECT_EQ(noted("hide statistics").did, "hide");
+    EXPECT_DOUBLE_EQ(deedOf("eye-separation 0.5").number, 0.5);
+    EXPECT_DOUBLE_EQ(noted("eye-separation 0").number, 0);
+    EXPECT_EQ(deedOf("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(deedOf("swap-eyes on").did, "swap-eyes");
+    EXPECT_EQ(noted("swap-eyes off").did, "swap-eyes back");
+    EXPECT_EQ(deedOf("tool 0.02").tool.radius, 0.02);
+    EXPECT_EQ(deedOf("material talus 30").word, "talus");
+    EXPECT_DOUBLE_EQ(noted("material talus 30").number, 30);
+    EXPECT_EQ(deedOf("save a-B_1").word, "a-B_1");
+    EXPECT_EQ(deedOf("load a-B_1").did, "load");
+    EXPECT_DOUBLE_EQ(deedOf("force off").number, 0);
+    EXPECT_DOUBLE_EQ(noted("force on").number, 1);
+    EXPECT_DOUBLE_EQ(noted("force scale 0.25").number, 0.25);
+    for (const auto& verb : master::verbsOf<support::NotingDesk>()) {
+        EXPECT_TRUE(tried.contains(std::string(verb.name))) << verb.name << " is not tried here";
+    }
 }
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
