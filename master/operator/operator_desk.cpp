@@ -49,13 +49,12 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       input_(options.readInput),
       captures_(out_),
       force_(options.force),
-      lastEdit_(options.lastEdit),
       film_(options.film),
       windows_(scene, out_, options.pointer,
                {views_, material_, paused_, walls::followsWindow(wall),
                 [this] { return session_.sand.replica().surface().heights(); },
                 [this](const std::string& command, int rank) { carryOut(*this, command, Asker::at(rank)); }}) {
-    if (session_.requests != nullptr) {
+    if (session_.force != nullptr) {
         control_.emplace(out_);
     }
     views_.show(options.pattern);
@@ -118,14 +117,14 @@ void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optio
     if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
         throw base::InputError("nothing to undo");
     }
-    edits_.requireRoomFor(edit);
+    session_.edits.requireRoomFor(edit);
     // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
-    if (!session_.room(edits_.sandBytes(edit))) {
-        if (session_.room(edits_.sandBytes())) {
+    if (!session_.room(session_.edits.sandBytes(edit))) {
+        if (session_.room(session_.edits.sandBytes())) {
             throw base::InputError(
                 fmt::format("the disk has no room for {} bytes of sand in the journal; the edit was "
                             "refused: free disk space and try again",
-                            edits_.sandBytes(edit) - edits_.sandBytes()));
+                            session_.edits.sandBytes(edit) - session_.edits.sandBytes()));
         }
         answerEditsThatWaitForRoom();
         throw base::InputError(
@@ -137,9 +136,7 @@ void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optio
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
-    edit.number = ++lastEdit_;
-    session_.requests->request(edit);
-    edits_.add({std::move(edit), client, material});
+    session_.edits.add(std::move(edit), client, material);
 }
 
 /// Changes the material only if the edit was accepted. Later changes start from this material.
@@ -151,11 +148,11 @@ void OperatorDesk::askMaterial(const scene::Material& material, const Asker& ask
 
 /// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
 void OperatorDesk::shareForce(double share, const Asker& asker) {
-    session_.requests->shareForce(share);
+    session_.force->shareForce(share);
     force_ = share;
     host::emitEvent("force", {{"share", share}});
     session_.keepForce(share);
-    const std::optional<double> ceiling = session_.requests->forceCeiling();
+    const std::optional<double> ceiling = session_.force->forceCeiling();
     Json answer{{"ok", true}, {"force_share", share}, {"force_ceiling", orNull(ceiling)}};
     const bool capped = ceiling && *ceiling < share;
     if (capped) {
@@ -253,12 +250,12 @@ void OperatorDesk::close() {
 
 void OperatorDesk::answerEditsThatWaitForRoom() {
     answerSettle({});
-    for (const Client client : edits_.releaseClients()) {
+    for (const Client client : session_.edits.releaseClients()) {
         control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
     }
 }
 
-void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
+void OperatorDesk::answer(const ArrivedSteps& steps) {
     const MasterSand& sand = session_.sand;
     const auto answerIfEnded = [this, &sand] {
         if (const std::optional<SettleEnd> end = settling_ ? sand.endOfSettle(settling_->step) : std::nullopt) {
@@ -266,17 +263,16 @@ void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
         }
     };
     answerIfEnded();  // one of an earlier frame
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         const std::uint64_t step = timed.step.number;
-        const auto client = edits_.shown(timed.step.edit.number);
-        if (!client) {
+        if (!timed.client) {
             continue;
         }
         if (sand.settlingSince() == step || sand.endOfSettle(step)) {
-            settling_ = {*client, step, host::monotonicNs()};
+            settling_ = {*timed.client, step, host::monotonicNs()};
             answerIfEnded();
         } else {
-            control_->answer(*client, line({{"ok", true}, {"step", step}}));
+            control_->answer(*timed.client, line({{"ok", true}, {"step", step}}));
         }
     }
     if (settling_ && host::monotonicNs() - settling_->sinceNs > kSettleNs) {
@@ -312,8 +308,8 @@ void OperatorDesk::reportStatus(const Asker& asker) {
     status["eye_separation"] = views_.eyeSeparation();
     status["material"] = materialNow(material_);
     status["force_share"] = orNull(force_);
-    status["force_ceiling"] = orNull(session_.requests->forceCeiling());
-    status["edits_waiting"] = edits_.size();
+    status["force_ceiling"] = orNull(session_.force->forceCeiling());
+    status["edits_waiting"] = session_.edits.waiting().size();
     if (asker.client) {
         control_->answer(*asker.client, line(status));
     } else {
