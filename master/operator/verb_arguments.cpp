@@ -4,25 +4,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include "base/input_error.hpp"
+#include "base/number.hpp"
 #include "master/journal/saved_sand.hpp"
 #include "walls/wall_check.hpp"
 
 namespace master {
 namespace {
 
-/// Returns the finite number that is the whole of `text`; nullopt for any other text.
+/// Returns the finite number that is the whole of `text`; nullopt for any other text. A sign + is refused, because it
+/// reads as a change by so much.
 std::optional<double> numberIn(std::string_view text) {
-    double number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    const bool whole = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
-    return whole ? std::optional(number) : std::nullopt;
+    return text.starts_with('+') ? std::nullopt : base::numberOf(text);
 }
 
 double parseNumber(std::string_view what, std::string_view text) {

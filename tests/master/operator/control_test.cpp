@@ -87,7 +87,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
     EXPECT_EQ(complaint("tool radius=1e999"), "a tool's radius must be a number, got '1e999'");
     EXPECT_EQ(complaint("tool heading=nan"), "a tool's heading must be a number, got 'nan'");
-    for (const std::string number : {"nan", "inf", "-inf"}) {
+    for (const std::string number : {"nan", "inf", "-inf", "+25", "0x10"}) {
         EXPECT_EQ(complaint("material talus " + number), "talus must be a number, got '" + number + "'");
         EXPECT_EQ(complaint("tool radius=" + number), "a tool's radius must be a number, got '" + number + "'");
         EXPECT_EQ(complaint("tool width=" + number), "a tool's width must be a number, got '" + number + "'");
@@ -97,7 +97,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
               "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
               "heading=, foot=left or right, got '1e999'");
     EXPECT_NE(complaint("tool footprint foot=both").find("got 'foot=both'"), std::string::npos);
-    for (const std::string value : {"scale 1.5", "scale -1", "scale", "scale nan", "half"}) {
+    for (const std::string value : {"scale 1.5", "scale +1", "scale -1", "scale", "scale nan", "half"}) {
         EXPECT_EQ(complaint("force " + value),
                   "force needs on, off or scale SHARE with a share of 0 to 1, got '" + value + "'");
     }
@@ -113,7 +113,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics, help");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");
-    for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1"}) {
+    for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1", "+0.1"}) {
         EXPECT_EQ(complaint("eye-separation " + value), "eye-separation must be 0 to 0.5 metres, got '" + value + "'");
     }
 }
