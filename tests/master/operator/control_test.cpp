@@ -72,6 +72,22 @@ TEST(OperatorCommand, EveryVerbAsksTheDeskForItsDeed) {
     }
 }
 
+TEST(OperatorCommand, EveryEditWithoutDataIsTheVerbOfItsName) {
+    std::set<std::string_view> edits, verbs;
+    for (const auto& known : valuesOf(sand::Edit::Kind{})) {
+        if (known.value != sand::Edit::tune && known.value != sand::Edit::load) {
+            edits.insert(known.name);
+        }
+    }
+    for (const auto& verb : master::verbsOf<support::NotingDesk>()) {
+        if (verb.form.empty() && noted(std::string(verb.name)).did == "edit") {
+            verbs.insert(verb.name);
+            EXPECT_EQ(base::nameOf(noted(std::string(verb.name)).edit), verb.name);
+        }
+    }
+    EXPECT_EQ(edits, verbs);
+}
+
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("dance"),
               "'dance' is not a command; the commands are: status, pause, resume, reset, undo, settle, pattern "

@@ -97,7 +97,7 @@ TEST_F(Desk, RefusesSandThatIsTooLargeForTheDiskAndAnswersNobodyElse) {
 }
 
 TEST_F(Desk, RefusesWhatCannotBeDone) {
-    for (const char* line : {"undo", "no such verb", "material talus 200", "load nothing"}) {
+    for (const char* line : {"undo", "no such verb", "material talus 200", "tool hexagon", "load nothing"}) {
         const json answer = ask(line);
         EXPECT_EQ(answer["ok"], false) << line;
         EXPECT_FALSE(answer["error"].get<std::string>().empty()) << line;
@@ -140,6 +140,8 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
     EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
     EXPECT_EQ(desk_->shownWall().stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(ask("eye-separation 0.07")["ok"], true);
+    EXPECT_EQ(desk_->views().eyeSeparation(), 0.07);
     EXPECT_TRUE(ask("status")["force_share"].is_null()) << "no operator has set it";
     EXPECT_EQ(ask("force scale 0.25")["ok"], true);
     EXPECT_EQ(force_.shares, std::vector<double>{0.25});
