@@ -20,6 +20,7 @@
 #include "lockstep/watchdog.hpp"
 #include "master/measure/failure_report.hpp"
 #include "master/measure/rank_labels.hpp"
+#include "master/operator/verbs.hpp"
 #include "master/program_options.hpp"
 #include "master/session.hpp"
 #include "master/start_up.hpp"
@@ -99,7 +100,7 @@ int main(int argc, char** argv) {
                            "sandwall-master");
     master::ProgramOptions options;
     options.addTo(line);
-    line.words("verbs", master::verbsOfSession());
+    line.words("verbs", master::listedVerbs<master::OperatorDesk>());
     if (line.answersHelp(argc, argv)) {
         return 0;
     }

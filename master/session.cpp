@@ -19,10 +19,10 @@ namespace {
 
 using host::monotonicNs;
 
-std::vector<sand::Step> untimed(const std::vector<haptic_bridge::TimedStep>& steps) {
+std::vector<sand::Step> untimed(const ArrivedSteps& steps) {
     std::vector<sand::Step> result;
     result.reserve(steps.size());
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         result.push_back(timed.step);
     }
     return result;
@@ -44,13 +44,15 @@ Session::Session(const lockstep::Cluster& cluster, const scene::Scene& scene, co
       frame_(options_.record.resumed ? options_.record.resumed->frame : 0),
       clock_(options_.refreshHz.value_or(wall.refreshHz), options_.pace),
       sand_(sandOf(options_, scene)),
-      steps_(stepsOf(options_, scene)),
+      edits_(options_.record.resumed ? options_.record.resumed->lastEdit : 0),
+      steps_(stepsOf(options_, scene, edits_)),
       record_(options_.out, options_.record, scene, labels_),
       counted_(record_.before()),
-      desk_(scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
-            options_.desk,
-            {sand_, steps_->requests(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
-             [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
+      desk_(
+          scene, options_.record.resumed ? options_.record.resumed->material : scene.material, wall, options_.out,
+          options_.desk,
+          {sand_, edits_, steps_->force(), [this](std::int64_t bytes) { return record_.hasRoomForEdit(bytes, sand_); },
+           [this](double share) { record_.keepForce(share); }, [this] { return status(); }}),
       measure_(labels_.names.size(), frame_ + options_.settlingFrames, clock_.period(), options_.pace,
                scene.rules.stepsPerSecond),
       dark_(wall, labels_.names),
@@ -85,9 +87,9 @@ void Session::waitForFrame() {
     }
 }
 
-Session::Steps Session::takeSteps() {
+ArrivedSteps Session::takeSteps() {
     // Also asked while the session is paused, so that it does not continue with an old answer about the disk.
-    const bool room = record_.hasRoom(desk_.edits().sandBytes(), sand_);
+    const bool room = record_.hasRoom(edits_.sandBytes(), sand_);
     if (!room && !desk_.paused()) {
         desk_.answerEditsThatWaitForRoom();
     }
@@ -101,7 +103,7 @@ bool Session::ends() const {
            sand_.replica().stepNumber() >= options_.steps;
 }
 
-lockstep::FrameMessage Session::compose(const Steps& steps) {
+lockstep::FrameMessage Session::compose(const ArrivedSteps& steps) {
     lockstep::FrameMessage frame;
     const std::int64_t now = monotonicNs();
     frame.frame = ++frame_;
@@ -134,12 +136,18 @@ void Session::startDrills() {
 }
 
 /// The render ranks draw meanwhile. They swap only after the master has come to the barrier.
-void Session::keep(const lockstep::FrameMessage& frame) {
+void Session::keep(const lockstep::FrameMessage& frame, const ArrivedSteps& steps) {
     if (frame.steps.empty() && !beginsRest()) {
         return;
     }
     const lockstep::Busy busy(barrier_, "the disk of its journal");
-    record_.keep({frame.frame, sand_.hash(), frame.steps}, desk_.edits().materialsOf(frame.steps));
+    std::vector<scene::Material> materials;
+    for (const ArrivedStep& step : steps) {
+        if (step.material) {
+            materials.push_back(*step.material);
+        }
+    }
+    record_.keep({frame.frame, sand_.hash(), frame.steps}, materials);
     keptHashOf_ = sand_.replica().stepNumber();
 }
 
@@ -150,7 +158,7 @@ bool Session::beginsRest() const {
 
 /// A haptic server could send such steps in every frame. So the line is printed for the first one, and then whenever
 /// their number is a power of two.
-void Session::reportLeftOut(const Steps& steps) {
+void Session::reportLeftOut(const ArrivedSteps& steps) {
     for (const LeftOut& one : sand_.takeLeftOut()) {
         if (one.refused) {
             steps_->refused(steps, one.what);
@@ -181,13 +189,13 @@ bool Session::showFrame(bool& more) {
         steps_->pointed(pointers, desk_.windows().depth(), sand_.replica(), clock_.lastSwap());
     }
     record_.keepTicks(steps_->ticks());  // before room is asked for, because ticks need it, too
-    const Steps steps = takeSteps();
+    const ArrivedSteps steps = takeSteps();
     lockstep::FrameMessage composed = compose(steps);
     startDrills();
     std::size_t bytes = 0;
     const lockstep::FrameMessage frame = barrier_.begin(std::move(composed), bytes);
     const std::int64_t broadcast = monotonicNs();
-    keep(frame);
+    keep(frame, steps);
     const std::uint64_t unplaced = sand_.stepsUnplaced();
     sand_.apply(frame.frame, steps, frame.auditTiles, *steps_);
     reportLeftOut(steps);

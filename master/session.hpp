@@ -47,18 +47,16 @@ public:
     int run();
 
 private:
-    using Steps = std::vector<haptic_bridge::TimedStep>;
-
     /// Shows one frame. Returns whether all ranks agreed. Sets `more` to whether another frame follows.
     [[nodiscard]] bool showFrame(bool& more);
-    void reportLeftOut(const Steps& steps);
+    void reportLeftOut(const ArrivedSteps& steps);
     /// Prints a line about the first press that was refused. `before` is MasterSand::stepsUnplaced() before the frame.
     void reportRefusedPress(std::uint64_t before);
     void waitForFrame();
-    [[nodiscard]] Steps takeSteps();
-    [[nodiscard]] lockstep::FrameMessage compose(const Steps& steps);
+    [[nodiscard]] ArrivedSteps takeSteps();
+    [[nodiscard]] lockstep::FrameMessage compose(const ArrivedSteps& steps);
     void startDrills();
-    void keep(const lockstep::FrameMessage& frame);
+    void keep(const lockstep::FrameMessage& frame, const ArrivedSteps& steps);
     /// Returns whether the journal lacks the hash after the last step, and no step is due.
     [[nodiscard]] bool beginsRest() const;
     /// Returns whether the session shows no steps after the present one.
@@ -102,6 +100,7 @@ private:
     std::optional<std::uint64_t> keptHashOf_;  // last step after which the journal has the hash
     FrameClock clock_;
     MasterSand sand_;
+    Edits edits_;
     std::unique_ptr<StepSource> steps_;
     SessionRecord record_;
     Incidents counted_;  // since the session began; incidents() adds what the link, the disk and check_ have counted

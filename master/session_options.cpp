@@ -29,13 +29,10 @@ SessionOptions completed(SessionOptions options) {
     if (!options.desk.force && options.record.resumed) {
         options.desk.force = options.record.resumed->forceShare;
     }
-    if (options.record.resumed) {
-        options.desk.lastEdit = options.record.resumed->lastEdit;
-    }
     return options;
 }
 
-std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene) {
+std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene, Edits& edits) {
     if (options.recording) {
         return std::make_unique<RecordedSteps>(options.recording, options.steps);
     }
@@ -43,7 +40,7 @@ std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::
     // A session of so many steps must not wait for a hand.
     const AtRest atRest = options.steps == kNoLimit ? AtRest::makesNone : AtRest::makesSteps;
     auto steps =
-        std::make_unique<LiveSteps>(options.server, scene, options.pace, resumed != nullptr ? resumed->epoch : 0,
+        std::make_unique<LiveSteps>(options.server, scene, edits, options.pace, resumed != nullptr ? resumed->epoch : 0,
                                     options.security, haptic_bridge::LinkClock(), atRest);
     if (options.desk.force) {
         steps->shareForce(*options.desk.force);

@@ -51,7 +51,8 @@ struct SessionOptions {
 [[nodiscard]] SessionOptions completed(SessionOptions options);
 /// Create the parts of a session that its options choose. stepsOf() returns the steps of a hand or of a recording, and
 /// sandOf() the sand of the scene or of the resumed session.
-[[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene);
+[[nodiscard]] std::unique_ptr<StepSource> stepsOf(const SessionOptions& options, const scene::Scene& scene,
+                                                  Edits& edits);
 [[nodiscard]] MasterSand sandOf(const SessionOptions& options, const scene::Scene& scene);
 
 }  // namespace master

@@ -4,11 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <array>
 #include <string>
-#include <string_view>
 #include <variant>
 
+#include "base/names.hpp"
 #include "host/whole_file.hpp"
 #include "master/journal/journal.hpp"
 #include "replay/checks.hpp"
@@ -17,8 +16,6 @@
 
 namespace replay {
 namespace {
-
-constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "reset", "undo", "tune", "load"};
 
 /// The tool, as the steps so far have changed it.
 class ExportedTool {
@@ -82,8 +79,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
             last = step.number;
             tool.begin(step);
             fmt::print(out.stream(), "{},{},{},{},{},{},{}\n", step.epoch, step.number, frame->frame,
-                       step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()),
-                       kEditNames.at(static_cast<std::size_t>(step.edit.kind)));
+                       step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()), base::nameOf(step.edit.kind));
             tool.end(step);
         }
     }

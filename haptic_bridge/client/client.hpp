@@ -66,11 +66,6 @@ struct TimedStep {
     std::int64_t serverTimeNs = 0;  // of the StepMessage, on the server's clock
     std::uint64_t serverHash = 0;   // state hash of the server's replica after the step
     std::int64_t receivedNs = 0;    // on this host's monotonic clock
-    /// Up to when the step of a master has the movement of its hand [ns]; 0 if it has none, or if a server made it.
-    std::int64_t handNs = 0;
-
-    /// Returns up to when the step has the movement of the hand [ns, the clock of the epoch]; 0 if it has none.
-    [[nodiscard]] std::int64_t readNs() const { return handNs != 0 ? handNs : serverTimeNs; }
 };
 
 /// Position of the hand from a server that streams positions.

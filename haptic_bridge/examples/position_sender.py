@@ -75,7 +75,7 @@ def prove(master, device, secret):
     master.sendall(challenge)
 
     def proof_of(side):
-        label = b"sandwall 10 " + side
+        label = b"sandwall %d %s" % (PROTOCOL, side)
         said = struct.pack("<I", len(label)) + label + hello + challenge + struct.pack("<I", 0)
         return hmac.digest(secret, said, "sha256")
     answer = receive(master, deadline)

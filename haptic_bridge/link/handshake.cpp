@@ -36,7 +36,8 @@ std::optional<Refusal> refusalFor(const Identity& server, const Identity& master
 MacBytes Transcript::mac(const Security& functions, const std::string& secret, Side side) const {
     base::ByteWriter writer;
     // The label differs for the two sides, so that neither side can answer with the other's proof.
-    writer.putText(side == Side::master ? "sandwall 10 master" : "sandwall 10 server");
+    const char* const name = side == Side::master ? "master" : "server";
+    writer.putText(fmt::format("sandwall {} {}", kProtocolVersion, name));
     writer.putBytes(encode(hello));
     writer.putBytes(encode(challenge));
     writer.putBlock(binding);

@@ -25,8 +25,8 @@ Measurements::Measurements(std::size_t ranks, std::uint64_t from, double period,
                            int stepsPerSecond)
     : from_(from), period_(period), pace_(pace), ranks_(ranks), slowMotion_(stepsPerSecond) {}
 
-void Measurements::add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
-                       const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset) {
+void Measurements::add(const Frame& frame, const ArrivedSteps& steps, const std::vector<lockstep::Arrival>& arrivals,
+                       std::int64_t clockOffset) {
     broadcastBytes_.add(static_cast<double>(frame.bytes));
     addSwaps(frame, arrivals);
     addLatency(frame, steps, arrivals, clockOffset);
@@ -64,13 +64,13 @@ void Measurements::addSwaps(const Frame& frame, const std::vector<lockstep::Arri
     }
 }
 
-void Measurements::addLatency(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
+void Measurements::addLatency(const Frame& frame, const ArrivedSteps& steps,
                               const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset) {
     std::int64_t drawn = frame.broadcast;
     for (std::size_t rank = 1; rank < arrivals.size(); ++rank) {
         drawn = std::max(drawn, arrivals[rank].arrived);
     }
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         if (timed.serverTimeNs == 0) {  // the master made this step
             continue;
         }

@@ -39,8 +39,8 @@ public:
     };
     /// Adds a frame with its steps. `arrivals` are the arrivals at the frame's barrier. `clockOffset` is server's clock
     /// − master's clock [ns].
-    void add(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
-             const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset);
+    void add(const Frame& frame, const ArrivedSteps& steps, const std::vector<lockstep::Arrival>& arrivals,
+             std::int64_t clockOffset);
 
     /// Adds whether a frame has a hand that moves the tool.
     void addHand(bool handed) {
@@ -80,8 +80,8 @@ private:
     [[nodiscard]] bool progressIsDue(const Progress& now, std::int64_t nowNs) const;
     void printFrameRate(bool last);
     void addSwaps(const Frame& frame, const std::vector<lockstep::Arrival>& arrivals);
-    void addLatency(const Frame& frame, const std::vector<haptic_bridge::TimedStep>& steps,
-                    const std::vector<lockstep::Arrival>& arrivals, std::int64_t clockOffset);
+    void addLatency(const Frame& frame, const ArrivedSteps& steps, const std::vector<lockstep::Arrival>& arrivals,
+                    std::int64_t clockOffset);
 
     const std::uint64_t from_;
     const double period_;

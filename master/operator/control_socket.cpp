@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "host/print_line.hpp"
-#include "master/operator/operator_command.hpp"
+#include "master/operator/verb_arguments.hpp"
 
 namespace master {
 namespace {

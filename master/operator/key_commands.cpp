@@ -9,35 +9,36 @@ namespace {
 using lockstep::KeyAction;
 using lockstep::Overlay;
 
-Command toolOf(const scene::ToolChange& change) { return {.verb = Verb::tool, .tool = change}; }
+std::string humidityOf(double humidity) { return fmt::format("material humidity {}", humidity); }
 
-Command humidityOf(double humidity) { return {.verb = Verb::material, .number = humidity, .word = "humidity"}; }
-
-/// Returns the change that gives the scene's tool back, whatever the present tool is.
-scene::ToolChange toolOfScene(const scene::Material& scene) {
+/// Returns the command that gives the scene's tool back, whatever the present tool is.
+std::string toolOfScene(const scene::Material& scene) {
     std::optional<double> width = scene.toolWidth;
     if (!width && !sand::isRound(scene.toolKind)) {
         width = sand::usualWidth(scene.toolKind);
     }
-    return {scene.toolKind, scene.toolRadius, width, scene.toolHeading, scene.leftFoot};
+    return fmt::format("tool {} radius={} heading={} foot={}{}", base::nameOf(scene.toolKind), scene.toolRadius,
+                       scene.toolHeading, scene.leftFoot ? "left" : "right",
+                       width ? fmt::format(" width={}", *width) : "");
 }
 
-Command switched(Overlay layer, const KeyState& state) {
-    return {.verb = state.layers.shows(layer) ? Verb::hide : Verb::show, .layer = layer};
+std::string switched(Overlay layer, const KeyState& state) {
+    return fmt::format("{} {}", state.layers.shows(layer) ? "hide" : "show",
+                       lockstep::kOverlayNames.at(static_cast<std::size_t>(layer)));
 }
 
 }  // namespace
 
-std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& state) {
+std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyState& state) {
     const auto resized = [&](double notches) {
-        return toolOf({.radius = state.limits.resized(state.material.toolRadius, notches)});
+        return fmt::format("tool radius={}", state.limits.resized(state.material.toolRadius, notches));
     };
     const auto turnedBy = [&](double degrees) {
-        return toolOf({.heading = turned(state.material.toolHeading, degrees)});
+        return fmt::format("tool heading={}", turned(state.material.toolHeading, degrees));
     };
     switch (key.entry.action) {
         case KeyAction::tool:
-            return {toolOf({.kind = static_cast<sand::ToolKind>(key.index)})};
+            return {fmt::format("tool {}", base::nameOf(static_cast<sand::ToolKind>(key.index)))};
         case KeyAction::larger:
             return {resized(1)};
         case KeyAction::smaller:
@@ -47,24 +48,24 @@ std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& s
         case KeyAction::turnRight:
             return {turnedBy(-kTurnDegrees)};
         case KeyAction::sceneTool:
-            return {toolOf(toolOfScene(state.ofScene)), humidityOf(state.ofScene.humidity)};
+            return {toolOfScene(state.ofScene), humidityOf(state.ofScene.humidity)};
         case KeyAction::wetter:
             return {humidityOf(moistened(state.material.humidity, kMoreHumidity))};
         case KeyAction::drier:
             return {humidityOf(moistened(state.material.humidity, -kMoreHumidity))};
         case KeyAction::undo:
-            return {{.verb = Verb::undo}};
+            return {"undo"};
         case KeyAction::reset:
-            return {{.verb = Verb::reset}};
+            return {"reset"};
         case KeyAction::frameView:
         case KeyAction::fullScreen:
             return {};
         case KeyAction::pause:
-            return {{.verb = state.paused ? Verb::resume : Verb::pause}};
+            return {state.paused ? "resume" : "pause"};
         case KeyAction::save:
-            return {{.verb = Verb::save, .word = state.saveName}};
+            return {"save " + state.saveName};
         case KeyAction::capture:
-            return {{.verb = Verb::capture}};
+            return {"capture"};
         case KeyAction::wireframe:
             return {switched(Overlay::wireframe, state)};
         case KeyAction::hillShade:
@@ -76,9 +77,9 @@ std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& s
         case KeyAction::help:
             return {switched(Overlay::help, state)};
         case KeyAction::pattern:
-            return {{.verb = Verb::pattern}};
+            return {"pattern next"};
         case KeyAction::quit:
-            return {{.verb = Verb::stop}};
+            return {"stop"};
     }
     return {};
 }

@@ -7,8 +7,8 @@
 #include "lockstep/key_list.hpp"
 #include "lockstep/overlays.hpp"
 #include "lockstep/test_pattern.hpp"
-#include "master/operator/operator_command.hpp"
 #include "master/operator/tool_keys.hpp"
+#include "scene/model/material.hpp"
 
 namespace master {
 
@@ -26,9 +26,9 @@ struct KeyState {
     std::string saveName{};  // name of a file that does not exist
 };
 
-/// Returns the operator's commands that a key stands for, in the order in which they are to be carried out. The keys
-/// that move the view have none.
-[[nodiscard]] std::vector<Command> commandsOf(const lockstep::KeyFound& key, const KeyState& state);
+/// Returns the operator's commands (verbs.hpp) that a key stands for, in the order in which they are to be carried out.
+/// The keys that move the view have none.
+[[nodiscard]] std::vector<std::string> commandsOf(const lockstep::KeyFound& key, const KeyState& state);
 
 /// Returns the answer to a key whose commands were carried out, in words for its window, from the state after it.
 /// Returns an empty text if the key shows its effect itself, or if the answer comes later.

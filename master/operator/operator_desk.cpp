@@ -11,6 +11,7 @@
 #include "host/clock.hpp"
 #include "host/event.hpp"
 #include "host/print_line.hpp"
+#include "master/operator/verbs.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/window_size.hpp"
 
@@ -48,13 +49,12 @@ OperatorDesk::OperatorDesk(const scene::Scene& scene, const scene::Material& mat
       input_(options.readInput),
       captures_(out_),
       force_(options.force),
-      lastEdit_(options.lastEdit),
       film_(options.film),
       windows_(scene, out_, options.pointer,
                {views_, material_, paused_, walls::followsWindow(wall),
                 [this] { return session_.sand.replica().surface().heights(); },
-                [this](const Command& command, int rank) { (void)carryOut(command, Asker::at(rank)); }}) {
-    if (session_.requests != nullptr) {
+                [this](const std::string& command, int rank) { carryOut(*this, command, Asker::at(rank)); }}) {
+    if (session_.force != nullptr) {
         control_.emplace(out_);
     }
     views_.show(options.pattern);
@@ -88,7 +88,7 @@ void OperatorDesk::obey(const std::vector<lockstep::Arrival>& arrivals) {
 
 void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     try {
-        if (carryOut(parseCommand(text), asker) && asker.client) {
+        if (carryOut(*this, text, asker) == Answered::atOnce && asker.client) {
             control_->answer(*asker.client, line({{"ok", true}}));
         }
     } catch (const base::InputError& error) {
@@ -96,78 +96,35 @@ void OperatorDesk::obeyLine(const std::string& text, const Asker& asker) {
     }
 }
 
-bool OperatorDesk::carryOut(const Command& command, const Asker& asker) {
-    switch (command.verb) {
-        case Verb::status:
-            answerClient(asker, status());
-            return false;
-        case Verb::reset:
-            askEdit(sand::Edit::reset, asker);
-            return false;
-        case Verb::undo:
-            askEdit(sand::Edit::undo, asker);
-            return false;
-        case Verb::settle:
-            askEdit(sand::Edit::settle, asker);
-            return false;
-        case Verb::tool:
-            askMaterial(scene::withTool(material_, command.tool, grid_), asker);
-            return false;
-        case Verb::material:
-            askMaterial(scene::withNumber(material_, command.word, command.number, grid_), asker);
-            return false;
-        case Verb::save:
-            save(command.word, asker);
-            return false;
-        case Verb::load:
-            load(command.word, asker);
-            return false;
-        case Verb::capture:
-            captures_.ask(asker);
-            return false;
-        case Verb::pause:
-        case Verb::resume:
-            paused_ = command.verb == Verb::pause;
-            answerSettle({});  // a paused session would let the client wait
-            return true;
-        case Verb::pattern:
-            views_.show(command.pattern.value_or(lockstep::nextPattern(views_.pattern())));
-            return true;
-        case Verb::show:
-        case Verb::hide:
-            views_.show(command.layer, command.verb == Verb::show);
-            return true;
-        case Verb::eyeSeparation:
-            views_.separateEyes(command.number);
-            return true;
-        case Verb::force:
-            shareForce(command.number, asker);
-            return false;
-        case Verb::stereo:
-            showWall(command.stereo, window_, shown_.swapEyes);
-            return true;
-        case Verb::swapEyes:
-            swapEyes(command.on);
-            return true;
-        case Verb::stop:
-            input_.stop();
-            return true;
-    }
-    return true;
+void OperatorDesk::pause(bool paused) {
+    paused_ = paused;
+    answerSettle({});  // a paused session would let the client wait
+}
+
+void OperatorDesk::showPattern(std::optional<lockstep::Pattern> pattern) {
+    views_.show(pattern.value_or(lockstep::nextPattern(views_.pattern())));
+}
+
+void OperatorDesk::changeTool(const scene::ToolChange& change, const Asker& asker) {
+    askMaterial(scene::withTool(material_, change, grid_), asker);
+}
+
+void OperatorDesk::changeMaterial(const MaterialChange& change, const Asker& asker) {
+    askMaterial(scene::withNumber(material_, change.word, change.number, grid_), asker);
 }
 
 void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material) {
     if (edit.kind == sand::Edit::undo && !session_.sand.replica().canUndo()) {
         throw base::InputError("nothing to undo");
     }
-    edits_.requireRoomFor(edit);
+    session_.edits.requireRoomFor(edit);
     // Refuses at once. Otherwise the client would wait until the disk has room, and the edit would come late.
-    if (!session_.room(edits_.sandBytes(edit))) {
-        if (session_.room(edits_.sandBytes())) {
+    if (!session_.room(session_.edits.sandBytes(edit))) {
+        if (session_.room(session_.edits.sandBytes())) {
             throw base::InputError(
                 fmt::format("the disk has no room for {} bytes of sand in the journal; the edit was "
                             "refused: free disk space and try again",
-                            edits_.sandBytes(edit) - edits_.sandBytes()));
+                            session_.edits.sandBytes(edit) - session_.edits.sandBytes()));
         }
         answerEditsThatWaitForRoom();
         throw base::InputError(
@@ -179,9 +136,7 @@ void OperatorDesk::askEdit(sand::Edit edit, const Asker& asker, const std::optio
         control_->answer(*client, line({{"ok", true}, {"waits_for", "resume"}}));
         client.reset();
     }
-    edit.number = ++lastEdit_;
-    session_.requests->request(edit);
-    edits_.add({std::move(edit), client, material});
+    session_.edits.add(std::move(edit), client, material);
 }
 
 /// Changes the material only if the edit was accepted. Later changes start from this material.
@@ -193,11 +148,11 @@ void OperatorDesk::askMaterial(const scene::Material& material, const Asker& ask
 
 /// The hand feels the share before the journal has it, because switching forces off must not wait for a disk.
 void OperatorDesk::shareForce(double share, const Asker& asker) {
-    session_.requests->shareForce(share);
+    session_.force->shareForce(share);
     force_ = share;
     host::emitEvent("force", {{"share", share}});
     session_.keepForce(share);
-    const std::optional<double> ceiling = session_.requests->forceCeiling();
+    const std::optional<double> ceiling = session_.force->forceCeiling();
     Json answer{{"ok", true}, {"force_share", share}, {"force_ceiling", orNull(ceiling)}};
     const bool capped = ceiling && *ceiling < share;
     if (capped) {
@@ -295,12 +250,12 @@ void OperatorDesk::close() {
 
 void OperatorDesk::answerEditsThatWaitForRoom() {
     answerSettle({});
-    for (const Client client : edits_.releaseClients()) {
+    for (const Client client : session_.edits.releaseClients()) {
         control_->answer(client, line({{"ok", true}, {"waits_for", "room"}}));
     }
 }
 
-void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
+void OperatorDesk::answer(const ArrivedSteps& steps) {
     const MasterSand& sand = session_.sand;
     const auto answerIfEnded = [this, &sand] {
         if (const std::optional<SettleEnd> end = settling_ ? sand.endOfSettle(settling_->step) : std::nullopt) {
@@ -308,17 +263,16 @@ void OperatorDesk::answer(const std::vector<haptic_bridge::TimedStep>& steps) {
         }
     };
     answerIfEnded();  // one of an earlier frame
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         const std::uint64_t step = timed.step.number;
-        const auto client = edits_.shown(timed.step.edit.number);
-        if (!client) {
+        if (!timed.client) {
             continue;
         }
         if (sand.settlingSince() == step || sand.endOfSettle(step)) {
-            settling_ = {*client, step, host::monotonicNs()};
+            settling_ = {*timed.client, step, host::monotonicNs()};
             answerIfEnded();
         } else {
-            control_->answer(*client, line({{"ok", true}, {"step", step}}));
+            control_->answer(*timed.client, line({{"ok", true}, {"step", step}}));
         }
     }
     if (settling_ && host::monotonicNs() - settling_->sinceNs > kSettleNs) {
@@ -344,7 +298,7 @@ void OperatorDesk::takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barr
     captures_.take(frame, session_.sand, shown_, barrier, jobs_);
 }
 
-std::string OperatorDesk::status() const {
+void OperatorDesk::reportStatus(const Asker& asker) {
     Json status = session_.status();
     status["ok"] = true;
     status["paused"] = paused_;
@@ -354,16 +308,12 @@ std::string OperatorDesk::status() const {
     status["eye_separation"] = views_.eyeSeparation();
     status["material"] = materialNow(material_);
     status["force_share"] = orNull(force_);
-    status["force_ceiling"] = orNull(session_.requests->forceCeiling());
-    status["edits_waiting"] = edits_.size();
-    return line(status);
-}
-
-void OperatorDesk::answerClient(const Asker& asker, const std::string& json) {
+    status["force_ceiling"] = orNull(session_.force->forceCeiling());
+    status["edits_waiting"] = session_.edits.waiting().size();
     if (asker.client) {
-        control_->answer(*asker.client, json);
+        control_->answer(*asker.client, line(status));
     } else {
-        fmt::print("{}\n", json);
+        fmt::print("{}\n", line(status));
         std::fflush(stdout);
     }
 }

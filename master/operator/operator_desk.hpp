@@ -14,11 +14,11 @@
 #include "master/journal/saved_sand.hpp"
 #include "master/operator/background_jobs.hpp"
 #include "master/operator/captures.hpp"
-#include "master/operator/edit_queue.hpp"
-#include "master/operator/operator_command.hpp"
 #include "master/operator/operator_input.hpp"
+#include "master/operator/verb_arguments.hpp"
 #include "master/operator/view_source.hpp"
 #include "master/operator/window_desk.hpp"
+#include "master/steps/edits.hpp"
 #include "master/steps/master_sand.hpp"
 #include "scene/model/scene.hpp"
 #include "walls/wall.hpp"
@@ -31,7 +31,6 @@ struct DeskOptions {
     lockstep::Overlays layers;                            // shown from the start
     tracking::Source tracker;                             // source of the head's pose
     std::optional<double> force;  // share of the force that an operator has set; nullopt: none has
-    std::uint64_t lastEdit = 0;   // last number of an edit in the resumed session; 0 in a new one
     bool film = false;            // the pictures have the size in the wall file
     bool pointer = false;         // the hand is the pointer, so that all keys of lockstep::keyList() act
 };
@@ -44,7 +43,8 @@ public:
     /// The parts of a session that the desk uses.
     struct SessionParts {
         const MasterSand& sand;
-        StepRequests* requests;                  // null for a replay, whose only command is stop
+        Edits& edits;
+        ForceControl* force;                     // null for a replay, whose only command is stop
         std::function<bool(std::int64_t)> room;  // whether the disk has room for so many bytes of loaded sand
         std::function<void(double)> keepForce;   // writes a share of the force to the journal
         std::function<nlohmann::json()> status;  // answer of `status`, without the fields of the desk
@@ -62,7 +62,6 @@ public:
     [[nodiscard]] WindowDesk& windows() { return windows_; }
     [[nodiscard]] bool stopAsked() const { return input_.stopAsked(); }
     [[nodiscard]] bool paused() const { return paused_; }
-    [[nodiscard]] const EditQueue& edits() const { return edits_; }
     [[nodiscard]] ViewSource& views() { return views_; }
     /// Makes the picture follow its window, whose rank reports its size in `arrivals`. Ignored unless
     /// walls::followsWindow(), and for films.
@@ -76,11 +75,30 @@ public:
     /// already have these edits, so they cannot be taken back. They are done when there is room.
     void answerEditsThatWaitForRoom();
     /// Answers the clients whose edits are in `steps`, which the wall shows now.
-    void answer(const std::vector<haptic_bridge::TimedStep>& steps);
+    void answer(const ArrivedSteps& steps);
     /// Calls Captures::take. A later obey() answers the askers.
     void takeCapture(std::uint64_t frame, lockstep::FrameBarrier& barrier);
     /// Waits for the background jobs, answers their askers, and removes the control socket.
     void close();
+
+    // What the verbs do (verbs.hpp). Each throws base::InputError if it refuses. A function with an `asker` answers it,
+    // at once or later.
+    void reportStatus(const Asker& asker);
+    void pause(bool paused);
+    /// Asks for an edit, after which the session has `material`.
+    void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
+    void showPattern(std::optional<lockstep::Pattern> pattern);  // nullopt: the next one
+    void showLayer(lockstep::Overlay layer, bool shown) { views_.show(layer, shown); }
+    void separateEyes(double metres) { views_.separateEyes(metres); }
+    void showStereo(walls::Stereo stereo) { showWall(stereo, window_, shown_.swapEyes); }
+    void swapEyes(bool swapEyes);
+    void changeTool(const scene::ToolChange& change, const Asker& asker);
+    void changeMaterial(const MaterialChange& change, const Asker& asker);
+    void save(const std::string& name, const Asker& asker);
+    void load(const std::string& name, const Asker& asker);
+    void capture(const Asker& asker) { captures_.ask(asker); }
+    void shareForce(double share, const Asker& asker);
+    void stop() { input_.stop(); }
 
 private:
     using Client = ControlSocket::Client;
@@ -89,19 +107,9 @@ private:
     void answerSettle(std::optional<SettleEnd> end);
 
     void obeyLine(const std::string& line, const Asker& asker);
-    /// Returns whether the command is done, so that a client gets the answer "ok". Otherwise the answer comes later
-    /// or has been sent.
-    [[nodiscard]] bool carryOut(const Command& command, const Asker& asker);
-    void askEdit(sand::Edit edit, const Asker& asker, const std::optional<scene::Material>& material = std::nullopt);
     void askMaterial(const scene::Material& material, const Asker& asker);
-    void shareForce(double share, const Asker& asker);
-    void swapEyes(bool swapEyes);
     void showWall(walls::Stereo stereo, glm::ivec2 window, bool swapEyes);
-    void save(const std::string& name, const Asker& asker);
-    void load(const std::string& name, const Asker& asker);
     void finishJobs(bool wait);
-    [[nodiscard]] std::string status() const;
-    void answerClient(const Asker& asker, const std::string& json);
     void answerAll(const Askers& askers, const BackgroundJobs::Result& result);
     void refuse(const std::string& why, const Askers& askers);
 
@@ -116,7 +124,6 @@ private:
     ViewSource views_;
     OperatorInput input_;
     std::optional<ControlSocket> control_;  // nullopt for a replay
-    EditQueue edits_;
     BackgroundJobs jobs_;
     Captures captures_;
     /// A settle that continues, and whose client waits for its end.
@@ -127,7 +134,6 @@ private:
     };
     std::optional<Settling> settling_;
     std::optional<double> force_;  // share of the force that an operator has set, 0 to 1, within any ceiling
-    std::uint64_t lastEdit_;       // number of the last edit that was asked for
     const bool film_;
     bool paused_ = false;
     WindowDesk windows_;

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <utility>
 
-#include "master/operator/operator_command.hpp"
+#include "master/operator/verb_arguments.hpp"
 
 namespace master {
 namespace {

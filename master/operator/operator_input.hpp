@@ -9,7 +9,7 @@
 
 namespace master {
 
-/// Standard input of a running session. Each line is a command (operator_command.hpp). The end of the input means that
+/// Standard input of a running session. Each line is a command (verbs.hpp). The end of the input means that
 /// the launcher has ended; like SIGTERM it stops the session.
 ///
 /// mpirun passes its standard input to rank 0. The launcher can therefore ask for an orderly end without a signal.

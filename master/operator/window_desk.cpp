@@ -45,7 +45,7 @@ void WindowDesk::obey(base::Keystroke key, int rank) {
         depth_ = kUsualDepth;
     }
     try {
-        for (const Command& command : commandsOf(*found, keyState(action == KeyAction::save))) {
+        for (const std::string& command : commandsOf(*found, keyState(action == KeyAction::save))) {
             desk_.carryOut(command, rank);
         }
         answer(rank, answerOf(*found, keyState(false)));
@@ -102,7 +102,7 @@ void WindowDesk::turnWheels(std::span<const haptic_bridge::PointerReport> pointe
 void WindowDesk::resizeTool(double notches, int rank) {
     const double radius = toolLimits_.resized(desk_.material.toolRadius, notches);
     try {
-        desk_.carryOut({.verb = Verb::tool, .tool = {.radius = radius}}, rank);
+        desk_.carryOut(fmt::format("tool radius={}", radius), rank);
         answer(rank, sizeInWords(keyState(false)));
     } catch (const base::InputError& error) {
         answer(rank, error.what());

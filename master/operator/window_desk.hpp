@@ -28,7 +28,7 @@ public:
         bool followsWindow;                         // walls::followsWindow()
         std::function<sand::HeightSpan()> heights;  // of the sand
         /// Carries out a command for a rank's window. Throws base::InputError if the command is refused.
-        std::function<void(const Command&, int rank)> carryOut;
+        std::function<void(const std::string& command, int rank)> carryOut;
     };
 
     /// `pointer`: all keys of lockstep::keyList() act, because the hand is the pointer. `out` is the folder of the

@@ -14,7 +14,6 @@ namespace master {
 
 using haptic_bridge::Audited;
 using haptic_bridge::Link;
-using haptic_bridge::TimedStep;
 
 namespace {
 
@@ -39,13 +38,14 @@ constexpr const char* kOtherSand = "the hand felt other sand than the wall has s
 
 }  // namespace
 
-LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
-                     std::uint32_t epoch, haptic_bridge::LinkSecurity security, haptic_bridge::LinkClock clock,
-                     AtRest atRest)
+LiveSteps::LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Edits& edits,
+                     haptic_bridge::Pace pace, std::uint32_t epoch, haptic_bridge::LinkSecurity security,
+                     haptic_bridge::LinkClock clock, AtRest atRest)
     : now_(clock ? std::move(clock) : host::monotonicNs),
       link_(std::move(server), {scene.rules.digest(), scene.name, scene.rules.stepLimits()}, std::move(security), now_,
             pace == haptic_bridge::Pace::fast ? scene.rules.stepsPerSecond : 0),
       own_(scene, pace, atRest),
+      edits_(edits),
       budget_(pace, 1'000'000'000 / scene.rules.stepsPerSecond),
       pace_(pace),
       source_(link_.hasServer() ? Source::starting : Source::own),
@@ -134,16 +134,16 @@ void LiveSteps::noteLastReport() {
     linksNoted_ = link;
 }
 
-std::vector<TimedStep> LiveSteps::next(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
+ArrivedSteps LiveSteps::next(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
     if (link_.hasServer()) {
         recent_.reached(replica.stepNumber(), stateHash);
     }
-    std::vector<TimedStep> steps = stepsDue(replica, stateHash, most);
-    edits_.removeThoseIn(steps);
+    ArrivedSteps steps = stepsDue(replica, stateHash, most);
+    edits_.moveInto(steps);
     if (const sand::Edit* edit = linked() ? edits_.nextToAsk(epoch_) : nullptr) {
         link_.client()->request(*edit);
     }
-    for (const TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         if (link_.hasServer()) {
             recent_.add(timed.step);
             if (linked()) {
@@ -158,10 +158,10 @@ std::vector<TimedStep> LiveSteps::next(const sand::Replica& replica, std::uint64
     return steps;
 }
 
-std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
+ArrivedSteps LiveSteps::stepsDue(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) {
     const bool fromServer = linked();
     if (fromServer) {
-        std::vector<TimedStep> steps = drain(replica, most);
+        ArrivedSteps steps = drain(replica, most);
         if (!steps.empty()) {
             return steps;
         }
@@ -169,26 +169,27 @@ std::vector<TimedStep> LiveSteps::stepsDue(const sand::Replica& replica, std::ui
     followLink(replica, stateHash);
     if (fromServer && source_ == Source::own && link_.client() != nullptr) {
         // Steps that arrived between the first look and the loss of the link count, too.
-        std::vector<TimedStep> steps = drain(replica, most);
+        ArrivedSteps steps = drain(replica, most);
         if (!steps.empty()) {
             source_ = Source::server;
             --epoch_;
             return steps;
         }
     }
-    return source_ == Source::own ? ownSteps(replica, most) : std::vector<TimedStep>();
+    return source_ == Source::own ? ownSteps(replica, most) : ArrivedSteps();
 }
 
-std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_t most) {
-    std::vector<TimedStep> steps;
+ArrivedSteps LiveSteps::drain(const sand::Replica& replica, std::size_t most) {
+    ArrivedSteps steps;
     FrameWork taken(replica);
     while (steps.size() < most) {
-        std::vector<TimedStep> next = link_.client()->drain(1);
+        std::vector<haptic_bridge::TimedStep> next = link_.client()->drain(1);
         if (next.empty()) {
             break;
         }
-        taken.add(next.front().step);
-        steps.push_back(std::move(next.front()));
+        haptic_bridge::TimedStep& sent = next.front();
+        taken.add(sent.step);
+        steps.push_back({std::move(sent.step), sent.serverTimeNs, sent.serverHash, sent.receivedNs});
         // One more with as many sweeps must fit, because a step that has been taken cannot be put back.
         if (!budget_.fits(taken.all(), {steps.back().step.sweeps, 0}, replica.tool())) {
             break;
@@ -197,14 +198,14 @@ std::vector<TimedStep> LiveSteps::drain(const sand::Replica& replica, std::size_
     return steps;
 }
 
-std::vector<TimedStep> LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
+ArrivedSteps LiveSteps::ownSteps(const sand::Replica& replica, std::size_t most) {
     // A slow wall leaves out hovering steps that are too many, because to catch up would only delay it further.
-    const std::size_t due = std::min(own_.due(now_(), replica, edits_.any()), most);
-    std::vector<TimedStep> steps;
+    const std::size_t due = std::min(own_.due(now_(), replica, !edits_.waiting().empty()), most);
+    ArrivedSteps steps;
     FrameWork taken(replica);
     // What is owed after an edit, or while sweeps are owed, is known only when the step has been applied.
     for (bool more = true; more && steps.size() < due;) {
-        TimedStep& next = steps.emplace_back();
+        ArrivedStep& next = steps.emplace_back();
         next.step.epoch = epoch_;
         next.step.number = replica.stepNumber() + steps.size();
         if (replica.holdsTool()) {
@@ -236,7 +237,7 @@ const char* LiveSteps::hand() const {
                              : "no hand";
 }
 
-bool LiveSteps::proveServer(const std::vector<TimedStep>& steps, std::uint64_t stateHash) {
+bool LiveSteps::proveServer(const ArrivedSteps& steps, std::uint64_t stateHash) {
     if (std::exchange(memoryChanged_, false)) {
         host::printLine("haptic link: the server's memory had changed by the end of its link; {}", kOtherSand);
         return false;
@@ -258,7 +259,7 @@ void LiveSteps::distrustServer() {
     takeOver("other_sand", "the server's sand differs from the wall's, it must start again from the wall's");
 }
 
-void LiveSteps::refused(const std::vector<TimedStep>& steps, const std::string& why) {
+void LiveSteps::refused(const ArrivedSteps& steps, const std::string& why) {
     if (!linked() || steps.empty() || steps.back().step.epoch != epoch_) {
         return;
     }

@@ -10,10 +10,10 @@
 #include "haptic_bridge/hand/pace.hpp"
 #include "haptic_bridge/hand/sweep_budget.hpp"
 #include "lockstep/fault.hpp"
+#include "master/steps/edits.hpp"
 #include "master/steps/own_steps.hpp"
 #include "master/steps/server_link.hpp"
 #include "master/steps/step_source.hpp"
-#include "master/steps/waiting_edits.hpp"
 #include "sand/replica.hpp"
 #include "scene/model/scene.hpp"
 
@@ -27,7 +27,7 @@ namespace master {
 ///
 /// There are three times without steps: at the start, at most kStartWait; while a server takes over, at most
 /// kGrantWait; and while the master numbers the steps and nothing moves (OwnSteps::rests()).
-class LiveSteps : public StepSource, public StepRequests {
+class LiveSteps : public StepSource, public ForceControl {
 public:
     /// Time at the start for which the master waits for a haptic server before it numbers the steps itself [s].
     static constexpr double kStartWait = 10;
@@ -35,28 +35,26 @@ public:
     static constexpr double kGrantWait = 5;
     static constexpr double kRetryWait = 30;  // [s] until the master asks such a server again
 
+    /// `edits` must outlive this object. Each of them becomes part of a step that next() returns, in their order.
     /// `epoch` is the last epoch of a resumed session; new epochs have higher numbers. All timeouts use `clock`, also
     /// those of the link.
-    LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, haptic_bridge::Pace pace,
-              std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {}, haptic_bridge::LinkClock clock = {},
-              AtRest atRest = AtRest::makesSteps);
+    LiveSteps(std::optional<haptic_bridge::Address> server, const scene::Scene& scene, Edits& edits,
+              haptic_bridge::Pace pace, std::uint32_t epoch = 0, haptic_bridge::LinkSecurity security = {},
+              haptic_bridge::LinkClock clock = {}, AtRest atRest = AtRest::makesSteps);
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& replica, std::uint64_t stateHash,
-                                                             std::size_t most) override;
+    [[nodiscard]] ArrivedSteps next(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most) override;
     [[nodiscard]] std::size_t mostPerFrame() const override { return pace_ == haptic_bridge::Pace::fast ? 4 : 8; }
     /// Returns how long a frame waits for a step [s]. Only a fast session waits.
     [[nodiscard]] double patience() const override { return pace_ == haptic_bridge::Pace::fast ? 0.1 : 0; }
-    [[nodiscard]] StepRequests* requests() override { return this; }
-    void request(sand::Edit edit) override { edits_.add(std::move(edit)); }
+    [[nodiscard]] ForceControl* force() override { return this; }
     void shareForce(double share) override { link_.shareForce(share); }
     [[nodiscard]] std::optional<double> forceCeiling() const override { return link_.forceCeiling(); }
 
     void shown(const haptic_bridge::Shown& frame) override;
     /// If the hashes differ, connects again, so that the server starts from the wall's state.
-    [[nodiscard]] bool proveServer(const std::vector<haptic_bridge::TimedStep>& steps,
-                                   std::uint64_t stateHash) override;
+    [[nodiscard]] bool proveServer(const ArrivedSteps& steps, std::uint64_t stateHash) override;
     /// Ends the link if the server has numbered the steps. Connects again after kRetryWait.
-    void refused(const std::vector<haptic_bridge::TimedStep>& steps, const std::string& why) override;
+    void refused(const ArrivedSteps& steps, const std::string& why) override;
     [[nodiscard]] std::vector<base::Bytes> ticks() override { return link_.ticks(); }
     /// From the first call on, the pointers are the hand. Call it only without a server.
     void pointed(std::span<const haptic_bridge::PointerReport> reports, double depth, const sand::Replica& sand,
@@ -85,11 +83,10 @@ public:
 private:
     enum class Source : std::uint8_t { starting, server, granting, own };
 
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> stepsDue(const sand::Replica& replica, std::uint64_t stateHash,
-                                                                 std::size_t most);
+    [[nodiscard]] ArrivedSteps stepsDue(const sand::Replica& replica, std::uint64_t stateHash, std::size_t most);
     /// Takes the steps of the server that fit into a frame, at least one if one has come, and at most `most`.
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> drain(const sand::Replica& replica, std::size_t most);
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> ownSteps(const sand::Replica& replica, std::size_t most);
+    [[nodiscard]] ArrivedSteps drain(const sand::Replica& replica, std::size_t most);
+    [[nodiscard]] ArrivedSteps ownSteps(const sand::Replica& replica, std::size_t most);
     void followLink(const sand::Replica& replica, std::uint64_t stateHash);
     /// Follows a link that is neither linked, streaming nor offered.
     void waitForLink(haptic_bridge::Link link);
@@ -104,7 +101,7 @@ private:
     haptic_bridge::LinkClock now_;
     ServerLink link_;
     OwnSteps own_;
-    WaitingEdits edits_;
+    Edits& edits_;
     haptic_bridge::SweepBudget budget_;
     haptic_bridge::StepRing recent_;
     haptic_bridge::Pace pace_;

@@ -27,14 +27,13 @@ MasterSand::MasterSand(const sand::Start& start, const base::Executor* executor,
     rehash();
 }
 
-void MasterSand::apply(std::uint64_t frame, const std::vector<haptic_bridge::TimedStep>& steps,
-                       std::uint32_t auditTiles, StepSource& source) {
+void MasterSand::apply(std::uint64_t frame, const ArrivedSteps& steps, std::uint32_t auditTiles, StepSource& source) {
     faults_.strike(frame, replica_);
     source.reached(replica_);
     work_ = {};
     time_ = {};
     endedSettles_.clear();
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         const bool begins = replica_.settlesBySweeps(timed.step);
         time_ += lockstep::applyTimed(replica_, timed.step);
         noteSettle(timed.step, begins);

@@ -60,8 +60,7 @@ public:
 
     /// Injects the master's faults of frame `frame`, applies `steps`, and hashes `auditTiles` hash tiles again from
     /// memory. Calls `source`.reached() before the first step and after each step.
-    void apply(std::uint64_t frame, const std::vector<haptic_bridge::TimedStep>& steps, std::uint32_t auditTiles,
-               StepSource& source);
+    void apply(std::uint64_t frame, const ArrivedSteps& steps, std::uint32_t auditTiles, StepSource& source);
     /// Returns how many hash tiles to hash again in the next frame, so that all tiles are hashed in each second at any
     /// frame rate. `sinceSwap` is the time since the last swap [s].
     [[nodiscard]] std::uint32_t auditTiles(double sinceSwap) const;

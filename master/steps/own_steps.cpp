@@ -40,7 +40,7 @@ std::size_t OwnSteps::due(std::int64_t nowNs, const sand::Replica& sand, bool ed
     return static_cast<std::size_t>(due);
 }
 
-void OwnSteps::fill(haptic_bridge::TimedStep& own, const haptic_bridge::SubstepLimit& limit, std::int64_t nowNs) {
+void OwnSteps::fill(ArrivedStep& own, const haptic_bridge::SubstepLimit& limit, std::int64_t nowNs) {
     const std::int64_t readNs = hand().fill(own.step, limit);
     // If no sample of the hand waits, the hand is where the tool is. A pointer at rest sends no samples.
     own.handNs = hand().waits() ? readNs : nowNs;

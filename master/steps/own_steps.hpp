@@ -45,7 +45,7 @@ public:
     [[nodiscard]] bool rests() const { return rests_; }
     /// Fills in the hand's path since the step before, and when it was read. The path keeps within `limit`. `nowNs` is
     /// the present time on the host's clock [ns].
-    void fill(haptic_bridge::TimedStep& own, const haptic_bridge::SubstepLimit& limit, std::int64_t nowNs);
+    void fill(ArrivedStep& own, const haptic_bridge::SubstepLimit& limit, std::int64_t nowNs);
 
     /// Takes the positions of the server, if the link is in the state `streaming`. Prints troubles with them.
     void followPositions(haptic_bridge::Client& client, haptic_bridge::Link link, const sand::Replica& sand,

@@ -11,9 +11,8 @@ namespace master {
 RecordedSteps::RecordedSteps(std::shared_ptr<const journal::Recording> recording, std::uint64_t last)
     : recording_(std::move(recording)), last_(std::min(last, recording_->lastStep())) {}
 
-std::vector<haptic_bridge::TimedStep> RecordedSteps::next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                                          std::size_t /* most */) {
-    std::vector<haptic_bridge::TimedStep> steps;
+ArrivedSteps RecordedSteps::next(const sand::Replica& /* sand */, std::uint64_t /* hash */, std::size_t /* most */) {
+    ArrivedSteps steps;
     for (const sand::Step& step : recording_->stepsOf(++frame_)) {
         if (step.number <= last_) {
             steps.emplace_back().step = step;

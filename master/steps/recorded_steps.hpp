@@ -18,8 +18,7 @@ public:
     RecordedSteps(std::shared_ptr<const journal::Recording> recording, std::uint64_t last);
 
     /// Returns the steps that the recording has for the next frame. Ignores `most`.
-    [[nodiscard]] std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
-                                                             std::size_t most) override;
+    [[nodiscard]] ArrivedSteps next(const sand::Replica& sand, std::uint64_t hash, std::size_t most) override;
     [[nodiscard]] std::size_t mostPerFrame() const override { return static_cast<std::size_t>(-1); }
     void reached(sand::Replica& sand) override;
     void healed(sand::Replica& sand) override;

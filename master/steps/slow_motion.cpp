@@ -9,9 +9,9 @@ namespace master {
 
 SlowMotion::SlowMotion(int stepsPerSecond) : periodNs_(1'000'000'000 / stepsPerSecond) {}
 
-void SlowMotion::add(std::int64_t passedNs, const std::vector<haptic_bridge::TimedStep>& steps) {
+void SlowMotion::add(std::int64_t passedNs, const ArrivedSteps& steps) {
     passedNs_ += engaged_ ? passedNs : 0;
-    for (const haptic_bridge::TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         const std::int64_t readNs = timed.readNs();
         if (readNs == 0) {  // it only pays sweeps, or no hand has made it
             continue;

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "haptic_bridge/client/client.hpp"
+#include "master/steps/arrived_step.hpp"
 
 namespace master {
 
@@ -21,7 +21,7 @@ public:
     explicit SlowMotion(int stepsPerSecond);
 
     /// Adds the steps of a frame. `passedNs` is the time since the frame before [ns]; 0 if the session was paused.
-    void add(std::int64_t passedNs, const std::vector<haptic_bridge::TimedStep>& steps);
+    void add(std::int64_t passedNs, const ArrivedSteps& steps);
     /// Adds a frame without steps in which sand and hand were at rest. `passedNs` is the time since the frame before
     /// [ns]. The hand takes as long, as in steps without a path.
     void addRest(std::int64_t passedNs);
@@ -33,7 +33,7 @@ private:
     std::int64_t periodNs_;  // [ns], of a step
     std::int64_t passedNs_ = 0, takenNs_ = 0;
     bool engaged_ = false;     // after the last step of a hand
-    std::int64_t readNs_ = 0;  // of the last step of a hand, see TimedStep::readNs()
+    std::int64_t readNs_ = 0;  // of the last step of a hand, see ArrivedStep::readNs()
     std::uint32_t epoch_ = 0;  // each epoch may have another clock
 };
 

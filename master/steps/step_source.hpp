@@ -11,17 +11,15 @@
 #include "haptic_bridge/client/client.hpp"
 #include "haptic_bridge/hand/pointer.hpp"
 #include "lockstep/fault.hpp"
+#include "master/steps/arrived_step.hpp"
 #include "sand/replica.hpp"
 
 namespace master {
 
-/// Takes an operator's requests that change the next steps.
-class StepRequests {
+/// Sets the force that the hand feels.
+class ForceControl {
 public:
-    virtual ~StepRequests() = default;
-    /// Asks for an edit, whose number is higher than those of all earlier edits. It becomes part of a step that
-    /// StepSource::next() returns, after all earlier edits.
-    virtual void request(sand::Edit edit) = 0;
+    virtual ~ForceControl() = default;
     /// Sets the share of the server's forces that the hand feels from now on, 0 to 1, as an operator asked. Servers
     /// that link later get it, too.
     virtual void shareForce(double share) = 0;
@@ -38,14 +36,13 @@ public:
     /// Returns the steps of the next frame, at most `most`; an empty list if no step is due. Their numbers continue
     /// those of `sand`, whose state hash is `hash`. Called once per frame. If it returns no step, it may be called
     /// again until patience() has passed.
-    [[nodiscard]] virtual std::vector<haptic_bridge::TimedStep> next(const sand::Replica& sand, std::uint64_t hash,
-                                                                     std::size_t most) = 0;
+    [[nodiscard]] virtual ArrivedSteps next(const sand::Replica& sand, std::uint64_t hash, std::size_t most) = 0;
     /// Returns how many steps one frame may take. A long catch-up is spread over several frames.
     [[nodiscard]] virtual std::size_t mostPerFrame() const = 0;
     /// Returns how long a frame waits for a step before it is shown without one [s].
     [[nodiscard]] virtual double patience() const { return 0; }
-    /// Returns the object that takes an operator's requests, or null if the steps cannot be changed.
-    [[nodiscard]] virtual StepRequests* requests() { return nullptr; }
+    /// Returns what sets the force of the hand, or null for a recording, which no operator can change.
+    [[nodiscard]] virtual ForceControl* force() { return nullptr; }
 
     /// Called when the master's sand has reached a new state. A source that knows the hash of this state compares the
     /// hashes.
@@ -69,13 +66,10 @@ public:
     /// Compares the wall's state hash `hash` with the haptic server's hash after the last of `steps`. The wall shows
     /// this step now. If the server's sand differs, ends the link to this server and returns false. Also returns false,
     /// once, if a server has said goodbye and has found that its memory had changed (haptic_bridge::Audited::differed).
-    [[nodiscard]] virtual bool proveServer(const std::vector<haptic_bridge::TimedStep>& /* steps */,
-                                           std::uint64_t /* hash */) {
-        return true;
-    }
+    [[nodiscard]] virtual bool proveServer(const ArrivedSteps& /* steps */, std::uint64_t /* hash */) { return true; }
     /// Called when all replicas have left out one of `steps`, because it does what no program that numbers steps
     /// correctly does (sand::Replica::refusedStep()). `why` is Replica::leftOut().
-    virtual void refused(const std::vector<haptic_bridge::TimedStep>& /* steps */, const std::string& /* why */) {}
+    virtual void refused(const ArrivedSteps& /* steps */, const std::string& /* why */) {}
     /// Returns the pieces of the server's tick track since the last call. They are written to the journal.
     [[nodiscard]] virtual std::vector<base::Bytes> ticks() { return {}; }
     /// Injects a fault into the link: garbage or a partition. Without a link, the fault is kept until there is one.
@@ -114,8 +108,7 @@ public:
 
 /// Returns the next steps of `source`. While it has no step, asks again until source.patience() has passed or `stop`
 /// returns true. With `most` = 0 it asks only once.
-[[nodiscard]] std::vector<haptic_bridge::TimedStep> awaitSteps(StepSource& source, const sand::Replica& sand,
-                                                               std::uint64_t hash, std::size_t most,
-                                                               const std::function<bool()>& stop);
+[[nodiscard]] ArrivedSteps awaitSteps(StepSource& source, const sand::Replica& sand, std::uint64_t hash,
+                                      std::size_t most, const std::function<bool()>& stop);
 
 }  // namespace master

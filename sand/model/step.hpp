@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "base/names.hpp"
 #include "sand/model/probe_point.hpp"
 #include "sand/model/rules.hpp"
 
@@ -47,7 +49,13 @@ struct Edit {
     [[nodiscard]] bool any() const { return kind != Kind::none; }
     friend bool operator==(const Edit& a, const Edit& b);
 };
-inline constexpr int kEdits = 6;  // number of kinds
+/// Returns every kind with its name in commands and tables.
+constexpr auto valuesOf(Edit::Kind /* type */) {
+    using enum Edit::Kind;
+    return std::array{base::Named{settle, "settle"}, base::Named{reset, "reset"}, base::Named{undo, "undo"},
+                      base::Named{tune, "tune"}, base::Named{load, "load"}};
+}
+inline constexpr int kEdits = static_cast<int>(valuesOf(Edit::none).size()) + 1;  // number of kinds, with none
 
 /// Writes number and data of an edit, without its kind.
 void encodeDetails(const Edit& edit, base::ByteWriter& writer);

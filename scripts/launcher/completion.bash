@@ -15,6 +15,8 @@ _sandwall() {
         names=$(sandwall complete 2>/dev/null) files=
     elif [[ $before == --wall || ($command == @(check|doctor) && $COMP_CWORD -eq 2) ]]; then
         names=$(sandwall list walls 2>/dev/null)
+    elif [[ $command == ctl && $COMP_CWORD -eq 3 ]]; then
+        names=$(sandwall complete ctl VERB 2>/dev/null) files=
     elif [[ $before == --scene ]]; then
         names=$(sandwall list scenes 2>/dev/null)
     elif [[ $before == --device ]]; then

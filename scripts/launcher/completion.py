@@ -2,9 +2,11 @@
 """What can follow `sandwall` on a command line, for completion.bash. No program runs for it.
 
 usage: sandwall complete [COMMAND [OPTION]]   (not in --help)
+       sandwall complete ctl VERB
 """
 
 import programs
+from ask import session_control
 from base import console, program_options
 
 
@@ -16,7 +18,7 @@ def of_parser(parser):
 
 
 def answer(commands, words):
-    """Prints the commands, or the options of a command, or all values of an option, if they are known."""
+    """Prints the commands, or the options of a command, or all values of an option or the verbs of ctl, if they are known."""
     command, option = [*words, None, None][:2]
     if command is None:
         found = [*commands, "--help", "--version"]
@@ -27,6 +29,8 @@ def answer(commands, words):
         found = []
     elif option is None:
         found = of_parser(commands[command])
+    elif (command, option) == ("ctl", "VERB"):
+        found = ["help", *(verb.split()[0] for verb in session_control.verbs())]
     else:
         if option == "--device":
             console.OUT.line("\n".join(program_options.kinds_of_device()))

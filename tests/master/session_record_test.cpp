@@ -16,7 +16,7 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 
 class Record : public test::FolderTest {
 protected:
@@ -25,7 +25,7 @@ protected:
     }
     void show(master::SessionRecord& record) {
         std::mt19937 random(static_cast<unsigned>(frame_));
-        std::vector<TimedStep> steps(1);
+        std::vector<ArrivedStep> steps(1);
         steps[0].step = samples::randomStep(sand_.replica().stepNumber() + 1, scene_.rules, random);
         record.keep({++frame_, sand_.hash(), {steps[0].step}}, {});
         sand_.apply(frame_, steps, 0, source_);

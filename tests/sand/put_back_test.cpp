@@ -50,6 +50,29 @@ scene::Scene slidingScene() {
     return scene;
 }
 
+// What an edit does is tested by name. This test finds an edit that the replica does not know.
+TEST(Edit, OfEachKindChangesTheSandOrItsTuning) {
+    const scene::Scene scene = slidingScene();
+    Replica replica(scene);
+    Hand(replica).stroke(32);
+    Replica untouched(replica);
+    Hand(untouched).hover();
+    for (const auto& known : valuesOf(Edit::Kind{})) {
+        Edit edit = known.value;
+        if (edit.kind == Edit::tune) {
+            sand::Tuning tuning = scene.rules.tuning;
+            tuning.threshold /= 2;
+            edit = Edit::tuned(tuning);
+        } else if (edit.kind == Edit::load) {
+            edit = Edit::loaded(Replica(samples::flatScene(64, 64)).copySand()->encode());
+        }
+        Replica edited(replica);
+        Hand(edited).hover(edit);
+        EXPECT_TRUE(edited.leftOut().empty()) << edited.leftOut();
+        EXPECT_NE(edited.stateHash(), untouched.stateHash()) << known.name;
+    }
+}
+
 TEST(Undo, RestoresTheHeightsOfBeforeTheLastStroke) {
     const scene::Scene scene = samples::flatScene(64, 64);
     Replica replica(scene);

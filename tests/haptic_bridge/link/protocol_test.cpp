@@ -194,6 +194,13 @@ TEST(Protocol, AnEditTakesItsDetailsAlong) {
     }
 }
 
+// A watcher that does not know an edit cannot read its step. A new edit therefore raises the version, and its writer
+// puts both numbers here.
+TEST(Protocol, HasTheEditsOfItsVersion) {
+    EXPECT_EQ(sand::kEdits, 6);
+    EXPECT_GE(kProtocolVersion, 10U) << "the first with so many";
+}
+
 TEST(Protocol, ReadsOnlyTheVersionOfAnotherProtocol) {
     base::ByteWriter payload;
     payload.put(std::uint8_t{1});

@@ -8,8 +8,8 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
 using lockstep::Arrival;
+using master::ArrivedStep;
 using master::Measurements;
 
 constexpr std::int64_t kMs = 1'000'000;  // [ns]
@@ -19,7 +19,7 @@ class Wall {
 public:
     explicit Wall(Measurements& measurements) : measurements_(measurements) {}
 
-    void show(std::int64_t interval, const std::vector<TimedStep>& steps = {}, std::int64_t clockOffset = 0) {
+    void show(std::int64_t interval, const std::vector<ArrivedStep>& steps = {}, std::int64_t clockOffset = 0) {
         now_ += interval;
         ++frame_;
         std::vector<Arrival> arrivals(3);
@@ -121,7 +121,7 @@ TEST(Measurements, FollowAStepFromTheHandToTheWall) {
     Measurements measurements(3, 0, 0.01, haptic_bridge::Pace::realtime, 60);
     Wall wall(measurements);
     wall.show(10 * kMs);
-    std::vector<TimedStep> steps(2);
+    std::vector<ArrivedStep> steps(2);
     const std::int64_t swap = wall.now() + 20 * kMs;
     steps[0].serverTimeNs = swap - 12 * kMs + kAhead;
     steps[0].receivedNs = swap - 11 * kMs;
@@ -216,7 +216,7 @@ TEST(Measurements, ReportTheSlowMotionOfTheTool) {
         Wall wall(measurements);
         wall.show(10 * kMs);
         for (int frame = 0; frame <= 10; ++frame) {
-            TimedStep timed;
+            ArrivedStep timed;
             timed.serverTimeNs = (100 + 10 * frame) * kMs;
             timed.step.engaged = true;
             timed.step.path = {{frame, 0, 0}};

@@ -13,54 +13,82 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "base/input_error.hpp"
 #include "master/operator/control_socket.hpp"
-#include "master/operator/operator_command.hpp"
 #include "tests/support/files/folder_test.hpp"
+#include "tests/support/noting_desk.hpp"
 
 namespace {
 
 using master::ControlSocket;
-using master::parseCommand;
-using master::Verb;
+using support::noted;
 
 std::string complaint(const std::string& line) {
     try {
-        (void)parseCommand(line);
+        (void)noted(line);
     } catch (const base::InputError& error) {
         return error.what();
     }
     return "accepted";
 }
 
-TEST(OperatorCommand, EveryVerbIsRead) {
-    EXPECT_EQ(parseCommand("status").verb, Verb::status);
-    EXPECT_EQ(parseCommand("undo").verb, Verb::undo);
-    EXPECT_EQ(parseCommand("stop").verb, Verb::stop);
-    EXPECT_EQ(parseCommand("pattern ramp").pattern, lockstep::Pattern::ramp);
-    EXPECT_EQ(parseCommand("pattern none").pattern, lockstep::Pattern::none);
-    EXPECT_FALSE(parseCommand("pattern next").pattern.has_value());
-    EXPECT_EQ(parseCommand("show hill-shade").layer, lockstep::Overlay::hillShade);
-    EXPECT_EQ(parseCommand("hide statistics").layer, lockstep::Overlay::statistics);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0.5").number, 0.5);
-    EXPECT_DOUBLE_EQ(parseCommand("eye-separation 0").number, 0);
-    EXPECT_EQ(parseCommand("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
-    EXPECT_EQ(parseCommand("swap-eyes on").verb, Verb::swapEyes);
-    EXPECT_TRUE(parseCommand("swap-eyes on").on);
-    EXPECT_FALSE(parseCommand("swap-eyes off").on);
-    EXPECT_EQ(parseCommand("tool 0.02").tool.radius, 0.02);
-    EXPECT_EQ(parseCommand("material talus 30").word, "talus");
-    EXPECT_DOUBLE_EQ(parseCommand("material talus 30").number, 30);
-    EXPECT_EQ(parseCommand("save a-B_1").word, "a-B_1");
-    EXPECT_EQ(parseCommand("load a-B_1").verb, Verb::load);
-    EXPECT_EQ(parseCommand("force off").verb, Verb::force);
-    EXPECT_DOUBLE_EQ(parseCommand("force off").number, 0);
-    EXPECT_DOUBLE_EQ(parseCommand("force on").number, 1);
-    EXPECT_DOUBLE_EQ(parseCommand("force scale 0.25").number, 0.25);
+TEST(OperatorCommand, EveryVerbAsksTheDeskForItsDeed) {
+    std::set<std::string> tried;
+    const auto deedOf = [&](const std::string& line) {
+        tried.insert(line.substr(0, line.find(' ')));
+        return noted(line);
+    };
+    for (const std::string verb : {"status", "pause", "resume", "capture", "stop"}) {
+        EXPECT_EQ(deedOf(verb).did, verb);
+    }
+    EXPECT_EQ(deedOf("reset").edit, sand::Edit::reset);
+    EXPECT_EQ(deedOf("undo").edit, sand::Edit::undo);
+    EXPECT_EQ(deedOf("settle").edit, sand::Edit::settle);
+    EXPECT_EQ(deedOf("pattern ramp").pattern, lockstep::Pattern::ramp);
+    EXPECT_EQ(noted("pattern none").pattern, lockstep::Pattern::none);
+    EXPECT_EQ(noted("pattern next").did, "pattern");
+    EXPECT_FALSE(noted("pattern next").pattern.has_value());
+    EXPECT_EQ(deedOf("show hill-shade").layer, lockstep::Overlay::hillShade);
+    EXPECT_EQ(noted("show hill-shade").did, "show");
+    EXPECT_EQ(deedOf("hide statistics").layer, lockstep::Overlay::statistics);
+    EXPECT_EQ(noted("hide statistics").did, "hide");
+    EXPECT_DOUBLE_EQ(deedOf("eye-separation 0.5").number, 0.5);
+    EXPECT_DOUBLE_EQ(noted("eye-separation 0").number, 0);
+    EXPECT_EQ(deedOf("stereo anaglyph").stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(deedOf("swap-eyes on").did, "swap-eyes");
+    EXPECT_EQ(noted("swap-eyes off").did, "swap-eyes back");
+    EXPECT_EQ(deedOf("tool 0.02").tool.radius, 0.02);
+    EXPECT_EQ(deedOf("material talus 30").word, "talus");
+    EXPECT_DOUBLE_EQ(noted("material talus 30").number, 30);
+    EXPECT_EQ(deedOf("save a-B_1").word, "a-B_1");
+    EXPECT_EQ(deedOf("load a-B_1").did, "load");
+    EXPECT_DOUBLE_EQ(deedOf("force off").number, 0);
+    EXPECT_DOUBLE_EQ(noted("force on").number, 1);
+    EXPECT_DOUBLE_EQ(noted("force scale 0.25").number, 0.25);
+    for (const auto& verb : master::verbsOf<support::NotingDesk>()) {
+        EXPECT_TRUE(tried.contains(std::string(verb.name))) << verb.name << " is not tried here";
+    }
+}
+
+TEST(OperatorCommand, EveryEditWithoutDataIsTheVerbOfItsName) {
+    std::set<std::string_view> edits, verbs;
+    for (const auto& known : valuesOf(sand::Edit::Kind{})) {
+        if (known.value != sand::Edit::tune && known.value != sand::Edit::load) {
+            edits.insert(known.name);
+        }
+    }
+    for (const auto& verb : master::verbsOf<support::NotingDesk>()) {
+        if (verb.form.empty() && noted(std::string(verb.name)).did == "edit") {
+            verbs.insert(verb.name);
+            EXPECT_EQ(base::nameOf(noted(std::string(verb.name)).edit), verb.name);
+        }
+    }
+    EXPECT_EQ(edits, verbs);
 }
 
 TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
@@ -78,7 +106,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("material talus steep"), "talus must be a number, got 'steep'");
     EXPECT_EQ(complaint("tool radius=1e999"), "a tool's radius must be a number, got '1e999'");
     EXPECT_EQ(complaint("tool heading=nan"), "a tool's heading must be a number, got 'nan'");
-    for (const std::string number : {"nan", "inf", "-inf"}) {
+    for (const std::string number : {"nan", "inf", "-inf", "+25", "0x10"}) {
         EXPECT_EQ(complaint("material talus " + number), "talus must be a number, got '" + number + "'");
         EXPECT_EQ(complaint("tool radius=" + number), "a tool's radius must be a number, got '" + number + "'");
         EXPECT_EQ(complaint("tool width=" + number), "a tool's width must be a number, got '" + number + "'");
@@ -88,7 +116,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
               "a tool is one of sphere, circle, rectangle, ellipse, ellipsoid, footprint, or has radius=, width=, "
               "heading=, foot=left or right, got '1e999'");
     EXPECT_NE(complaint("tool footprint foot=both").find("got 'foot=both'"), std::string::npos);
-    for (const std::string value : {"scale 1.5", "scale -1", "scale", "scale nan", "half"}) {
+    for (const std::string value : {"scale 1.5", "scale +1", "scale -1", "scale", "scale nan", "half"}) {
         EXPECT_EQ(complaint("force " + value),
                   "force needs on, off or scale SHARE with a share of 0 to 1, got '" + value + "'");
     }
@@ -104,7 +132,7 @@ TEST(OperatorCommand, WhatIsNoneIsToldWithWhatThereIs) {
     EXPECT_EQ(complaint("show rain"), "no layer 'rain'; there are wireframe, hill-shade, force, statistics, help");
     EXPECT_EQ(complaint("pattern stripes"),
               "no test pattern 'stripes'; there are none, grid, tiles, eyes, flash, ramp, next");
-    for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1"}) {
+    for (const std::string value : {"0.51", "-0.01", "nan", "inf", "wide", "0.1m", " 0.1", "+0.1"}) {
         EXPECT_EQ(complaint("eye-separation " + value), "eye-separation must be 0 to 0.5 metres, got '" + value + "'");
     }
 }

@@ -21,17 +21,15 @@
 
 namespace test {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 using nlohmann::json;
 
-/// Records the requests of the desk.
-class Requests : public master::StepRequests {
+/// Records the shares of the force that the desk sets.
+class Force : public master::ForceControl {
 public:
-    void request(sand::Edit edit) override { edits.push_back(std::move(edit)); }
     void shareForce(double share) override { shares.push_back(share); }
     [[nodiscard]] std::optional<double> forceCeiling() const override { return ceiling; }
 
-    std::vector<sand::Edit> edits;
     std::vector<double> shares;
     std::optional<double> ceiling;  // of the linked server
 };
@@ -41,19 +39,19 @@ class OperatorDeskTest : public FolderTest {
 protected:
     OperatorDeskTest() : OperatorDeskTest(samples::flatScene(32, 24)) {}
     explicit OperatorDeskTest(scene::Scene scene) : scene_(std::move(scene)) {}
-    void SetUp() override { open(&requests_); }
-    void open(master::StepRequests* requests, const master::DeskOptions& options = {}) {
+    void SetUp() override { open(&force_); }
+    void open(master::ForceControl* force, const master::DeskOptions& options = {}) {
         desk_.reset();
         desk_.emplace(scene_, scene_.material, wall_, folder_, options,
-                      master::OperatorDesk::SessionParts{sand_, requests,
-                                                         [this](std::int64_t bytes) {
-                                                             asked_ = bytes;
-                                                             return room_ && bytes <= most_;
-                                                         },
-                                                         [this](double share) { kept_.push_back(share); },
-                                                         [] {
-                                                             return json{{"frame", 42}};
-                                                         }});
+                      master::OperatorDesk::SessionParts{sand_, edits_, force,
+                                                    [this](std::int64_t bytes) {
+                                                        bytes_ = bytes;
+                                                        return room_ && bytes <= most_;
+                                                    },
+                                                    [this](double share) { kept_.push_back(share); },
+                                                    [] {
+                                                        return json{{"frame", 42}};
+                                                    }});
     }
     /// Sends a line from another thread. The future has the answer.
     std::future<json> send(const std::string& line) {
@@ -78,11 +76,21 @@ protected:
             desk_->obey({});
         }
     }
+    /// Returns all edits that were asked for, also those that were shown.
+    const std::vector<sand::Edit>& edits() {
+        for (const master::Edits::Asked& asked : edits_.waiting()) {
+            if (asked_.empty() || asked.edit.number > asked_.back().number) {
+                asked_.push_back(asked.edit);
+            }
+        }
+        return asked_;
+    }
     /// Shows a step with the edit `edit`.
     void show(const sand::Edit& edit) {
-        std::vector<TimedStep> steps(1);
+        std::vector<ArrivedStep> steps(1);
         steps[0].step.number = sand_.replica().stepNumber() + 1;
         steps[0].step.edit = edit;
+        edits_.moveInto(steps);
         sand_.apply(1, steps, 0, source_);
         desk_->answer(steps);
     }
@@ -91,11 +99,13 @@ protected:
     walls::Wall wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/anaglyph_half.toml");
     master::MasterSand sand_{scene_, {}, {}};
     NoSteps source_;
-    Requests requests_;
+    master::Edits edits_;
+    std::vector<sand::Edit> asked_;
+    Force force_;
     bool room_ = true;
     std::vector<double> kept_;                   // shares of the force that the journal got
     std::int64_t most_ = std::int64_t{1} << 62;  // room on the disk [byte]
-    std::int64_t asked_ = -1;
+    std::int64_t bytes_ = -1;
     std::optional<master::OperatorDesk> desk_;
 };
 

@@ -19,47 +19,46 @@ using Desk = test::OperatorDeskTest;
 
 TEST_F(Desk, AnswersAnEditOnceItsStepIsShown) {
     std::future<json> answer = send("reset");
-    obeyUntil([&] { return !requests_.edits.empty(); });
-    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
-    EXPECT_EQ(desk_->edits().size(), 1U);
+    obeyUntil([&] { return !edits().empty(); });
+    EXPECT_EQ(edits()[0].kind, sand::Edit::reset);
+    EXPECT_EQ(edits_.waiting().size(), 1U);
     EXPECT_EQ(answer.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "not shown yet";
-    show(requests_.edits[0]);
+    show(edits()[0]);
     EXPECT_EQ(await(answer), (json{{"ok", true}, {"step", 1}}));
-    EXPECT_EQ(desk_->edits().size(), 0U);
+    EXPECT_EQ(edits_.waiting().size(), 0U);
 }
 
 TEST_F(Desk, GivesEachEditANumberAndAnswersByIt) {
     std::future<json> first = send("settle");
-    obeyUntil([&] { return requests_.edits.size() == 1; });
+    obeyUntil([&] { return edits().size() == 1; });
     std::future<json> second = send("settle");
-    obeyUntil([&] { return requests_.edits.size() == 2; });
-    EXPECT_EQ(requests_.edits[0].number, 1U);
-    EXPECT_EQ(requests_.edits[1].number, 2U) << "it equals the first in all else";
+    obeyUntil([&] { return edits().size() == 2; });
+    EXPECT_EQ(edits()[0].number, 1U);
+    EXPECT_EQ(edits()[1].number, 2U) << "it equals the first in all else";
     show(samples::withNumber(7, sand::Edit::settle));
     EXPECT_EQ(first.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "another edit was shown";
-    show(requests_.edits[0]);
+    show(edits()[0]);
     EXPECT_EQ(await(first), (json{{"ok", true}, {"step", 2}}));
-    show(requests_.edits[0]);
+    show(edits()[0]);
     EXPECT_EQ(second.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "a number twice";
-    show(requests_.edits[1]);
+    show(edits()[1]);
     EXPECT_EQ(await(second), (json{{"ok", true}, {"step", 4}}));
 }
 
 // An edit that waited when the session stopped is not in the journal, and its client is gone.
 TEST_F(Desk, OfAResumedSessionCountsOnFromTheNumbersOfItsJournal) {
-    master::DeskOptions options;
-    options.lastEdit = 7;
-    open(&requests_, options);
+    edits_ = master::Edits(7);
+    open(&force_);
     std::future<json> answer = send("reset");
-    obeyUntil([&] { return !requests_.edits.empty(); });
-    EXPECT_EQ(requests_.edits[0].number, 8U);
-    show(requests_.edits[0]);
+    obeyUntil([&] { return !edits().empty(); });
+    EXPECT_EQ(edits()[0].number, 8U);
+    show(edits()[0]);
     EXPECT_EQ(await(answer)["ok"], true);
     EXPECT_EQ(ask("undo")["ok"], false);
     std::future<json> later = send("settle");
-    obeyUntil([&] { return requests_.edits.size() == 2; });
-    EXPECT_EQ(requests_.edits[1].number, 9U) << "a refused edit takes no number";
-    show(requests_.edits[1]);
+    obeyUntil([&] { return edits().size() == 2; });
+    EXPECT_EQ(edits()[1].number, 9U) << "a refused edit takes no number";
+    show(edits()[1]);
     EXPECT_EQ(await(later)["ok"], true);
 }
 
@@ -67,7 +66,7 @@ TEST_F(Desk, SaysThatAnEditOfAPausedSessionWaits) {
     EXPECT_EQ(ask("pause"), (json{{"ok", true}}));
     EXPECT_TRUE(desk_->paused());
     EXPECT_EQ(ask("settle"), (json{{"ok", true}, {"waits_for", "resume"}}));
-    EXPECT_EQ(desk_->edits().size(), 1U);
+    EXPECT_EQ(edits_.waiting().size(), 1U);
     EXPECT_EQ(ask("resume"), (json{{"ok", true}}));
     EXPECT_FALSE(desk_->paused());
 }
@@ -75,45 +74,44 @@ TEST_F(Desk, SaysThatAnEditOfAPausedSessionWaits) {
 // If the disk is full, a new edit is refused. The client of an earlier edit gets the answer that the edit waits.
 TEST_F(Desk, RefusesEditsForWhichTheDiskHasNoRoom) {
     std::future<json> before = send("reset");
-    obeyUntil([&] { return !requests_.edits.empty(); });
+    obeyUntil([&] { return !edits().empty(); });
     room_ = false;
     const json refused = ask("settle");
     EXPECT_EQ(refused["ok"], false);
     EXPECT_EQ(await(before), (json{{"ok", true}, {"waits_for", "room"}}));
-    EXPECT_EQ(requests_.edits.size(), 1U);
-    EXPECT_EQ(desk_->edits().size(), 1U) << "the server may have it already";
-    show(requests_.edits[0]);
-    EXPECT_EQ(desk_->edits().size(), 0U);
+    EXPECT_EQ(edits().size(), 1U);
+    EXPECT_EQ(edits_.waiting().size(), 1U) << "the server may have it already";
+    show(edits()[0]);
+    EXPECT_EQ(edits_.waiting().size(), 0U);
 }
 
 TEST_F(Desk, RefusesSandThatIsTooLargeForTheDiskAndAnswersNobodyElse) {
     std::future<json> before = send("reset");
-    obeyUntil([&] { return !requests_.edits.empty(); });
+    obeyUntil([&] { return !edits().empty(); });
     ASSERT_EQ(ask("save large")["ok"], true);
     most_ = 8;  // no sand is so small
     EXPECT_EQ(ask("load large")["ok"], false);
     EXPECT_EQ(before.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout) << "the sand is not stopped";
-    show(requests_.edits[0]);
+    show(edits()[0]);
     EXPECT_EQ(await(before), (json{{"ok", true}, {"step", 1}}));
 }
 
 TEST_F(Desk, RefusesWhatCannotBeDone) {
-    for (const char* line : {"undo", "no such verb", "material talus 200", "load nothing"}) {
+    for (const char* line : {"undo", "no such verb", "material talus 200", "tool hexagon", "load nothing"}) {
         const json answer = ask(line);
         EXPECT_EQ(answer["ok"], false) << line;
         EXPECT_FALSE(answer["error"].get<std::string>().empty()) << line;
     }
-    EXPECT_TRUE(requests_.edits.empty());
+    EXPECT_TRUE(edits().empty());
 }
 
 TEST_F(Desk, RemembersTheMaterialThatWasAskedFor) {
     std::future<json> answer = send("material talus 30");
-    obeyUntil([&] { return !requests_.edits.empty(); });
-    ASSERT_EQ(requests_.edits[0].kind, sand::Edit::tune);
-    sand::Step step;
-    step.edit = requests_.edits[0];
-    ASSERT_EQ(desk_->edits().materialsOf({step}).size(), 1U) << "for the journal";
-    show(requests_.edits[0]);
+    obeyUntil([&] { return !edits().empty(); });
+    ASSERT_EQ(edits()[0].kind, sand::Edit::tune);
+    ASSERT_TRUE(edits_.waiting()[0].material) << "for the journal";
+    EXPECT_EQ(edits_.waiting()[0].material->dryTalus, 30);
+    show(edits()[0]);
     EXPECT_EQ(await(answer)["ok"], true);
     const json status = ask("status");
     EXPECT_EQ(status["material"]["talus"], 30);
@@ -124,10 +122,10 @@ TEST_F(Desk, RemembersTheMaterialThatWasAskedFor) {
 TEST_F(Desk, SavesTheSandAndLoadsItAgain) {
     EXPECT_EQ(ask("save one")["file"], "saves/one.sand");
     std::future<json> answer = send("load one");
-    obeyUntil([&] { return !requests_.edits.empty(); });
-    ASSERT_EQ(requests_.edits[0].kind, sand::Edit::load);
-    EXPECT_EQ(asked_, static_cast<std::int64_t>(requests_.edits[0].sand->size())) << "room for the whole sand";
-    show(requests_.edits[0]);
+    obeyUntil([&] { return !edits().empty(); });
+    ASSERT_EQ(edits()[0].kind, sand::Edit::load);
+    EXPECT_EQ(bytes_, static_cast<std::int64_t>(edits()[0].sand->size())) << "room for the whole sand";
+    show(edits()[0]);
     EXPECT_EQ(await(answer)["ok"], true);
 }
 
@@ -142,9 +140,11 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::hillShade));
     EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
     EXPECT_EQ(desk_->shownWall().stereo, walls::Stereo::anaglyphColour);
+    EXPECT_EQ(ask("eye-separation 0.07")["ok"], true);
+    EXPECT_EQ(desk_->views().eyeSeparation(), 0.07);
     EXPECT_TRUE(ask("status")["force_share"].is_null()) << "no operator has set it";
     EXPECT_EQ(ask("force scale 0.25")["ok"], true);
-    EXPECT_EQ(requests_.shares, std::vector<double>{0.25});
+    EXPECT_EQ(force_.shares, std::vector<double>{0.25});
     EXPECT_EQ(kept_, std::vector<double>{0.25}) << "in the journal, too";
     EXPECT_EQ(ask("status")["force_share"], 0.25);
 }
@@ -153,7 +153,7 @@ TEST_F(Desk, TellsTheCeilingOfTheServerBesideAShareAboveIt) {
     json told = ask("force on");
     EXPECT_TRUE(told["force_ceiling"].is_null()) << "no server is linked";
     EXPECT_FALSE(told.contains("note"));
-    requests_.ceiling = 0.25;
+    force_.ceiling = 0.25;
     told = ask("force on");
     EXPECT_EQ(told["ok"], true);
     EXPECT_EQ(told["force_share"], 1);
@@ -161,28 +161,28 @@ TEST_F(Desk, TellsTheCeilingOfTheServerBesideAShareAboveIt) {
     EXPECT_TRUE(told["note"].get<std::string>().starts_with("the hand feels 0.25 of the force")) << told;
     EXPECT_EQ(ask("status")["force_ceiling"], 0.25);
     EXPECT_FALSE(ask("force scale 0.25").contains("note"));
-    requests_.ceiling = 1;
+    force_.ceiling = 1;
     EXPECT_FALSE(ask("force on").contains("note"));
 }
 
 TEST_F(Desk, ShowsTheSandAsWetAsAnOperatorMakesIt) {
     EXPECT_EQ(desk_->views().at(0).humidity, 0);
     const std::future<json> answer = send("material humidity 0.3");
-    obeyUntil([&] { return !requests_.edits.empty(); });
+    obeyUntil([&] { return !edits().empty(); });
     EXPECT_EQ(desk_->views().at(0).humidity, 0.3);
     desk_->close();  // the client would wait for the step
 }
 
 TEST_F(Desk, ShowsTheSandAsWetAsTheSceneHasIt) {
     scene_.material.humidity = 0.6;
-    open(&requests_);
+    open(&force_);
     EXPECT_EQ(desk_->views().at(0).humidity, 0.6);
 }
 
 TEST_F(Desk, KnowsTheShareOfTheForceFromBeforeARestart) {
     master::DeskOptions options;
     options.force = 0;
-    open(&requests_, options);
+    open(&force_, options);
     EXPECT_EQ(ask("status")["force_share"], 0);
     EXPECT_TRUE(kept_.empty()) << "the journal has it already";
 }
@@ -234,7 +234,7 @@ TEST_F(Desk, SwapsTheEyesUntilTheyAreSwappedBack) {
 
 TEST_F(Desk, SwapsTheEyesAsTheWallFileHasIt) {
     wall_ = walls::withSwappedEyes(wall_, true);
-    open(&requests_);
+    open(&force_);
     EXPECT_TRUE(desk_->views().at(0).swapEyes);
     EXPECT_EQ(ask("status")["swap_eyes"], true);
     EXPECT_EQ(ask("stereo anaglyph")["ok"], true);

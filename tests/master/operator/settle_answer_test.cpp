@@ -12,7 +12,7 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 using nlohmann::json;
 
 /// A tower of sand on rock settles by sweeps, and so in several steps.
@@ -29,25 +29,26 @@ protected:
     }
     /// Shows these steps in one frame. A tool that is engaged stays so.
     void takeFrame(const std::vector<sand::Step>& frame) {
-        std::vector<TimedStep> steps;
+        std::vector<ArrivedStep> steps;
         bool engaged = sand_.replica().engaged();
         for (const sand::Step& step : frame) {
             engaged = engaged || step.engaged;
-            TimedStep& timed = steps.emplace_back();
+            ArrivedStep& timed = steps.emplace_back();
             timed.step = step;
             timed.step.number = sand_.replica().stepNumber() + steps.size();
             timed.step.engaged = engaged;
         }
+        edits_.moveInto(steps);
         sand_.apply(1, steps, 0, source_);
         desk_->answer(steps);
     }
     void take(const sand::Step& step) { takeFrame({step}); }
     /// Asks for a settle that no step has yet, and returns it with its answer.
     std::pair<sand::Edit, std::future<json>> asked() {
-        const std::size_t before = requests_.edits.size();
+        const std::size_t before = edits().size();
         std::future<json> answer = send("settle");
-        obeyUntil([&] { return requests_.edits.size() > before; });
-        return {requests_.edits.back(), std::move(answer)};
+        obeyUntil([&] { return edits().size() > before; });
+        return {edits().back(), std::move(answer)};
     }
     static bool waits(const std::future<json>& answer) {
         return answer.wait_for(std::chrono::milliseconds(20)) == std::future_status::timeout;

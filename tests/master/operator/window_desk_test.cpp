@@ -14,7 +14,7 @@
 namespace {
 
 using base::Keystroke;
-using test::TimedStep;
+using test::ArrivedStep;
 
 constexpr Keystroke plain(char key) { return {static_cast<std::uint16_t>(key), 0, 0}; }
 constexpr Keystroke control(char key) { return {static_cast<std::uint16_t>(key), Keystroke::kControl, 0}; }
@@ -27,7 +27,7 @@ protected:
     void openForPointer() {
         master::DeskOptions options;
         options.pointer = true;
-        open(&requests_, options);
+        open(&force_, options);
     }
     /// Presses a key in the window of rank 1.
     void press(Keystroke key) {
@@ -46,8 +46,8 @@ protected:
     }
     /// Applies two steps with a stroke, so that there is one to undo.
     void stroke() {
-        std::vector<TimedStep> steps(2);
-        for (TimedStep& timed : steps) {
+        std::vector<ArrivedStep> steps(2);
+        for (ArrivedStep& timed : steps) {
             timed.step.number = sand_.replica().stepNumber() + 1 + static_cast<std::uint64_t>(&timed - steps.data());
             timed.step.engaged = &timed != steps.data();
             timed.step.path = {sand::probePoint(16, 12, 0)};
@@ -58,33 +58,33 @@ protected:
 
 TEST_F(WindowDesk, TakesKeysIfTheHandIsThePointer) {
     desk_->obey({{.key = kShiftR}, {.key = plain('h')}});
-    EXPECT_TRUE(requests_.edits.empty()) << "another hand";
+    EXPECT_TRUE(edits().empty()) << "another hand";
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
     openForPointer();
     press(kShiftR);
     press(plain('h'));
-    ASSERT_EQ(requests_.edits.size(), 1U);
-    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::reset);
+    ASSERT_EQ(edits().size(), 1U);
+    EXPECT_EQ(edits()[0].kind, sand::Edit::reset);
     EXPECT_TRUE(desk_->views().layers().shows(lockstep::Overlay::help));
     press(plain('3'));
     press({Keystroke::kF1, 0, 0});
-    ASSERT_EQ(requests_.edits.size(), 2U);
-    EXPECT_EQ(requests_.edits[1].tuning.tool.kind, sand::ToolKind::rectangle);
+    ASSERT_EQ(edits().size(), 2U);
+    EXPECT_EQ(edits()[1].tuning.tool.kind, sand::ToolKind::rectangle);
     EXPECT_FALSE(desk_->views().layers().shows(lockstep::Overlay::help));
     press(control('z'));
-    EXPECT_EQ(requests_.edits.size(), 2U) << "there is no stroke to undo";
+    EXPECT_EQ(edits().size(), 2U) << "there is no stroke to undo";
     press(plain('x'));
-    EXPECT_EQ(requests_.edits.size(), 2U) << "a key without an action";
+    EXPECT_EQ(edits().size(), 2U) << "a key without an action";
 }
 
 TEST_F(WindowDesk, UndoesTheLastStrokeByControlZAndByU) {
     openForPointer();
     stroke();
     press(control('z'));
-    ASSERT_EQ(requests_.edits.size(), 1U);
-    EXPECT_EQ(requests_.edits[0].kind, sand::Edit::undo);
+    ASSERT_EQ(edits().size(), 1U);
+    EXPECT_EQ(edits()[0].kind, sand::Edit::undo);
     press(plain('u'));
-    EXPECT_EQ(requests_.edits.size(), 2U) << "asked for before the first one is shown";
+    EXPECT_EQ(edits().size(), 2U) << "asked for before the first one is shown";
 }
 
 TEST_F(WindowDesk, AnswersEachKeyInTheWindowWhereItWasPressed) {
@@ -162,30 +162,30 @@ TEST_F(WindowDesk, ChangesTheToolByKeysWithinItsLimitsAndBackToTheScene) {
     openForPointer();
     for (int i = 0; i < 60; ++i) {  // the scene's tool is smaller than both limits
         press(plain(i < 40 ? '+' : '-'));
-        show(requests_.edits.back());
+        show(edits().back());
         const std::int32_t most = 3 * sand::kProbePerCell;  // a quarter of 24 cells long
-        EXPECT_LE(requests_.edits.back().tuning.tool.radius, most);
-        EXPECT_TRUE(i != 39 || requests_.edits.back().tuning.tool.radius == most);
+        EXPECT_LE(edits().back().tuning.tool.radius, most);
+        EXPECT_TRUE(i != 39 || edits().back().tuning.tool.radius == most);
     }
-    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, sand::kProbePerCell) << "two cells long";
+    EXPECT_EQ(edits().back().tuning.tool.radius, sand::kProbePerCell) << "two cells long";
     press(plain('4'));
-    show(requests_.edits.back());
+    show(edits().back());
     press(plain(','));
-    show(requests_.edits.back());
-    const sand::Heading left = requests_.edits.back().tuning.tool.heading;
+    show(edits().back());
+    const sand::Heading left = edits().back().tuning.tool.heading;
     EXPECT_EQ(left, sand::headingOf(5).value());
     press(plain('w'));
-    show(requests_.edits.back());
-    EXPECT_NE(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+    show(edits().back());
+    EXPECT_NE(edits().back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
     press(plain('0'));
-    EXPECT_EQ(requests_.edits.back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
+    EXPECT_EQ(edits().back().tuning, scene::tuningOf(scene_.material, scene_.grid()));
 }
 
 TEST_F(WindowDesk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
     openForPointer();
     std::array<haptic_bridge::PointerReport, 2> pointers{};
     desk_->windows().turnWheels(pointers);
-    EXPECT_TRUE(requests_.edits.empty()) << "a wheel that rests";
+    EXPECT_TRUE(edits().empty()) << "a wheel that rests";
     pointers[1].depth = 2;
     desk_->windows().turnWheels(pointers);
     EXPECT_NEAR(desk_->windows().depth(), 0.7, 1e-12);
@@ -199,7 +199,7 @@ TEST_F(WindowDesk, ChangesDepthAndSizeByTheWheelWithinTheirLimits) {
     pointers[1] = {};
     pointers[1].size = -100;
     desk_->windows().turnWheels(pointers);
-    EXPECT_EQ(requests_.edits.back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
+    EXPECT_EQ(edits().back().tuning.tool.radius, 3 * sand::kProbePerCell) << "away from the user is larger";
 }
 
 // The wall of these tests is in stereo, so that it is not a desktop.
@@ -223,7 +223,7 @@ TEST_F(WindowDesk, MovesTheViewOfADesktopAndFramesItAgain) {
     wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
     master::DeskOptions options;
     options.pointer = true;
-    open(&requests_, options);
+    open(&force_, options);
     const auto framed = desk_->views().at(0).sceneToRoom;
     const std::array<haptic_bridge::PointerReport, 3> moves{
         {{.turnX = 0.25F}, {.wheel = 1, .wheelAt = {0, 1, 0}}, {.pan = {0.1F, 0, 0}}}};
@@ -253,7 +253,7 @@ protected:
 TEST_F(MountainDesk, BeginsWithTheWholeTerrainInView) {
     wall_ = walls::loadWall(SANDWALL_SOURCE_DIR "/walls/configs/desktop.toml");
     const auto ofTheFile = master::ViewSource(wall_, scene_, {}).at(0).sceneToRoom;
-    open(&requests_);
+    open(&force_);
     EXPECT_LT(desk_->views().at(0).sceneToRoom[0], ofTheFile[0]) << "smaller than the wall file has it";
 }
 

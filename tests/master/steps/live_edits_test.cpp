@@ -24,7 +24,7 @@ TEST_F(LiveStepsTest, EditsGoToTheServerOneByOneAndEachIntoOneStep) {
                                         withNumber(3, sand::Edit::loaded(sand)),
                                         withNumber(4, sand::Edit::loaded(sand)), withNumber(5, sand::Edit::reset)};
     for (const sand::Edit& edit : asked) {
-        live.request(edit);
+        asked_.add(edit, {}, {});
     }
     ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 5; }));
     EXPECT_EQ(edits_, asked) << "in the order in which they were asked for, also if two are equal";
@@ -62,7 +62,7 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
     });
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return live.linked(); }));
-    live.request(withNumber(1, sand::Edit::settle));
+    asked_.add(sand::Edit::settle, {}, {});
     ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 1; }));
     EXPECT_EQ(asked, 1);
     EXPECT_FALSE(live.linked());
@@ -82,15 +82,16 @@ TEST_F(LiveStepsTest, EditsKeepTheirNumbersOverEpochs) {
     SandServer server(scene_, [](int link, std::uint64_t step, std::uint64_t hash) {
         return link == 1 && step >= 30 ? hash ^ 1 : hash;
     });
+    asked_ = master::Edits(7);
     master::LiveSteps live = stepsFrom(server.address());
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() >= 5; }));
-    live.request(withNumber(8, sand::Edit::settle));
+    asked_.add(sand::Edit::settle, {}, {});
     ASSERT_TRUE(showUntil(live, [&] { return differed_ > 0; }));
     ASSERT_FALSE(live.linked());
-    live.request(withNumber(9, sand::Edit::settle));
-    live.request(withNumber(10, sand::Edit::settle));
+    asked_.add(sand::Edit::settle, {}, {});
+    asked_.add(sand::Edit::settle, {}, {});
     ASSERT_TRUE(showUntil(live, [&] { return server.links() == 2 && live.linked(); }));
-    live.request(withNumber(11, sand::Edit::settle));
+    asked_.add(sand::Edit::settle, {}, {});
     ASSERT_TRUE(showUntil(live, [&] { return edits_.size() == 4; }));
     const std::uint64_t then = wall_.stepNumber();
     ASSERT_TRUE(showUntil(live, [&] { return wall_.stepNumber() > then + 20; }));

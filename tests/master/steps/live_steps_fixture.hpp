@@ -15,7 +15,7 @@
 
 namespace test {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 
 inline constexpr std::int64_t kFrameNs = 16'666'667;
 inline constexpr std::chrono::milliseconds kLooks{1200};  // time in which a link looks at its clock twice
@@ -24,13 +24,13 @@ inline constexpr std::chrono::milliseconds kLooks{1200};  // time in which a lin
 class LiveStepsTest : public testing::Test {
 protected:
     master::LiveSteps stepsFrom(const haptic_bridge::Address& server) {
-        return {server, scene_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
+        return {server, scene_, asked_, haptic_bridge::Pace::fast, 0, {}, [this] { return nowNs_.load(); }};
     }
     void pass(double seconds) { nowNs_ += static_cast<std::int64_t>(seconds * 1e9); }
     /// Shows one frame, and returns its steps.
-    std::vector<TimedStep> show(master::LiveSteps& live, std::size_t most = 4) {
-        std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), most);
-        for (const TimedStep& timed : steps) {
+    std::vector<ArrivedStep> show(master::LiveSteps& live, std::size_t most = 4) {
+        std::vector<ArrivedStep> steps = live.next(wall_, wall_.stateHash(), most);
+        for (const ArrivedStep& timed : steps) {
             wall_.apply(timed.step);
             if (wall_.refusedStep()) {
                 live.refused(steps, wall_.leftOut());
@@ -52,7 +52,7 @@ protected:
     }
     /// Returns whether the master numbers the steps.
     bool numbersAlone(master::LiveSteps& live) {
-        const std::vector<TimedStep> steps = show(live);
+        const std::vector<ArrivedStep> steps = show(live);
         return !live.linked() && steps.size() == 1 && steps[0].serverHash == 0 && steps[0].step.epoch == live.epoch();
     }
     static std::uint64_t refusedForSilence(const master::LiveSteps& live) {
@@ -63,6 +63,7 @@ protected:
     sand::Replica wall_{scene_};
     std::atomic<std::int64_t> nowNs_{1'000'000'000};
     int differed_ = 0;
+    master::Edits asked_;
     std::vector<sand::Edit> edits_;  // of the steps that were shown
 };
 

@@ -12,7 +12,7 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 using test::eventually;
 using test::FakeServer;
 using test::kFrameNs;
@@ -36,7 +36,7 @@ TEST_F(LiveStepsTest, AServerWhoseStepIsLeftOutIsDropped) {
 }
 
 TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunctual) {
-    master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
+    master::LiveSteps live(std::nullopt, scene_, asked_, haptic_bridge::Pace::realtime, 0, {},
                            [this] { return nowNs_.load(); });
     std::array<haptic_bridge::PointerReport, 2> reports{};
     live.pointed(reports, 0.5, wall_, nowNs_);
@@ -47,7 +47,7 @@ TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunct
         reports[1].count = 1;
         reports[1].samples[0] = {read, {2048 + 64 * frame, 2048, 0}, 0, 1, {}};
         live.pointed(reports, 0.5, wall_, received);
-        const std::vector<TimedStep> steps = show(live);
+        const std::vector<ArrivedStep> steps = show(live);
         ASSERT_EQ(steps.size(), 1U) << "frame " << frame;
         ASSERT_EQ(steps[0].step.path.size(), 1U);
         EXPECT_EQ(steps[0].step.path[0].x, 2048 + 64 * frame);
@@ -59,14 +59,14 @@ TEST_F(LiveStepsTest, APointerMovesTheToolOnceInEachFrameAlsoIfFramesAreNotPunct
 
 // A sweep takes 1 ms, and a frame has 8.3 ms for sand.
 TEST_F(LiveStepsTest, AFrameTakesTheOwnStepsThatFit) {
-    master::LiveSteps live(std::nullopt, scene_, haptic_bridge::Pace::realtime, 0, {},
+    master::LiveSteps live(std::nullopt, scene_, asked_, haptic_bridge::Pace::realtime, 0, {},
                            [this] { return nowNs_.load(); });
     nowNs_ += 4 * kFrameNs + 1000;
     EXPECT_EQ(show(live).size(), 4U) << "no cost is known";
     const haptic_bridge::FrameCost cost{.sweeps = 8, .sweepNs = 8'000'000};
     live.shown({wall_.stepNumber(), kFrameNs, haptic_bridge::Held::no, cost});
     nowNs_ += 4 * kFrameNs;
-    const std::vector<TimedStep> steps = live.next(wall_, wall_.stateHash(), 4);
+    const std::vector<ArrivedStep> steps = live.next(wall_, wall_.stateHash(), 4);
     ASSERT_EQ(steps.size(), 1U);
     EXPECT_EQ(steps[0].step.sweeps, 8) << "all that it owes";
 }

@@ -14,8 +14,8 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
 using lockstep::Fault;
+using master::ArrivedStep;
 
 /// Notes the states for which reached() is called.
 class Notes : public test::NoSteps {
@@ -30,9 +30,9 @@ const scene::Scene& sceneOfTest() {
     return scene;
 }
 
-std::vector<TimedStep> stepsFrom(std::uint64_t first, std::size_t count, std::mt19937& random) {
-    std::vector<TimedStep> steps(count);
-    for (TimedStep& timed : steps) {
+std::vector<ArrivedStep> stepsFrom(std::uint64_t first, std::size_t count, std::mt19937& random) {
+    std::vector<ArrivedStep> steps(count);
+    for (ArrivedStep& timed : steps) {
         timed.step = samples::randomStep(first++, sceneOfTest().rules, random);
     }
     return steps;
@@ -44,10 +44,10 @@ TEST(MasterSand, AppliesTheStepsOfAFrameAndTellsOfEachState) {
     sand::Replica plain(sceneOfTest());
     EXPECT_EQ(sand.hash(), plain.stateHash());
     Notes notes;
-    std::vector<TimedStep> steps = stepsFrom(1, 3, random);
+    std::vector<ArrivedStep> steps = stepsFrom(1, 3, random);
     steps[1].step.edit = sand::Edit::settle;
     sand.apply(1, steps, 4, notes);
-    for (const TimedStep& timed : steps) {
+    for (const ArrivedStep& timed : steps) {
         plain.apply(timed.step);
     }
     EXPECT_EQ(sand.hash(), plain.stateHash());
@@ -78,7 +78,7 @@ TEST(MasterSand, GoesOnAfterALoadThatClaimsTooMuch) {
     const std::string said = test::inTwoGiB([&] {
         Notes notes;
         master::MasterSand sand(scene, {}, {});
-        std::vector<TimedStep> steps(2);
+        std::vector<ArrivedStep> steps(2);
         steps[0].step = {.epoch = 1, .number = 1, .engaged = false, .path = {}, .edit = sand::Edit::loaded(dead)};
         steps[1].step = {.epoch = 1, .number = 2, .engaged = false, .path = {}};
         sand.apply(1, steps, 0, notes);
@@ -107,7 +107,7 @@ TEST(MasterSand, CountsTheStepsWithARefusedPressAndKnowsTheFirst) {
     master::MasterSand sand(samples::highScene(10), {}, {});
     EXPECT_EQ(sand.stepsUnplaced(), 0U);
     EXPECT_EQ(sand.firstStepUnplaced(), 0U);
-    std::vector<TimedStep> steps(3);
+    std::vector<ArrivedStep> steps(3);
     steps[0].step = {.number = 1};
     steps[1].step = {.number = 2, .engaged = true, .path = {samples::aboveHighSand(2, 30), samples::aboveHighSand(2)}};
     steps[2].step = {.number = 3, .engaged = true};  // the tool does not move

@@ -10,7 +10,7 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 
 /// Records a session of `steps` steps, 60 per second, one per frame, with the hashes of its sand.
 journal::Journal sessionWithHashes(std::uint64_t steps) {
@@ -33,9 +33,9 @@ std::shared_ptr<const journal::Recording> recordingOf(journal::Journal journal, 
 
 /// Shows a frame of the recording on a wall without ranks. Returns the number of its steps.
 std::size_t showFrame(master::RecordedSteps& steps, sand::Replica& sand) {
-    const std::vector<TimedStep> next = steps.next(sand, sand.stateHash(), steps.mostPerFrame());
+    const std::vector<ArrivedStep> next = steps.next(sand, sand.stateHash(), steps.mostPerFrame());
     steps.reached(sand);
-    for (const TimedStep& timed : next) {
+    for (const ArrivedStep& timed : next) {
         sand.apply(timed.step);
         steps.reached(sand);
     }
@@ -51,7 +51,7 @@ TEST(RecordedSteps, ShowEachFrameTheStepsOfItsTimeAndEndWhereAsked) {
     }
     EXPECT_EQ(sand.stepNumber(), 7U);
     EXPECT_FALSE(steps.strayed());
-    EXPECT_EQ(steps.requests(), nullptr) << "a recording cannot be changed";
+    EXPECT_EQ(steps.force(), nullptr) << "a recording cannot be changed";
     EXPECT_STREQ(steps.hand(), "recorded");
 }
 
@@ -96,9 +96,9 @@ TEST(RecordedSteps, CompareAgainWhenTheMasterWasHealed) {
 class LateSteps : public test::NoSteps {
 public:
     explicit LateSteps(double patience) : patience_(patience) {}
-    std::vector<TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                std::size_t /* most */) override {
-        return std::vector<TimedStep>(++calls == 3 ? 1 : 0);
+    std::vector<ArrivedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                                  std::size_t /* most */) override {
+        return std::vector<ArrivedStep>(++calls == 3 ? 1 : 0);
     }
     [[nodiscard]] double patience() const override { return patience_; }
 

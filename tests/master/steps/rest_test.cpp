@@ -10,7 +10,7 @@
 namespace {
 
 using haptic_bridge::Pace;
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 using test::FakeServer;
 using test::kFrameNs;
 
@@ -18,7 +18,7 @@ class RestTest : public test::LiveStepsTest {
 protected:
     master::LiveSteps stepsOf(Pace pace = Pace::realtime, master::AtRest atRest = master::AtRest::makesNone,
                               const std::optional<haptic_bridge::Address>& server = std::nullopt) {
-        return {server, scene_, pace, 0, {}, [this] { return nowNs_.load(); }, atRest};
+        return {server, scene_, asked_, pace, 0, {}, [this] { return nowNs_.load(); }, atRest};
     }
     /// Shows so many frames of a wall of 60 Hz, and returns how many steps they had.
     std::size_t showFrames(master::LiveSteps& live, int frames) {
@@ -103,8 +103,8 @@ TEST_F(RestTest, SandThatSlidesIsNotAtRest) {
 TEST_F(RestTest, AnEditIsInAStepOfTheNextFrame) {
     master::LiveSteps live = stepsOf();
     restForAMinute(live);
-    live.request(samples::withNumber(1, sand::Edit::settle));
-    const std::vector<TimedStep> steps = show(live);
+    asked_.add(sand::Edit::settle, {}, {});
+    const std::vector<ArrivedStep> steps = show(live);
     ASSERT_EQ(steps.size(), 1U) << "and not those of the minute";
     EXPECT_EQ(steps[0].step.edit.number, 1U);
     EXPECT_FALSE(live.rests());
@@ -127,7 +127,7 @@ TEST_F(RestTest, APointerThatMovesIsInAStepOfTheNextFrameWithThisMovementAlone) 
     nowNs_ += kFrameNs;
     point(live, 2304);
     const std::int64_t read = nowNs_ - 5'000'000;
-    const std::vector<TimedStep> steps = show(live);
+    const std::vector<ArrivedStep> steps = show(live);
     ASSERT_EQ(steps.size(), 1U);
     ASSERT_EQ(steps[0].step.path.size(), 1U);
     EXPECT_EQ(steps[0].step.path[0].x, 2304);
@@ -153,7 +153,7 @@ TEST_F(RestTest, APausedSessionShowsTheMovementWhenItResumes) {
     ASSERT_TRUE(show(live, 0).empty());
     nowNs_ += kFrameNs;
     pointStill(live);
-    const std::vector<TimedStep> steps = show(live);
+    const std::vector<ArrivedStep> steps = show(live);
     ASSERT_EQ(steps.size(), 1U);
     ASSERT_EQ(steps[0].step.path.size(), 1U);
     EXPECT_EQ(steps[0].step.path[0].x, 2304);

@@ -5,14 +5,14 @@
 
 namespace {
 
-using haptic_bridge::TimedStep;
+using master::ArrivedStep;
 using master::SlowMotion;
 
 constexpr std::int64_t kMs = 1'000'000, kFrame = 16 * kMs;  // [ns]
 
 /// Returns a step whose last sample was read at `readNs`.
-TimedStep stepAt(std::int64_t readNs, bool engaged, bool moves = true, std::uint32_t epoch = 1) {
-    TimedStep timed;
+ArrivedStep stepAt(std::int64_t readNs, bool engaged, bool moves = true, std::uint32_t epoch = 1) {
+    ArrivedStep timed;
     timed.serverTimeNs = readNs;
     timed.step.epoch = epoch;
     timed.step.engaged = engaged;
@@ -98,7 +98,7 @@ TEST(SlowMotion, ComparesNoTimesOfTwoEpochs) {
 TEST(SlowMotion, ReadsTheHandOfTheMastersSteps) {
     SlowMotion motion(60);
     for (std::int64_t frame = 0; frame <= 60; ++frame) {
-        TimedStep own = stepAt(0, true);
+        ArrivedStep own = stepAt(0, true);
         own.handNs = 1000 * kMs + frame * kFrame / 2;
         motion.add(kFrame, {own});
     }

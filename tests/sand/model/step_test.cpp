@@ -52,6 +52,13 @@ TEST(Step, EveryEditSurvivesAndNoOtherIsRead) {
     EXPECT_THROW((void)base::read<sand::Step>(reader), base::FormatError);
 }
 
+// A release that does not know an edit cannot play its journal. A new edit therefore raises the version, and its writer
+// puts both numbers here.
+TEST(Step, HasTheEditsOfThisVersionOfTheAlgorithm) {
+    EXPECT_EQ(sand::kEdits, 6);
+    EXPECT_GE(sand::kAlgorithmVersion, 14U) << "the first with so many";
+}
+
 TEST(Step, HasOneFormOfEachNumber) {
     const sand::Step step{.epoch = 3,
                           .number = 300,

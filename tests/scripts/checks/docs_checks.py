@@ -171,6 +171,8 @@ LISTS = (
                                             "docs/schemas/status.schema.json")),
     ("walls/wall.hpp", r'base::Named\{(?!Eye)\w+, "([\w-]+)"\}', ("docs/stereo.md", "docs/wall_files.md")),
     ("lockstep/overlays.hpp", r'[{\s]"([\w-]+)"[,}]', ("docs/look.md", "docs/operator.md")),
+    ("sand/model/step.hpp", NAMED_VALUE, ("docs/journal.md", "docs/protocol.md", "docs/glossary.md")),
+    ("master/operator/verbs.hpp", r'^ +\{"([\w-]+)", "', ("docs/operator.md", "tests/master/operator/operator_desk_test.cpp")),
     ("scene/load/scene_file.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/terrain.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/terrain_source.cpp", SCENE_KEY, ("docs/scenes.md",)),

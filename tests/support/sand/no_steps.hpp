@@ -10,8 +10,8 @@ namespace test {
 /// A source that returns no step. Tests of one part of a session override the function that this part calls.
 class NoSteps : public master::StepSource {
 public:
-    std::vector<haptic_bridge::TimedStep> next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
-                                               std::size_t /* most */) override {
+    master::ArrivedSteps next(const sand::Replica& /* sand */, std::uint64_t /* hash */,
+                              std::size_t /* most */) override {
         return {};
     }
     [[nodiscard]] std::size_t mostPerFrame() const override { return 0; }

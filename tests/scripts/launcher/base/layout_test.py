@@ -168,6 +168,7 @@ class Completion(LauncherTest):
         self.assertIn("gis", self.completed("run", "--device", "script", ":"))
         self.assertEqual(self.completed("run", "--device", "trace", ":", "gi"), [])
         self.assertIn("--resume", self.completed("run", "--res"))
+        self.assertEqual(self.completed("ctl", "out", "swap"), ["swap-eyes"])
 
 
 if __name__ == "__main__":
