@@ -93,6 +93,7 @@ function(sandwall_write_manifest file)
         list(APPEND flags "flags ${line}")
     endforeach()
     file(GLOB embedded CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*
+        ${PROJECT_SOURCE_DIR}/shapes/shaders/*
         ${PROJECT_SOURCE_DIR}/haptic_bridge/devices/*.strokes)
     list(APPEND files ${embedded})
     set(common ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}})

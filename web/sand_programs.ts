@@ -3,16 +3,16 @@
 import {
     BufferGeometry, DataTexture, GLSL3, type IUniform, Matrix3, Matrix4, Mesh, RawShaderMaterial, type Scene, Vector2, Vector3, Vector4,
 } from "three";
-import ball from "../render_node/shaders/ball.glsl";
-import light from "../render_node/shaders/light.glsl";
-import near from "../render_node/shaders/near.frag.glsl";
-import sheen from "../render_node/shaders/sheen.glsl";
-import side from "../render_node/shaders/side.vert.glsl";
-import solid from "../render_node/shaders/solid.vert.glsl";
-import stamp from "../render_node/shaders/stamp.glsl";
-import sunlit from "../render_node/shaders/sunlit.glsl";
-import toolFragment from "../render_node/shaders/tool.frag.glsl";
-import wood from "../render_node/shaders/wood.frag.glsl";
+import ball from "../shapes/shaders/ball.glsl";
+import light from "../shapes/shaders/light.glsl";
+import near from "../shapes/shaders/near.frag.glsl";
+import sheen from "../shapes/shaders/sheen.glsl";
+import side from "../shapes/shaders/side.vert.glsl";
+import solid from "../shapes/shaders/solid.vert.glsl";
+import stamp from "../shapes/shaders/stamp.glsl";
+import sunlit from "../shapes/shaders/sunlit.glsl";
+import toolFragment from "../shapes/shaders/tool.frag.glsl";
+import wood from "../shapes/shaders/wood.frag.glsl";
 import heightsVertex from "./heights.vert.glsl";
 import lightVertex from "./light_vertex.glsl";
 import tinVertex from "./tin.vert.glsl";

@@ -81,7 +81,8 @@ int coarsestLevel(int columns, int rows) {
     return level;
 }
 
-LevelErrors errorsOf(const GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun, int coarsest) {
+LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun,
+                     int coarsest) {
     const int across = vertices.x1 - vertices.x0;
     const int down = vertices.y1 - vertices.y0;
     const std::size_t all = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);

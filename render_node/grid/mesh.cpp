@@ -71,7 +71,7 @@ void GridMesh::makeGroups() {
 sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
     // Cell c lies under vertex c + 1. The normals and the shade of the vertices around it depend on the cell.
     const sand::CellRect reached =
-        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(GridVertices::kReach);
+        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(shapes::GridVertices::kReach);
     // The outermost ring repeats the ring next to it. Vertices of chunks beyond the grid repeat the outermost ring.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
@@ -79,10 +79,10 @@ sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
             end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
 }
 
-HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
-                                    std::span<const GridVertices::Overwritten> overwritten) const {
+shapes::HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
+                                            std::span<const shapes::GridVertices::Overwritten> overwritten) const {
     const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(longestStride()));
-    HeightRange heights = surface_.heights(cells);
+    shapes::HeightRange heights = surface_.heights(cells);
     for (const auto& [changed, before] : overwritten) {
         if (!changed.clippedTo(cells).empty()) {
             heights = around(heights, before);
@@ -93,7 +93,7 @@ HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
 
 bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
     const sand::HeightField& field = std::get<sand::GridData>(data).field;
-    std::vector<GridVertices::Overwritten> overwritten;
+    std::vector<shapes::GridVertices::Overwritten> overwritten;
     if (change.whole) {
         surface_.takeOver(field, field.bounds(), overwritten);
     } else {
@@ -108,7 +108,7 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     bool rim = false;
     for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
-        const HeightRange heights = heightsAround(vertices, overwritten);
+        const shapes::HeightRange heights = heightsAround(vertices, overwritten);
         changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
         markChanged(chunksAround(vertices), vertices);
@@ -145,7 +145,7 @@ void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
     }
 }
 
-Box GridMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
+shapes::Box GridMesh::boxOf(const sand::CellRect& vertices, const shapes::HeightRange& heights) const {
     // A hundredth of a cell more, for rounding of GL's floats.
     const double margin = 0.01 * double{surface_.cellSize()};
     const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
@@ -180,13 +180,13 @@ int GridMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& le
 }
 
 /// Returns the box around these vertices and around `margin` more vertices on each side.
-Box GridMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
+shapes::Box GridMesh::boxAround(const sand::CellRect& vertices, const shapes::HeightRange& heights, int margin) const {
     const sand::CellRect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
 }
 
-std::vector<Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
-    std::vector<Box> changed;
+std::vector<shapes::Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
+    std::vector<shapes::Box> changed;
     for (const auto& [since, part] : changes_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
     }
@@ -195,7 +195,7 @@ std::vector<Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& lev
 }
 
 void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
-                            std::vector<Box>& changed) {
+                            std::vector<shapes::Box>& changed) {
     ++choice_;
     for (const Group& group : groups_) {
         if (levels.empty() || group.revision <= revision) {
@@ -211,7 +211,7 @@ void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
                     // The outermost triangles of the neighbours depend on this chunk's edges.
                     const sand::CellRect& vertices = chunk(x, y).vertices;
-                    const HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
+                    const shapes::HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
                     changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
                 }
             }

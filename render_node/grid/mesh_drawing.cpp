@@ -21,12 +21,12 @@ constexpr std::uint64_t kLately = 120;  // [draw]; one or two seconds
 template <class Visit>
 void GridMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
     for (const Group& group : groups_) {
-        if (culling && !inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
+        if (culling && !shapes::inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
             continue;
         }
         for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
             for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
-                if (!culling || inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
+                if (!culling || shapes::inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
                     visit(x, y);
                 }
             }
@@ -100,9 +100,9 @@ const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
         return found->second;
     }
     return indices_
-        .try_emplace(levels,
-                     send(trianglesOf(quadsAcross_, quadsDown_, levels),
-                          levels.level == 0 ? blocksOf(quadsAcross_, quadsDown_) : std::vector<TriangleBlock>()))
+        .try_emplace(levels, send(trianglesOf(quadsAcross_, quadsDown_, levels),
+                                  levels.level == 0 ? shapes::blocksOf(quadsAcross_, quadsDown_)
+                                                    : std::vector<shapes::TriangleBlock>()))
         .first->second;
 }
 
@@ -111,12 +111,13 @@ const GridMesh::Indices& GridMesh::indicesOf(Chunk& chunk, const ChunkLevels& le
         return indicesOf(levels);
     }
     if (!chunk.indices) {
-        chunk.indices = send(chunk.holes->indices(), chunk.holes->blocks());
+        const auto indices = chunk.holes->indices();
+        chunk.indices = send(std::vector<std::uint16_t>(indices.begin(), indices.end()), chunk.holes->blocks());
     }
     return *chunk.indices;
 }
 
-GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<TriangleBlock> blocks) {
+GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks) {
     Indices made{{}, static_cast<int>(indices.size()), std::move(blocks)};
     // A core profile binds an element buffer only to a vertex array. Any vertex array will do here.
     const GlVertexArray array;
@@ -136,7 +137,7 @@ void GridMesh::prepare(const GlProgram& program) const {
 }
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-                               const std::function<void(const Box&)>& before) {
+                               const std::function<void(const shapes::Box&)>& before) {
     Drawn drawn;
     ++choice_;
     visitSeen(sceneToClip, culling, [&](int x, int y) {
@@ -169,10 +170,10 @@ int GridMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
         return indices.count / 3;
     }
     int first = 0, count = 0, triangles = 0;  // first and count: adjacent blocks that are not drawn yet
-    for (const TriangleBlock& block : indices.blocks) {
+    for (const shapes::TriangleBlock& block : indices.blocks) {
         const sand::CellRect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
                                       chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
-        if (!inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
+        if (!shapes::inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
             continue;
         }
         triangles += block.count / 3;

@@ -4,7 +4,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "render_node/surface/frustum.hpp"
+#include "shapes/model/box.hpp"
 
 namespace render_node {
 
@@ -32,12 +32,12 @@ public:
     /// Returns whether the rule chooses level 0 whatever the errors are.
     [[nodiscard]] bool needsEveryCell() const { return bound_ <= 0; }
     /// Returns whether a box may reach into the picture.
-    [[nodiscard]] bool sees(const Box& box) const { return inFrustum(box, sceneToClip_); }
+    [[nodiscard]] bool sees(const shapes::Box& box) const { return shapes::inFrustum(box, sceneToClip_); }
     /// Returns the level for the sand within `box`, at most `coarsest`.
-    [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
+    [[nodiscard]] int level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const;
 
 private:
-    [[nodiscard]] double pixelsPerUnit(const Box& box) const;
+    [[nodiscard]] double pixelsPerUnit(const shapes::Box& box) const;
 
     glm::dmat4 sceneToClip_;
     glm::dvec2 half_;  // [pixel], half of the picture's size

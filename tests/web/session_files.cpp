@@ -20,12 +20,18 @@
 
 namespace {
 
+/// Returns a scene whose picture has every cell, because a page has no levels of detail.
+scene::Scene withEveryCell(scene::Scene scene) {
+    scene.look.detail = 0;
+    return scene;
+}
+
 /// A session that is computed as it is written.
 class Written {
 public:
     /// If `owes`, each third step owes half of its sweeps, and the next one pays them.
     explicit Written(const scene::Scene& scene, bool owes = true)
-        : scene_(scene), sand_(scene_), journal_(scene_), owes_(owes) {}
+        : scene_(withEveryCell(scene)), sand_(scene_), journal_(scene_), owes_(owes) {}
 
     /// Adds a frame with `count` steps.
     void frame(int count, const std::function<sand::Step(std::uint64_t)>& make) {

@@ -18,9 +18,9 @@ namespace {
 
 using render_node::ChunkLevels;
 using render_node::EyeTarget;
-using render_node::GridVertex;
-using render_node::GridVertices;
 using render_node::ScenePainter;
+using shapes::GridVertex;
+using shapes::GridVertices;
 using VertexBits = std::array<std::uint32_t, 4>;
 
 constexpr int kSide = 32;   // [quad], side of a chunk
