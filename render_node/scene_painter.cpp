@@ -59,9 +59,8 @@ void ScenePainter::update(const sand::SurfaceData& data, const sand::SurfaceChan
 }
 
 void ScenePainter::setTool(sand::ProbePoint probe, bool engaged) {
-    const glm::dvec3 place = glm::dvec3(probe.x, probe.y, probe.z) * sand::probeUnit(static_cast<float>(cellSize_));
     shown_.toolRadius = toolRadius();
-    shown_.tool = shapes::DrawnTool{tool_, glm::vec3(place), shown_.toolRadius, engaged};
+    shown_.tool = shapes::DrawnTool::at(tool_, probe, engaged, cellSize_);
 }
 
 void ScenePainter::setTool(sand::ProbePoint probe, bool engaged, const sand::Tool& tool) {
@@ -69,7 +68,7 @@ void ScenePainter::setTool(sand::ProbePoint probe, bool engaged, const sand::Too
     setTool(probe, engaged);
 }
 
-float ScenePainter::toolRadius() const { return static_cast<float>(tool_.radius * sand::probeUnit(cellSize_)); }
+float ScenePainter::toolRadius() const { return shapes::DrawnTool::radiusOf(tool_, cellSize_); }
 
 void ScenePainter::setLayers(lockstep::Overlays layers) {
     shown_.layers = {};

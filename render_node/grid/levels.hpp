@@ -13,12 +13,6 @@
 
 namespace render_node {
 
-/// Returns the coarsest level for a field: the longer side still has at least 128 cells at that level.
-///
-/// A change of the sand makes the largest triangle around it change. With one more level, a hand that digs in a field
-/// of 512 cells would cost more than the level saves.
-[[nodiscard]] int coarsestLevel(int columns, int rows);
-
 /// Returns the errors of the levels up to `coarsest` in a square part of the vertex grid. The errors of coarser levels
 /// are 0. The part may extend beyond the field. `sun` points towards the sun and has length 1.
 [[nodiscard]] LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices,

@@ -9,29 +9,12 @@
 namespace render_node {
 namespace {
 
-constexpr int kChunk = 16;  // [quad], shortest side of a chunk, except in small fields
-constexpr int kGroup = 8;   // [chunk], side of a group
-
-// Levels need sides that are multiples of twice the largest stride. A field without levels gets chunks of equal size.
-int shortestSide(int coarsest) { return std::max(kChunk, 2 << coarsest); }
-int chunksFor(int quads, int coarsest) {
-    const int side = shortestSide(coarsest);
-    return coarsest > 0 ? (quads + side - 1) / side : std::max(1, quads / side);
-}
-int sideFor(int quads, int coarsest) {
-    return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
-}
+constexpr int kGroup = 8;  // [chunk], side of a group
 
 }  // namespace
 
 GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
-    : surface_(data.field, data.ground),
-      sun_(sun),
-      coarsest_(coarsestLevel(surface_.columns(), surface_.rows())),
-      across_(chunksFor(surface_.columns() + 1, coarsest_)),
-      down_(chunksFor(surface_.rows() + 1, coarsest_)),
-      quadsAcross_(sideFor(surface_.columns() + 1, coarsest_)),
-      quadsDown_(sideFor(surface_.rows() + 1, coarsest_)) {
+    : surface_(data.field, data.ground), sun_(sun), layout_(surface_.columns(), surface_.rows()) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -41,11 +24,11 @@ GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
 }
 
 void GridMesh::makeChunks() {
-    chunks_.reserve(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
-    for (int y = 0; y < down_; ++y) {
-        for (int x = 0; x < across_; ++x) {
+    chunks_.reserve(static_cast<std::size_t>(layout_.across) * static_cast<std::size_t>(layout_.down));
+    for (int y = 0; y < layout_.down; ++y) {
+        for (int x = 0; x < layout_.across; ++x) {
             Chunk& made = chunks_.emplace_back();
-            made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
+            made.vertices = layout_.vertices(x, y);
             made.heights = heightsUnder(made.vertices);
             if (surface_.hasHole(made.vertices)) {
                 made.holes.emplace(surface_, made.vertices);
@@ -55,12 +38,12 @@ void GridMesh::makeChunks() {
 }
 
 void GridMesh::makeGroups() {
-    for (int y = 0; y < down_; y += kGroup) {
-        for (int x = 0; x < across_; x += kGroup) {
+    for (int y = 0; y < layout_.down; y += kGroup) {
+        for (int x = 0; x < layout_.across; x += kGroup) {
             Group group;
-            group.chunks = {x, y, std::min(x + kGroup, across_), std::min(y + kGroup, down_)};
-            group.vertices = {x * quadsAcross_, y * quadsDown_, group.chunks.x1 * quadsAcross_ + 1,
-                              group.chunks.y1 * quadsDown_ + 1};
+            group.chunks = {x, y, std::min(x + kGroup, layout_.across), std::min(y + kGroup, layout_.down)};
+            group.vertices = {x * layout_.quadsAcross, y * layout_.quadsDown, group.chunks.x1 * layout_.quadsAcross + 1,
+                              group.chunks.y1 * layout_.quadsDown + 1};
             group.heights = heightsUnder(group.vertices);
             groups_.push_back(group);
         }
@@ -75,8 +58,9 @@ sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
     // The outermost ring repeats the ring next to it. Vertices of chunks beyond the grid repeat the outermost ring.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
-    return {first(reached.x0), first(reached.y0), end(reached.x1, surface_.columns(), across_ * quadsAcross_ + 1),
-            end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
+    return {first(reached.x0), first(reached.y0),
+            end(reached.x1, surface_.columns(), layout_.across * layout_.quadsAcross + 1),
+            end(reached.y1, surface_.rows(), layout_.down * layout_.quadsDown + 1)};
 }
 
 shapes::HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
@@ -119,9 +103,9 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
 
 sand::CellRect GridMesh::chunksAround(const sand::CellRect& vertices) const {
     // A vertex on an edge belongs to both chunks.
-    return sand::CellRect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
-                          (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
-        .clippedTo({0, 0, across_, down_});
+    return sand::CellRect{(vertices.x0 - 1) / layout_.quadsAcross, (vertices.y0 - 1) / layout_.quadsDown,
+                          (vertices.x1 - 1) / layout_.quadsAcross + 1, (vertices.y1 - 1) / layout_.quadsDown + 1}
+        .clippedTo({0, 0, layout_.across, layout_.down});
 }
 
 void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices) {
@@ -138,7 +122,7 @@ void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
             changed.measured = false;
             changed.heights = heightsUnder(changed.vertices);
             Group& group =
-                groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
+                groups_[static_cast<std::size_t>(y / kGroup * ((layout_.across + kGroup - 1) / kGroup) + x / kGroup)];
             group.revision = revision_;
             group.heights = around(group.heights, changed.heights);
         }
@@ -155,10 +139,11 @@ shapes::Box GridMesh::boxOf(const sand::CellRect& vertices, const shapes::Height
 
 /// Returns whether the level of a chunk may be visible: in the chunk, or along the edges of the chunks around it.
 bool GridMesh::mayMatter(int x, int y, const LevelRule& rule) const {
-    const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+    const sand::CellRect beside =
+        sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, layout_.across, layout_.down});
     for (int v = beside.y0; v < beside.y1; ++v) {
         for (int u = beside.x0; u < beside.x1; ++u) {
-            const Chunk& near = chunks_[static_cast<std::size_t>(v * across_ + u)];
+            const Chunk& near = chunks_[static_cast<std::size_t>(v * layout_.across + u)];
             if (rule.sees(boxOf(near.vertices, near.heights))) {
                 return true;
             }
@@ -173,7 +158,7 @@ int GridMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& le
     const sand::CellRect chunks = levels.empty() ? sand::CellRect{} : chunksAround(vertices);
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
-            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * across_ + x)]));
+            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * layout_.across + x)]));
         }
     }
     return 1 << level;
@@ -203,7 +188,7 @@ void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
         }
         for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
             for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
-                std::int8_t& drawn = levels[static_cast<std::size_t>(y * across_ + x)];
+                std::int8_t& drawn = levels[static_cast<std::size_t>(y * layout_.across + x)];
                 if (chunk(x, y).revision <= revision || (drawn < 0 && !mayMatter(x, y, rule))) {
                     continue;
                 }

@@ -14,6 +14,7 @@
 #include "render_node/grid/levels.hpp"
 #include "render_node/surface/change_history.hpp"
 #include "render_node/surface/drawn_surface.hpp"
+#include "shapes/grid/chunk_layout.hpp"
 #include "shapes/grid/hole_edges.hpp"
 #include "shapes/grid/vertices.hpp"
 #include "shapes/model/box.hpp"
@@ -94,12 +95,12 @@ private:
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
     [[nodiscard]] shapes::Box boxOf(const sand::CellRect& vertices, const shapes::HeightRange& heights) const;
-    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
+    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * layout_.across + x)]; }
     template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
     /// Returns the longest side of a triangle of any level along an axis [cell].
-    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
+    [[nodiscard]] int longestStride() const { return 1 << layout_.coarsest; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
     [[nodiscard]] shapes::Box boxAround(const sand::CellRect& vertices, const shapes::HeightRange& heights,
                                         int margin) const;
@@ -116,10 +117,8 @@ private:
 
     shapes::GridVertices surface_;
     glm::vec3 sun_;
-    int coarsest_;                 // level
-    int across_, down_;            // chunks
-    int quadsAcross_, quadsDown_;  // of every chunk
-    std::vector<Chunk> chunks_;    // row by row from the south-west
+    shapes::ChunkLayout layout_;
+    std::vector<Chunk> chunks_;  // row by row from the south-west
     std::vector<Group> groups_;
     std::map<ChunkLevels, Indices> indices_;  // each index has 16 bits
     std::size_t bytes_ = 0;

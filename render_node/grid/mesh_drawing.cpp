@@ -41,10 +41,10 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     }
     if (asked.chosenFor != choice_) {
         if (!asked.measured && !rule.needsEveryCell()) {
-            asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
+            asked.errors = errorsOf(surface_, asked.vertices, sun_, layout_.coarsest);
             asked.measured = true;
         }
-        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, coarsest_);
+        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, layout_.coarsest);
         asked.chosenFor = choice_;
     }
     return asked.level;
@@ -53,12 +53,12 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
 /// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the
 /// rim have level 0, because the cut sides of the sand have all vertices.
 ChunkLevels GridMesh::levelsOf(int x, int y, const LevelRule& rule) {
-    if (coarsest_ == 0) {
+    if (layout_.coarsest == 0) {
         return {};
     }
     ChunkLevels levels{levelOf(x, y, rule), {}};
     const auto edge = [&](int besideX, int besideY) {
-        const bool rim = besideX < 0 || besideY < 0 || besideX == across_ || besideY == down_;
+        const bool rim = besideX < 0 || besideY < 0 || besideX == layout_.across || besideY == layout_.down;
         return rim ? 0 : std::min(levels.level, levelOf(besideX, besideY, rule));
     };
     levels.edges = {edge(x, y - 1), edge(x + 1, y), edge(x, y + 1), edge(x - 1, y)};
@@ -66,16 +66,18 @@ ChunkLevels GridMesh::levelsOf(int x, int y, const LevelRule& rule) {
 }
 
 DrawnLevels GridMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
-    if (coarsest_ == 0) {
+    if (layout_.coarsest == 0) {
         return {};
     }
     ++choice_;
     DrawnLevels levels(chunks_.size(), -1);
     visitSeen(sceneToClip, true, [&](int x, int y) {
-        const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+        const sand::CellRect beside =
+            sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, layout_.across, layout_.down});
         for (int v = beside.y0; v < beside.y1; ++v) {
             for (int u = beside.x0; u < beside.x1; ++u) {
-                levels[static_cast<std::size_t>(v * across_ + u)] = static_cast<std::int8_t>(levelOf(u, v, rule));
+                levels[static_cast<std::size_t>(v * layout_.across + u)] =
+                    static_cast<std::int8_t>(levelOf(u, v, rule));
             }
         }
     });
@@ -100,8 +102,8 @@ const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
         return found->second;
     }
     return indices_
-        .try_emplace(levels, send(trianglesOf(quadsAcross_, quadsDown_, levels),
-                                  levels.level == 0 ? shapes::blocksOf(quadsAcross_, quadsDown_)
+        .try_emplace(levels, send(trianglesOf(layout_.quadsAcross, layout_.quadsDown, levels),
+                                  levels.level == 0 ? shapes::blocksOf(layout_.quadsAcross, layout_.quadsDown)
                                                     : std::vector<shapes::TriangleBlock>()))
         .first->second;
 }
@@ -130,10 +132,10 @@ GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::ve
 }
 
 void GridMesh::prepare(const GlProgram& program) const {
-    // Places are in half cells, so that the corners of cells are whole numbers, too.
-    program.set("uCell", surface_.cellSize() / 2);
-    program.set("uCells", glm::vec2(2 * surface_.columns(), 2 * surface_.rows()));
-    program.set("uFirst", 1.0F);
+    const shapes::PlaceUniforms places = surface_.places();
+    program.set("uCell", places.cell);
+    program.set("uCells", places.cells);
+    program.set("uFirst", places.first);
 }
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,

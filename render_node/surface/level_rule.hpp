@@ -5,17 +5,14 @@
 #include <glm/glm.hpp>
 
 #include "shapes/model/box.hpp"
+#include "shapes/model/levels.hpp"
 
 namespace render_node {
 
-/// Number of levels. Level l of a chunk uses every 2^l-th vertex of the sand, so that a coarser level only smooths the
-/// surface between its vertices.
-inline constexpr int kLevels = 5;
-
 /// Largest error of each level over all vertices of a chunk.
 struct LevelErrors {
-    std::array<float, kLevels> height{};  // [scene unit], along the vertical
-    std::array<float, kLevels> light{};   // share of the sun's full light, mottling included
+    std::array<float, shapes::kLevels> height{};  // [scene unit], along the vertical
+    std::array<float, shapes::kLevels> light{};   // share of the sun's full light, mottling included
 };
 
 /// Rule for the level at which a chunk is drawn.

@@ -47,7 +47,7 @@ void HoleEdges::addQuad(const GridVertices& surface, int x, int y) {
     };
     const std::array<std::uint32_t, 4> corners{at(0, 0), at(1, 0), at(1, 1), at(0, 1)};
     const std::array<bool, 4> ground{isGround(0, 0), isGround(1, 0), isGround(1, 1), isGround(0, 1)};
-    if (std::ranges::count(ground, true) == 4) {
+    if (std::count(ground.begin(), ground.end(), true) == 4) {
         // The diagonals alternate as in all other chunks.
         const std::size_t first = (x + y) % 2 == 0 ? 0 : 1;
         triangle(corners[0], corners[1], corners[first == 0 ? 2 : 3]);
@@ -60,7 +60,7 @@ void HoleEdges::addQuad(const GridVertices& surface, int x, int y) {
                 addPiece(corners, alone);
             }
         }
-    } else if (std::ranges::count(ground, true) > 0) {
+    } else if (std::count(ground.begin(), ground.end(), true) > 0) {
         addPiece(corners, ground);
     }
 }

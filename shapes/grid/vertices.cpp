@@ -31,7 +31,7 @@ public:
         highest_[lane] = high > highest_[lane] ? high : highest_[lane];
     }
     [[nodiscard]] HeightRange range() const {
-        return {*std::ranges::min_element(lowest_), *std::ranges::max_element(highest_)};
+        return {*std::min_element(lowest_.begin(), lowest_.end()), *std::max_element(highest_.begin(), highest_.end())};
     }
 
 private:
@@ -68,7 +68,7 @@ public:
     /// Returns the cells that differed, in a block whose first column is `column`.
     [[nodiscard]] Overwritten overwritten(int column) const {
         const auto other = [](std::uint32_t lane) { return lane != 0; };
-        const auto first = std::ranges::find_if(columns_, other) - columns_.begin();
+        const auto first = std::find_if(columns_.begin(), columns_.end(), other) - columns_.begin();
         const auto end = std::find_if(columns_.rbegin(), columns_.rend(), other).base() - columns_.begin();
         return {{column + static_cast<int>(first), rows_.first, column + static_cast<int>(end), rows_.second},
                 before_.range()};

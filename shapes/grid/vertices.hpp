@@ -11,6 +11,7 @@
 #include "shapes/model/height_range.hpp"
 #include "shapes/model/open_sky.hpp"
 #include "shapes/model/sand_rim.hpp"
+#include "shapes/model/surface_parts.hpp"
 
 namespace shapes {
 
@@ -65,6 +66,10 @@ public:
     /// unit].
     [[nodiscard]] float east(int vertexColumn) const { return along(vertexColumn, columns_); }
     [[nodiscard]] float north(int vertexRow) const { return along(vertexRow, rows_); }
+
+    /// Returns the unit of GridVertex::column and row, which is half a cell: the corners of cells are whole numbers,
+    /// too.
+    [[nodiscard]] PlaceUniforms places() const { return {cellSize_ / 2, glm::vec2(2 * columns_, 2 * rows_), 1}; }
 
     /// Returns whether the nearest cell of the field has no ground. It never changes.
     [[nodiscard]] bool isHole(int column, int row) const;

@@ -88,10 +88,10 @@ TinBounds TinGeometry::boundsOf(const SurfaceView& tin, const sand::TinChange& s
     for (const std::int32_t slot : sandChange.triangles) {
         const Triangle& now = mesh.triangles[static_cast<std::size_t>(slot)];
         if (now.isGround()) {
-            std::ranges::for_each(now.corner, addVertex);
+            std::for_each(now.corner.begin(), now.corner.end(), addVertex);
         }
         if (static_cast<std::size_t>(slot) < triangles.size() && triangle(slot).alive()) {
-            std::ranges::for_each(triangle(slot).corner, addDrawn);
+            std::for_each(triangle(slot).corner.begin(), triangle(slot).corner.end(), addDrawn);
         }
     }
     // The drawn triangles in a star's slots need no box here. They either belong to that star, or have changed earlier,

@@ -45,7 +45,7 @@ glm::dvec3 normalAt(const SurfaceView& tin, Vertex vertex, std::vector<Pair>& ar
         return {0, 0, 1};  // in a hole, where nothing is drawn
     }
     // A sum of floats depends on its order, and the first triangle of a star is arbitrary.
-    std::ranges::sort(around, {}, &Pair::first);
+    std::sort(around.begin(), around.end(), [](const Pair& a, const Pair& b) { return a.first < b.first; });
     const glm::dvec3 here = at(vertex);
     glm::dvec3 sum(0);
     for (const Pair& pair : around) {
@@ -104,7 +104,7 @@ std::vector<Vertex> TinLight::relight(const SurfaceView& tin, TinGeometry& geome
         const TinTriangle& triangle = geometry.triangle(slot);
         if (triangle.alive()) {
             addToRelief(tin, triangle);
-            std::ranges::for_each(triangle.corner, [this](Vertex corner) { lit_.add(corner); });
+            std::for_each(triangle.corner.begin(), triangle.corner.end(), [this](Vertex corner) { lit_.add(corner); });
         }
     }
     const std::size_t corners = lit_.all().size();

@@ -11,9 +11,9 @@
 namespace shapes {
 namespace {
 
-using Triangle = std::array<glm::vec3, 3>;
+using Corners = std::array<glm::vec3, 3>;
 
-std::vector<Triangle> icosahedron() {
+std::vector<Corners> icosahedron() {
     constexpr float kGolden = 1.61803399F;
     const std::array<glm::vec3, 12> corners{{{-1, kGolden, 0},
                                              {1, kGolden, 0},
@@ -31,7 +31,7 @@ std::vector<Triangle> icosahedron() {
         {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
          {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
          {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
-    std::vector<Triangle> triangles;
+    std::vector<Corners> triangles;
     triangles.reserve(kIcosahedron.size());
     for (const auto& face : kIcosahedron) {
         triangles.push_back(
@@ -191,9 +191,9 @@ ToolForm formOf(const sand::Tool& tool) {
 }
 
 std::vector<SolidVertex> makeSphere(int splits) {
-    std::vector<Triangle> triangles = icosahedron();
+    std::vector<Corners> triangles = icosahedron();
     for (int split = 0; split < splits; ++split) {
-        std::vector<Triangle> finer;
+        std::vector<Corners> finer;
         for (const auto& [a, b, c] : triangles) {
             const glm::vec3 ab = glm::normalize(a + b);
             const glm::vec3 bc = glm::normalize(b + c);
@@ -203,7 +203,7 @@ std::vector<SolidVertex> makeSphere(int splits) {
         triangles = std::move(finer);
     }
     std::vector<SolidVertex> vertices;
-    for (const Triangle& triangle : triangles) {
+    for (const Corners& triangle : triangles) {
         for (const glm::vec3& corner : triangle) {
             vertices.push_back({corner, corner, {}});
         }

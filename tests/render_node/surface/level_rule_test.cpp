@@ -8,7 +8,7 @@
 namespace level_rules {
 namespace {
 
-using render_node::kLevels;
+using shapes::kLevels;
 using render_node::LevelErrors;
 using render_node::LevelRule;
 using shapes::Box;

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "sand/model/cell_array.hpp"
+#include "shapes/model/levels.hpp"
+
+namespace shapes {
+
+/// Returns the coarsest level for a field: the longer side still has at least 128 cells at that level.
+///
+/// A change of the sand makes the largest triangle around it change. With one more level, a hand that digs in a field
+/// of 512 cells would cost more than the level saves.
+[[nodiscard]] int coarsestLevel(int columns, int rows);
+
+/// Division of a field's vertex grid into chunks of equal size. Neighbours share the vertices on their edge. The last
+/// chunks may extend beyond the grid, whose last column and row are repeated there.
+struct ChunkLayout {
+    ChunkLayout(int columns, int rows /* of the field */);
+
+    int coarsest;                // level
+    int across, down;            // number of chunks
+    int quadsAcross, quadsDown;  // of every chunk
+
+    /// Returns the vertices of a chunk.
+    [[nodiscard]] sand::CellRect vertices(int x, int y) const {
+        return {x * quadsAcross, y * quadsDown, (x + 1) * quadsAcross + 1, (y + 1) * quadsDown + 1};
+    }
+};
+
+}  // namespace shapes
