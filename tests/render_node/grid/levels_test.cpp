@@ -159,14 +159,6 @@ TEST(Levels, CountMottlingAsTheShaderShadesIt) {
     EXPECT_NE(shader.find("* (0.86 + 0.28 * mottling)"), std::string::npos) << shader;
 }
 
-TEST(Levels, OfASmallFieldAreNone) {
-    EXPECT_EQ(shapes::coarsestLevel(128, 128), 0);
-    EXPECT_EQ(shapes::coarsestLevel(255, 64), 0);
-    EXPECT_EQ(shapes::coarsestLevel(256, 64), 1);
-    EXPECT_EQ(shapes::coarsestLevel(512, 512), 2);
-    EXPECT_EQ(shapes::coarsestLevel(16384, 16384), shapes::kLevels - 1);
-}
-
 // Tiles of one plane, seen by one eye, must draw each chunk alike.
 TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     const walls::Wall wall = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "scene/model/scene.hpp"
+#include "shapes/tin/parts.hpp"
 #include "tests/support/sample_tin.hpp"
 
 namespace {
@@ -100,6 +104,46 @@ TEST(TinVertices, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
         EXPECT_TRUE(glm::all(glm::greaterThan(glm::dvec2(box.low), at - reach))) << box.low.x << ", " << box.low.y;
         EXPECT_TRUE(glm::all(glm::lessThan(glm::dvec2(box.high), at + reach))) << box.high.x << ", " << box.high.y;
     }
+}
+
+TEST(TinVertices, AndTheirTrianglesAndCutsAreThoseOfAPage) {
+    const scene::Scene scene = sample::duneScene(64);
+    const double cell = scene.terrain.cellSize(), middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
+    Tin tin(scene.terrain);
+    tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
+    (void)tin.takeParts();
+    const sand::tin::SurfaceView view = tin.view();
+    const TinVertices wall(view, cell);
+    shapes::TinParts page(sand::TinData{view}, cell);
+    ASSERT_TRUE(page.take(sand::TinData{view}).whole);
+    const shapes::SurfacePart part = page.part(0);
+    ASSERT_EQ(part.heights.size(), wall.vertices().size());
+    std::size_t corners = 0;
+    const std::vector<std::uint32_t> triangles = page.triangles(0);
+    for (const shapes::TinTriangle& triangle : wall.triangles()) {
+        for (std::size_t i = 0; i < 3 && triangle.alive(); ++i) {
+            const auto number = static_cast<std::size_t>(triangle.corner.at(i));
+            const shapes::TinVertex& vertex = wall.vertices()[number];
+            ASSERT_EQ(triangles.at(corners++), number);
+            ASSERT_EQ(part.heights[number], vertex.height);
+            ASSERT_EQ(part.places[2 * number], static_cast<float>(vertex.x));
+            ASSERT_EQ(part.normals[2 * number + 1], vertex.normalNorth);
+            ASSERT_EQ(part.shades[2 * number], vertex.open);
+            ASSERT_EQ(part.shades[2 * number + 1], vertex.mottling);
+        }
+    }
+    EXPECT_EQ(corners, triangles.size());
+    const auto sorted = [](const shapes::SandRim& rim) {
+        std::vector<std::array<float, 6>> cuts;
+        for (const std::vector<glm::vec3>& line : rim.cuts) {
+            cuts.push_back({line[0].x, line[0].y, line[0].z, line[1].x, line[1].y, line[1].z});
+        }
+        std::ranges::sort(cuts);
+        return cuts;
+    };
+    EXPECT_EQ(sorted(page.rim()), sorted(wall.rim()));
+    EXPECT_TRUE(page.rim().hasHoles);
+    EXPECT_EQ(page.lowest(), wall.heightsEver().lowest);
 }
 
 }  // namespace
