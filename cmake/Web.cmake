@@ -50,3 +50,8 @@ add_subdirectory(scene)
 add_subdirectory(journal)
 add_subdirectory(haptic_bridge)
 add_subdirectory(web)
+
+# Long loops are in sand and shapes alone. Elsewhere the size of the page matters more than speed.
+foreach(library base scene_model scene_text journal haptic_hand web web_functions)
+    target_compile_options(${library} PRIVATE -Os)
+endforeach()
