@@ -17,7 +17,7 @@ std::unique_ptr<shapes::SurfaceParts> partsOf(const sand::SurfaceData& data, dou
     if (const auto* const grid = std::get_if<sand::GridData>(&data)) {
         return std::make_unique<shapes::GridParts>(*grid);
     }
-    return std::make_unique<shapes::TinParts>(std::get<sand::TinData>(data), cellSize);
+    return std::make_unique<shapes::TinParts>(cellSize);
 }
 
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
@@ -54,9 +54,7 @@ glm::vec3 sunOf(const scene::Scene& scene) { return glm::normalize(toVector(scen
 Drawing::Drawing(StepSource& source)
     : source_(source), sand_(partsOf(source.replica().surface().data(), source.replica().cellSize())) {}
 
-bool Drawing::hasHeights() const {
-    return std::holds_alternative<sand::GridData>(source_.replica().surface().data());
-}
+bool Drawing::hasHeights() const { return std::holds_alternative<sand::GridData>(source_.replica().surface().data()); }
 
 void Drawing::take() {
     pieces_.clear();

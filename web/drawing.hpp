@@ -14,10 +14,10 @@
 
 namespace web {
 
-/// What the page draws of a session: the meshes of the wall, and the values of its shaders' uniforms by their names.
+/// The drawing of a session for the page: the wall's meshes, and the values of its shaders' uniforms by their names.
 ///
-/// Only differences from what was taken before are made, in pieces, so that a large field never needs room for all of
-/// its vertices at once.
+/// take() finds the differences from the drawing before. next() makes them piece by piece, so that a large field never
+/// needs room for all of its vertices at once.
 class Drawing {
 public:
     /// `source` must outlive this object.

@@ -10,13 +10,12 @@ namespace shapes {
 
 using sand::tin::Vertex;
 
-TinParts::TinParts(const sand::TinData& data, double cellSize)
-    : width_(data.view.triangles.width), depth_(data.view.triangles.depth), geometry_{.cellSize = cellSize} {
-    take(data.view);
-}
-
-void TinParts::take(const sand::tin::SurfaceView& tin) {
+SurfaceParts::Change TinParts::take(const sand::SurfaceData& data) {
+    const sand::tin::SurfaceView& tin = std::get<sand::TinData>(data).view;
     const sand::tin::Triangles& mesh = tin.triangles;
+    width_ = mesh.width;
+    depth_ = mesh.depth;
+    geometry_ = {.cellSize = geometry_.cellSize};
     geometry_.grow(mesh);
     for (std::int32_t slot = 0; slot < static_cast<std::int32_t>(mesh.triangles.size()); ++slot) {
         geometry_.triangle(slot) = TinGeometry::drawnOf(mesh, slot);
@@ -32,11 +31,6 @@ void TinParts::take(const sand::tin::SurfaceView& tin) {
         }
     }
     TinLight(width_, depth_, std::max(width_, depth_)).lightAll(tin, geometry_, all);
-}
-
-SurfaceParts::Change TinParts::take(const sand::SurfaceData& data) {
-    geometry_ = {.cellSize = geometry_.cellSize};
-    take(std::get<sand::TinData>(data).view);
     return {.parts = {0}, .whole = true, .rim = true};
 }
 

@@ -6,10 +6,10 @@
 
 namespace shapes {
 
-/// The surface of a TIN as one part, which is made again whenever the sand is taken.
+/// The surface of a TIN as one part, which is made again whenever the sand is taken. Empty before.
 class TinParts final : public SurfaceParts {
 public:
-    TinParts(const sand::TinData& data, double cellSize /* [scene unit] */);
+    explicit TinParts(double cellSize /* [scene unit] */) : geometry_{.cellSize = cellSize} {}
 
     [[nodiscard]] Change take(const sand::SurfaceData& data) override;
     [[nodiscard]] std::size_t vertices() const override { return geometry_.vertices.size(); }
@@ -20,9 +20,7 @@ public:
     [[nodiscard]] float lowest() const override;
 
 private:
-    void take(const sand::tin::SurfaceView& tin);
-
-    std::int32_t width_, depth_;  // [probe unit]
+    std::int32_t width_ = 0, depth_ = 0;  // [probe unit]
     TinGeometry geometry_;
     bool hasHoles_ = false;
 };

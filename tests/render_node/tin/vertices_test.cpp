@@ -114,7 +114,7 @@ TEST(TinVertices, AndTheirTrianglesAndCutsAreThoseOfAPage) {
     (void)tin.takeParts();
     const sand::tin::SurfaceView view = tin.view();
     const TinVertices wall(view, cell);
-    shapes::TinParts page(sand::TinData{view}, cell);
+    shapes::TinParts page(cell);
     ASSERT_TRUE(page.take(sand::TinData{view}).whole);
     const shapes::SurfacePart part = page.part(0);
     ASSERT_EQ(part.heights.size(), wall.vertices().size());
