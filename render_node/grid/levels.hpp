@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render_node/surface/level_rule.hpp"
-#include "shapes/grid/triangle_blocks.hpp"
+#include "shapes/grid/chunk_layout.hpp"
 #include "shapes/grid/vertices.hpp"
 
 namespace render_node {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "sand/model/cell_array.hpp"
 #include "shapes/model/levels.hpp"
 
@@ -26,5 +28,13 @@ struct ChunkLayout {
         return {x * quadsAcross, y * quadsDown, (x + 1) * quadsAcross + 1, (y + 1) * quadsDown + 1};
     }
 };
+
+/// Neighbouring triangles with consecutive indices, so that a part of a chunk can be drawn.
+struct TriangleBlock {
+    sand::CellRect quads;
+    int first, count;  // [index]
+};
+/// Returns the blocks of a chunk at level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.
+[[nodiscard]] std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown);
 
 }  // namespace shapes

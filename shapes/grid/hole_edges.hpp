@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "shapes/grid/triangle_blocks.hpp"
+#include "shapes/grid/chunk_layout.hpp"
 #include "shapes/grid/vertices.hpp"
 
 namespace shapes {
