@@ -46,7 +46,7 @@ build_page() {
     build_scenes "$page"
     # The bundles and replica.wasm contain these works.
     for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
-        /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do
+        /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,libglm-dev,emscripten}/copyright; do
         printf '==== %s\n\n' "$licence"
         cat "$licence"
     done >"$page/licences.txt"

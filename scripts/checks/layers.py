@@ -7,8 +7,9 @@ a header, so it may only include headers of libraries that its library links PUB
 a circle, and a folder's own files are above its subfolders: they may include these, and these never include them, not even
 through other folders. This also holds in bench/ and tests/. A source is in the folder of the header that it implements.
 A header with the line `// Private to this folder.` is only included from its folder and from its tests. A folder holds at
-most 25 sources. shapes/, which the web page compiles, includes base/, sand/ and GLM alone, and no OpenGL. A header that declares one type, and no function, is named by it. A namespace is that of the top folder,
-with sand::grid, sand::tin, sand::force and scene::relax.
+most 25 sources. shapes/, which the web page compiles, includes base/, sand/ and GLM alone, and no OpenGL. A header that
+declares one type, and no function, is named by it. A namespace is that of the top folder, with sand::grid, sand::tin,
+sand::force and scene::relax.
 
 usage: scripts/checks/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
 """

@@ -19,7 +19,7 @@ struct ToolLight {
 /// Values of the uniforms by which the shaders take light away under a tool.
 struct ToolUniforms {
     glm::vec4 tool{0, 0, 1e9, 1};  // uTool; at first too far away to take any light
-    // Of stamp.glsl alone:
+    // Only stamp.glsl has these:
     glm::mat3 space{1};  // uToolSpace
     glm::vec3 sun{0};    // uToolSun
     float sunStep = 1;   // uToolStep

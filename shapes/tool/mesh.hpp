@@ -20,7 +20,7 @@ namespace shapes {
 /// Returns a box around a tool at its place [scene unit].
 [[nodiscard]] Box bodyOf(const DrawnTool& drawn);
 
-/// What makeTool() depends on. The radius alone changes no triangle.
+/// The values on which makeTool() depends. The radius alone changes no triangle.
 struct ToolForm {
     sand::ToolKind kind;
     double width;  // [radius]
