@@ -23,7 +23,8 @@ double volumeOf(const sand::Tool& tool) {
 }
 
 // The ellipsoid around a plate is as wide, and its height is 0.6 radii for the plate's 0.25. So it has 2/3 * 0.6 / 0.25
-// = 1.6 of the plate's volume. An ellipsoid is its own light. A new kind that is neither needs a case in ToolLight.
+// = 1.6 of the plate's volume. It has more of a sole's volume, because the pieces leave gaps. An ellipsoid is its own
+// light. A new kind that is neither needs a case in ToolLight.
 TEST(ToolLight, OfEachKindHasAboutItsVolume) {
     for (const sand::ToolKind kind : support::everyTool()) {
         sand::Tool tool;
@@ -34,7 +35,7 @@ TEST(ToolLight, OfEachKindHasAboutItsVolume) {
         const shapes::ToolLight light({tool, {}, 1, true});
         const double volume = 4 * std::numbers::pi / 3 / glm::determinant(light.toBall);
         EXPECT_GT(volume, 0.9 * volumeOf(tool)) << base::nameOf(kind);
-        EXPECT_LT(volume, 2.0 * volumeOf(tool)) << base::nameOf(kind);
+        EXPECT_LT(volume, 2.5 * volumeOf(tool)) << base::nameOf(kind);
     }
 }
 
