@@ -92,9 +92,10 @@ function(sandwall_write_manifest file)
         list(JOIN line " " line)
         list(APPEND flags "flags ${line}")
     endforeach()
-    file(GLOB_RECURSE shaders CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*)
-    file(GLOB strokes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/haptic_bridge/devices/*.strokes)
-    list(APPEND files ${shaders} ${strokes})
+    file(GLOB embedded CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*
+        ${PROJECT_SOURCE_DIR}/shapes/shaders/*
+        ${PROJECT_SOURCE_DIR}/haptic_bridge/devices/*.strokes)
+    list(APPEND files ${embedded})
     set(common ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${build_type}})
     separate_arguments(common)
     sandwall_keep_code_flags(common)

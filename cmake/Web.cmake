@@ -11,7 +11,7 @@ set(CMAKE_C_FLAGS_RELEASE "-Os -DNDEBUG")
 
 # Headers of Debian's packages. All of /usr/include would hide emscripten's own headers.
 set(headers ${PROJECT_BINARY_DIR}/headers)
-foreach(header fmt fast_float xxhash.h)
+foreach(header fmt fast_float glm xxhash.h)
     if(NOT EXISTS /usr/include/${header})
         message(FATAL_ERROR "/usr/include/${header} is missing; run scripts/install_dependencies.sh --with-web")
     endif()
@@ -21,6 +21,8 @@ include_directories(SYSTEM ${headers})
 add_library(fmt INTERFACE)
 add_library(fmt::fmt ALIAS fmt)
 add_compile_definitions(FMT_HEADER_ONLY)
+add_library(glm INTERFACE)
+add_library(glm::glm ALIAS glm)
 add_library(xxhash STATIC web/xxhash.c)
 # Every frame is hashed. xxHash knows no vectors of WebAssembly, but emscripten translates those of SSE2 to them.
 target_compile_options(xxhash PRIVATE -O3 -msse2)
@@ -43,7 +45,13 @@ add_library(PkgConfig::ZSTD ALIAS zstd)
 
 add_subdirectory(base)
 add_subdirectory(sand)
+add_subdirectory(shapes)
 add_subdirectory(scene)
 add_subdirectory(journal)
 add_subdirectory(haptic_bridge)
 add_subdirectory(web)
+
+# Long loops are in sand and shapes alone. Elsewhere the size of the page matters more than speed.
+foreach(library base scene_model scene_text journal haptic_hand web web_functions)
+    target_compile_options(${library} PRIVATE -Os)
+endforeach()

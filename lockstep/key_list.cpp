@@ -20,8 +20,12 @@ constexpr Keystroke plain(char character) { return {static_cast<std::uint16_t>(c
 constexpr Keystroke named(std::uint16_t code) { return {code, 0, 0}; }
 
 // No key needs AltGr, neither on a German nor on a French keyboard.
-constexpr std::array kTools{plain('1'), plain('2'), plain('3'), plain('4'), plain('5'), plain('6')};
-static_assert(kTools.size() == sand::kToolKinds);
+constexpr std::array kTools = [] {
+    static_assert(sand::kToolKinds <= 9, "each tool has a digit");
+    std::array<Keystroke, sand::kToolKinds> digits{};
+    std::ranges::generate(digits, [next = '1']() mutable { return plain(next++); });
+    return digits;
+}();
 constexpr std::array kLarger{plain('+'), plain('='),
                              named(Keystroke::kPageUp)};  // = is + without Shift on many keyboards
 constexpr std::array kSmaller{plain('-'), named(Keystroke::kPageDown)};

@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include "render_node/tool/mesh.hpp"
 #include "render_node/tool/reach.hpp"
+#include "shapes/tool/mesh.hpp"
 
 namespace render_node {
 namespace {
@@ -20,25 +20,25 @@ constexpr std::size_t kMostPasses = 4;  // each pass tests every chunk
 }  // namespace
 
 /// Returns convex hulls around everything that a tool changes: the sand that it dims, its shadow, and the tool.
-std::vector<std::vector<glm::dvec3>> Redraw::hullsOf(const DrawnTool& tool) const {
+std::vector<std::vector<glm::dvec3>> Redraw::hullsOf(const shapes::DrawnTool& tool) const {
     const ToolReach reach(tool, sun_);
-    const HeightRange sand = surface_.heightsEver();
+    const shapes::HeightRange sand = surface_.heightsEver();
     const double highest = std::max(double{sand.highest}, box_.highest());
     // A shadow inside the rim ends at the lowest sand that there has been. A shadow that leaves the rim ends at the
     // lowest point of the box, because nothing in the shaders stops it.
-    std::array<Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
+    std::array<shapes::Box, 2> shadow = reach.shadowBetween(std::min(double{sand.lowest}, box_.lowest()), highest);
     if (box_.insideRim(shadow.back())) {
         shadow = reach.shadowBetween(double{sand.lowest}, highest);
     }
     std::vector<std::vector<glm::dvec3>> hulls(2);
-    const auto add = [this](std::vector<glm::dvec3>& hull, const Box& box) {
-        for (const glm::dvec3& corner : cornersOf(box_.withSides(box))) {
+    const auto add = [this](std::vector<glm::dvec3>& hull, const shapes::Box& box) {
+        for (const glm::dvec3& corner : shapes::cornersOf(box_.withSides(box))) {
             hull.push_back(corner);
         }
     };
     add(hulls[0], reach.closeBy(double{sand.lowest}, highest));
-    std::ranges::for_each(shadow, [&](const Box& box) { add(hulls[1], box); });
-    const auto body = cornersOf(bodyOf(tool));
+    std::ranges::for_each(shadow, [&](const shapes::Box& box) { add(hulls[1], box); });
+    const auto body = shapes::cornersOf(shapes::bodyOf(tool));
     hulls.emplace_back(body.begin(), body.end());
     return hulls;
 }
@@ -56,7 +56,7 @@ std::vector<PixelRect> Redraw::pixels(const Camera& camera, const ShownScene& sc
     std::vector<PixelRect> changed{memory.covered};
     const auto add = [&](std::span<const glm::dvec3> hull) { changed.push_back(pixelsOf(hull, sceneToClip, size)); };
     if (before.tool != scene.tool && scene.toolRadius > 0) {
-        for (const std::optional<DrawnTool>& tool : {before.tool, scene.tool}) {
+        for (const std::optional<shapes::DrawnTool>& tool : {before.tool, scene.tool}) {
             if (tool) {
                 std::ranges::for_each(hullsOf(*tool), add);
             }
@@ -64,14 +64,14 @@ std::vector<PixelRect> Redraw::pixels(const Camera& camera, const ShownScene& sc
     }
     if (before.force != scene.force) {
         if (before.force && before.tool) {
-            add(cornersOf(boxOf(*before.force, before.tool->radius)));
+            add(shapes::cornersOf(boxOf(*before.force, before.tool->radius)));
         }
         if (scene.force) {
-            add(cornersOf(boxOf(*scene.force, scene.toolRadius)));
+            add(shapes::cornersOf(boxOf(*scene.force, scene.toolRadius)));
         }
     }
-    for (const Box& box : surface_.changesSince(memory.sand, memory.levels, rule)) {
-        add(cornersOf(box_.withSides(box)));
+    for (const shapes::Box& box : surface_.changesSince(memory.sand, memory.levels, rule)) {
+        add(shapes::cornersOf(box_.withSides(box)));
     }
     changed = fewCovering(std::move(changed), kMostPasses, kPass);
     std::int64_t area = 0;

@@ -8,10 +8,10 @@
 
 #include "lockstep/overlays.hpp"
 #include "render_node/gl/pixel_rect.hpp"
-#include "render_node/sand_box.hpp"
 #include "render_node/surface/drawn_surface.hpp"
-#include "render_node/tool/drawn_tool.hpp"
 #include "render_node/tool/force_arrow.hpp"
+#include "shapes/sand_box.hpp"
+#include "shapes/tool/drawn_tool.hpp"
 
 namespace render_node {
 
@@ -25,8 +25,8 @@ struct Camera {
 /// What a picture shows besides the sand.
 struct ShownScene {
     glm::dmat4 sceneToRoom{1};
-    float toolRadius = 0;           // [scene unit], of the tool, whether or not it has a place
-    std::optional<DrawnTool> tool;  // nullopt before the tool has a place
+    float toolRadius = 0;                   // [scene unit], of the tool, whether or not it has a place
+    std::optional<shapes::DrawnTool> tool;  // nullopt before the tool has a place
     std::optional<ForceArrow> force;
     lockstep::Overlays layers;  // only the layers that change every pixel of the sand
     double humidity = 0;        // of the sand, 0 to 1
@@ -46,7 +46,8 @@ struct EyeMemory {
 class Redraw {
 public:
     /// All must outlive this object. `sun` points towards the sun and has length 1.
-    Redraw(DrawnSurface& surface, const SandBox& box, const glm::vec3& sun) : surface_(surface), box_(box), sun_(sun) {}
+    Redraw(DrawnSurface& surface, const shapes::SandBox& box, const glm::vec3& sun)
+        : surface_(surface), box_(box), sun_(sun) {}
 
     /// Returns a few rectangles that contain all pixels that may differ between the picture which `memory` describes
     /// and the next one. `size` is that of both pictures, and `rule` chooses the level of detail. Updates
@@ -56,10 +57,10 @@ public:
                                                 EyeMemory& memory);
 
 private:
-    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const DrawnTool& tool) const;
+    [[nodiscard]] std::vector<std::vector<glm::dvec3>> hullsOf(const shapes::DrawnTool& tool) const;
 
     DrawnSurface& surface_;
-    const SandBox& box_;
+    const shapes::SandBox& box_;
     glm::dvec3 sun_;
 };
 

@@ -6,31 +6,15 @@
 #include <utility>
 
 #include "render_node/surface_factory.hpp"
-#include "render_node/tool/light.hpp"
 #include "render_node/tool/reach.hpp"
+#include "shapes/model/colours.hpp"
+#include "shapes/model/grain.hpp"
+#include "shapes/tool/light.hpp"
 
 namespace render_node {
 namespace {
 
-const glm::vec4 kNoTool(0, 0, 1e9, 1);  // too far away to take any light
-
 glm::vec3 toVector(const std::vector<double>& numbers) { return glm::dvec3(numbers[0], numbers[1], numbers[2]); }
-
-/// Converts linear light to sRGB exactly; the shaders' encode() is an approximation. The result is a whole level,
-/// because a driver may clear a part of a picture by another path than the whole. The two paths may round differently.
-float encoded(float linear) {
-    const float level = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1 / 2.4F) - 0.055F;
-    return std::round(255 * level) / 255;
-}
-
-/// Returns the albedo of wet sand. Water between the grains sends a share of the light that they scatter back to them
-/// (Ångström 1925). A darker colour loses more of its light, so that wet sand is also more saturated. Most of the
-/// change comes with the first water. Dry sand keeps its albedo, bit for bit.
-glm::vec3 wetAlbedo(const glm::vec3& dry, double humidity) {
-    constexpr double kMostSentBack = 0.68;  // sand of the default colour is then about half as bright
-    const auto share = static_cast<float>(kMostSentBack * humidity * (2 - humidity));
-    return dry * (1 - share) / (1.0F - share * glm::clamp(dry, 0.0F, 1.0F));
-}
 
 }  // namespace
 
@@ -52,7 +36,8 @@ ScenePainter::ScenePainter(const scene::Scene& scene, const sand::SurfaceData& s
       surface_(makeDrawnSurface(start, scene.terrain.cellSize(), sun_)),
       programs_(look_.flatShading),
       grain_(glm::vec2(sun_)),
-      box_(surface_->rim(), surface_->heightsEver().lowest, double{static_cast<float>(cellSize_)}, scene.rules.rim) {
+      box_(surface_->rim(), surface_->heightsEver().lowest, double{static_cast<float>(cellSize_)}, scene.rules.rim),
+      boxMesh_(box_) {
     startCounting();
 }
 
@@ -69,13 +54,13 @@ void ScenePainter::update(const sand::SurfaceData& data, const sand::SurfaceChan
     }
     if (surface_->update(data, change, sceneToClips)) {
         box_.update(surface_->rim());
+        boxMesh_.update();
     }
 }
 
 void ScenePainter::setTool(sand::ProbePoint probe, bool engaged) {
-    const glm::dvec3 place = glm::dvec3(probe.x, probe.y, probe.z) * sand::probeUnit(static_cast<float>(cellSize_));
     shown_.toolRadius = toolRadius();
-    shown_.tool = DrawnTool{tool_, glm::vec3(place), shown_.toolRadius, engaged};
+    shown_.tool = shapes::DrawnTool::at(tool_, probe, engaged, cellSize_);
 }
 
 void ScenePainter::setTool(sand::ProbePoint probe, bool engaged, const sand::Tool& tool) {
@@ -83,7 +68,7 @@ void ScenePainter::setTool(sand::ProbePoint probe, bool engaged, const sand::Too
     setTool(probe, engaged);
 }
 
-float ScenePainter::toolRadius() const { return static_cast<float>(tool_.radius * sand::probeUnit(cellSize_)); }
+float ScenePainter::toolRadius() const { return shapes::DrawnTool::radiusOf(tool_, cellSize_); }
 
 void ScenePainter::setLayers(lockstep::Overlays layers) {
     shown_.layers = {};
@@ -107,7 +92,7 @@ void ScenePainter::prepare(const GlProgram& program, const Pass& pass) const {
     program.set("uSceneToClip", glm::mat4(pass.camera.roomToClip * sceneToRoom));
     program.set("uHalfPicture", glm::vec2(pass.size) / 2.0F);
     program.set("uSun", sun_);
-    program.set("uSand", wetAlbedo(toVector(look_.sandColour), shown_.humidity));
+    program.set("uSand", shapes::wetAlbedo(toVector(look_.sandColour), shown_.humidity));
     program.set("uWet", static_cast<float>(shown_.humidity));
     prepareTool(program);
     program.set("uGrain", 0);
@@ -122,23 +107,16 @@ float ScenePainter::grainScale() const {
     // grains that are finer than pixels fade.
     constexpr double kBetweenNotches = 0.375;
     const double octaves = std::log2(glm::length(glm::dvec3(shown_.sceneToRoom[0])) / usualScale_);
-    return static_cast<float>(usualScale_ / (kGrainSide * kGrainTexel) *
+    return static_cast<float>(usualScale_ / (shapes::kGrainSide * shapes::kGrainTexel) *
                               std::exp2(std::floor(octaves + kBetweenNotches)));
 }
 
 void ScenePainter::prepareTool(const GlProgram& program) const {
-    if (!showsTool()) {
-        program.set("uTool", kNoTool);
-    } else if (hasBall()) {
-        program.set("uTool", glm::vec4(shown_.tool->place, 1 / shown_.tool->radius));
-    } else {
-        const ToolLight light(*shown_.tool);
-        const glm::dvec3 sun = light.toBall * glm::dvec3(sun_);
-        program.set("uTool", glm::vec4(glm::vec3(light.centre), 1));
-        program.set("uToolSpace", glm::mat3(light.toBall));
-        program.set("uToolSun", glm::vec3(glm::normalize(sun)));
-        program.set("uToolStep", static_cast<float>(1 / (glm::length(sun) * light.radius)));
-    }
+    const shapes::ToolUniforms light = showsTool() ? uniformsOf(*shown_.tool, sun_) : shapes::ToolUniforms();
+    program.set("uTool", light.tool);
+    program.set("uToolSpace", light.space);
+    program.set("uToolSun", light.sun);
+    program.set("uToolStep", light.sunStep);
 }
 
 void ScenePainter::prepareSurface(const GlProgram& program, const Pass& pass) const {
@@ -162,8 +140,8 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
         glEnable(GL_SCISSOR_TEST);
         glScissor(pixels.x0, pixels.y0, pixels.x1 - pixels.x0, pixels.y1 - pixels.y0);
     }
-    const glm::vec3 background = toVector(look_.backgroundColour);
-    glClearColor(encoded(background.x), encoded(background.y), encoded(background.z), 1);
+    const glm::vec3 background = shapes::encoded(toVector(look_.backgroundColour));
+    glClearColor(background.x, background.y, background.z, 1);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_CULL_FACE);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
@@ -180,13 +158,13 @@ void ScenePainter::drawWithin(const PixelRect& pixels, const Camera& camera, con
     }
     const GlProgram& wood = programs_.wood(hasBall());
     prepare(wood, pass);
-    box_.drawBoards();
+    boxMesh_.drawBoards();
     wood.drawn();
     glDisable(GL_SCISSOR_TEST);
 }
 
 void ScenePainter::drawTool(const Pass& pass) {
-    if (showsTool() && (!culling_ || inFrustum(bodyOf(*shown_.tool), pass.sceneToPart))) {
+    if (showsTool() && (!culling_ || shapes::inFrustum(shapes::bodyOf(*shown_.tool), pass.sceneToPart))) {
         const GlProgram& program = programs_.tool();
         prepare(program, pass);
         program.set("uModel", glm::vec4(shown_.tool->place, shown_.tool->radius));
@@ -211,10 +189,10 @@ void ScenePainter::drawSand(const Pass& pass) {
     prepareSurface(programs.far, pass);
     // The program `near` draws a shadow that is finer than the mesh. It costs a software renderer time at every pixel,
     // so that it is used only within the tool's reach.
-    std::function<void(const Box&)> choose;
+    std::function<void(const shapes::Box&)> choose;
     bool near = false;
     if (showsTool()) {
-        choose = [&programs, &near, reach = ToolReach(*shown_.tool, sun_)](const Box& chunk) {
+        choose = [&programs, &near, reach = ToolReach(*shown_.tool, sun_)](const shapes::Box& chunk) {
             const bool within = reach.meets(chunk);
             (within ? programs.near : programs.far).use();
             near = near || within;
@@ -227,7 +205,7 @@ void ScenePainter::drawSand(const Pass& pass) {
     counts_.triangles += drawn.triangles;
 
     prepare(programs.sides, pass);
-    box_.drawSides(pass.sceneToPart, culling_);
+    boxMesh_.drawSides(pass.sceneToPart, culling_);
     programs.sides.drawn();
 }
 

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "render_node/box_mesh.hpp"
 #include "render_node/gl/eye_target.hpp"
 #include "render_node/gl/grain_texture.hpp"
 #include "render_node/redraw.hpp"
-#include "render_node/sand_box.hpp"
 #include "render_node/scene_programs.hpp"
 #include "render_node/surface/drawn_surface.hpp"
 #include "render_node/tool/force_arrow.hpp"
@@ -54,7 +54,7 @@ public:
     ///          until one does. An empty list means that all changes are seen.
     void update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const Camera> cameras = {});
     /// Returns the lowest and the highest height that any sand has ever had.
-    [[nodiscard]] HeightRange heightsEver() const { return surface_->heightsEver(); }
+    [[nodiscard]] shapes::HeightRange heightsEver() const { return surface_->heightsEver(); }
     /// Moves the tool's centre to `probe`. No tool is drawn before the first call.
     void setTool(sand::ProbePoint probe, bool engaged);
     /// Moves the tool and sets it. Use it if the tool differs from the last one or was turned.
@@ -131,7 +131,8 @@ private:
     ScenePrograms programs_;
     std::optional<ForceArrowView> forceView_;  // made for the first arrow
     GrainTexture grain_;
-    SandBox box_;
+    shapes::SandBox box_;
+    BoxMesh boxMesh_;
     ToolMesh toolMesh_;
 };
 

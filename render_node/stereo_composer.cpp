@@ -66,8 +66,8 @@ StereoComposer::StereoComposer(Stereo stereo, const walls::Tile& tile) : stereo_
         light_.emplace(stereo);
     }
     const ShaderSource nothing;  // needs no light of the scene
-    program_.emplace(shaderSource("flat/whole.vert.glsl"), nothing,
-                     shaderSource(light_ ? "flat/anaglyph.frag.glsl" : "flat/pack.frag.glsl"));
+    program_.emplace(shaderSource("whole.vert.glsl"), nothing,
+                     shaderSource(light_ ? "anaglyph.frag.glsl" : "pack.frag.glsl"));
     array_.emplace();
 }
 

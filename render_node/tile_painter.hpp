@@ -80,7 +80,7 @@ public:
     /// Returns the counts of the sand's views so far. Test patterns and statistics do not count.
     [[nodiscard]] const ViewCounts& viewCounts() const { return counts_; }
     /// Returns the lowest and the highest height that any sand that was drawn has ever had.
-    [[nodiscard]] HeightRange heightsEver() const { return scenePainter_.heightsEver(); }
+    [[nodiscard]] shapes::HeightRange heightsEver() const { return scenePainter_.heightsEver(); }
 
 private:
     struct EyeRange {

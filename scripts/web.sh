@@ -16,7 +16,8 @@ missing() {
     return 1
 }
 
-build_replica() {
+# In a subshell, because the native compiler must not get what ccache needs for em++.
+build_replica() (
     local launcher=()
     if command -v ccache >/dev/null; then
         # ccache does not know em++ by its name. Its flags are those of clang.
@@ -27,7 +28,7 @@ build_replica() {
     export NODE_PATH=${NODE_PATH:-/usr/share/nodejs}
     emcmake cmake -S . -B build/web -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_UNITY_BUILD=ON "${launcher[@]}" >/dev/null
     cmake --build build/web --parallel "$(nproc)" --target replica
-}
+)
 
 # Encodes the sample scenes for the page. Only the native program reads scene files.
 build_scenes() {
@@ -45,7 +46,7 @@ build_page() {
     build_scenes "$page"
     # The bundles and replica.wasm contain these works.
     for licence in web/node_modules/three/LICENSE web/node_modules/zstd-napi/deps/zstd/LICENSE \
-        /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,emscripten}/copyright; do
+        /usr/share/doc/{libxxhash-dev,libfmt-dev,libfast-float-dev,libglm-dev,emscripten}/copyright; do
         printf '==== %s\n\n' "$licence"
         cat "$licence"
     done >"$page/licences.txt"

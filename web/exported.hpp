@@ -7,10 +7,12 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "web/drawing.hpp"
 #include "web/dug_session.hpp"
 #include "web/page_session.hpp"
 
@@ -27,6 +29,8 @@ namespace web {
 struct Exported {
     std::vector<base::Bytes> parts;       // of a file that is being handed over
     std::unique_ptr<StepSource> session;  // whose sand is shown; null before the first one
+    std::optional<Drawing> drawing;       // of the session
+    Piece piece;                          // of the drawing, for the page
     PageSession* recorded = nullptr;      // the session, if its steps are those of a journal
     DugSession* dug = nullptr;            // the session, if its steps are those of a hand
     base::Bytes bytes;                    // a state or a journal
@@ -39,12 +43,17 @@ struct Exported {
     void show(std::unique_ptr<PageSession> opened) {
         recorded = opened.get();
         dug = nullptr;
-        session = std::move(opened);
+        show(std::unique_ptr<StepSource>(std::move(opened)));
     }
     void show(std::unique_ptr<DugSession> begun) {
         dug = begun.get();
         recorded = nullptr;
-        session = std::move(begun);
+        show(std::unique_ptr<StepSource>(std::move(begun)));
+    }
+    void show(std::unique_ptr<StepSource> shown) {
+        drawing.reset();
+        session = std::move(shown);
+        drawing.emplace(*session);
     }
     /// Returns what `work` returns, or -1 if it throws; `problem` then has the sentence.
     template <class Work>

@@ -56,8 +56,7 @@ export interface SandMessage {
     rows: number;
     cell: number;              // scene unit
     stepsPerSecond: number;
-    look: Float32Array;        // RGB of sand and background, direction to the sun, 1 if the field has boards, height in the middle [cell]
-    holes?: Uint8Array;        // of a grid: 1 for a cell without ground; undefined if all cells have ground
+    middle: number;            // height in the middle of the room [cell]
 }
 
 export interface SessionMessage extends SandMessage {
@@ -101,14 +100,23 @@ export interface NoteMessage {
     text: string;
 }
 
+export type Numbers = Float32Array | Int32Array | Uint32Array | Int16Array | Uint16Array | Uint8Array;
+
+/**
+ * Arrays of a drawing by name (web/drawing.cpp): what differs from the frame before.
+ *
+ * `uNAME`: a uniform of the wall's shaders. `vertices`: the number of all vertices of new sand. `first`: the number of the
+ * first vertex in `aHeight`, `aGrid`, `aNormal` and `aShade`. `triangles`: numbers of vertices, of new sand. `sides`,
+ * `boards`, `tool`: eight numbers for each vertex of a solid body. `grain`: texels of all levels, and `grainPeriod`: their
+ * side [m]. `ball`: 1 if the tool is a ball. `background`: its colour. `heights`: of a grid [unit].
+ */
+export type Piece = Record<string, Numbers>;
+
 export interface FrameMessage {
     kind: "frame";
     step: number;
-    tool: Float32Array;        // x, y, z, radius [cell], engaged, kind, half width [cell], heading, mirrored
-    humidity: number;          // of the sand, 0 to 1
+    pieces: Piece[];
     heights?: Int32Array;      // of a grid [unit]
-    places?: Float32Array;     // of a TIN [cell]
-    corners?: Uint32Array;
 }
 
 /** `step` and `hash` are of the newest step that was computed. */

@@ -4,15 +4,13 @@
 // changes what they name.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
-#include "web/drawn_sand.hpp"
 #include "web/exported.hpp"
 
 #define API SANDWALL_PAGE_API
@@ -20,7 +18,6 @@
 namespace {
 
 std::vector<std::int32_t> marks;
-web::DrawnSand drawn;
 std::string text;
 
 auto& page = web::exported;
@@ -77,19 +74,10 @@ API int sw_hashes() { return static_cast<int>(page.recorded->hashes()); }
 /// Pairs of a step and a web::Mark::Kind.
 API const std::int32_t* sw_marks() { return marks.data(); }
 API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
-/// Linear-light RGB of sand and of background, and the direction to the sun. Behind them: 1 if the field has boards
-/// around it, and the height that lies in the middle of the room [cell].
-API const float* sw_look() {
-    static std::vector<float> look;
-    look.clear();
-    const scene::Look& from = session->scene().look;
-    for (const auto* triple : {&from.sandColour, &from.backgroundColour, &from.sunDirection}) {
-        look.insert(look.end(), triple->begin(), triple->end());
-    }
-    look.push_back(session->scene().rules.rim == sand::Rim::closed ? 1.0F : 0.0F);
-    look.push_back(static_cast<float>(session->scene().referenceHeight()) / float{sand::kUnitsPerCell});
-    return look.data();
-}
+/// The height that lies in the middle of the room [cell].
+API double sw_middle() { return session->scene().referenceHeight() / double{sand::kUnitsPerCell}; }
+/// 1 if the sand has a height for each cell.
+API int sw_has_heights() { return page.drawing->hasHeights() ? 1 : 0; }
 
 /// Takes the next record of the first pass. Returns 1, or 0 behind the last one.
 API int sw_advance() {
@@ -124,43 +112,26 @@ API int sw_restore() {
     });
 }
 
-/// Takes the present sand to draw it. Returns 1 for a TIN, 0 for a grid.
+/// Takes the present sand and tool to draw them. sw_next_piece() then has what differs from before.
 API int sw_draw() {
     return guarded([] {
-        drawn.take(session->replica().surface());
-        return drawn.meshed ? 1 : 0;
+        page.drawing->take();
+        return 0;
     });
 }
-API const std::int32_t* sw_heights() { return drawn.heights.data(); }
-/// Takes the cells without ground, which never change in a session. Returns 1 if there are any.
-API int sw_take_holes() {
-    return guarded([] { return drawn.takeHoles(session->replica().surface()) ? 1 : 0; });
+/// Goes to the next piece of the drawing. Returns 1, or 0 behind the last one.
+API int sw_next_piece() {
+    return guarded([] { return page.drawing->next(page.piece) ? 1 : 0; });
 }
-/// One byte for each cell: 1 if it has no ground.
-API const std::uint8_t* sw_holes() { return drawn.holes.data(); }
-API const float* sw_places() { return drawn.places.data(); }
-API int sw_vertices() { return static_cast<int>(drawn.places.size() / 3); }
-API const std::int32_t* sw_corners() { return drawn.corners.data(); }
-API int sw_triangles() { return static_cast<int>(drawn.corners.size() / 3); }
-/// Centre x, y, z and radius of the tool [cell], and 1 if it is engaged. Behind them: its sand::ToolKind, its half
-/// width [cell], its heading to the east and to the north, and 1 if it is mirrored.
-API const float* sw_tool() {
-    static float numbers[10];
-    const sand::ProbePoint probe = session->replica().probe();
-    const sand::Tool tool = session->replica().tool();
-    const auto cells = [](std::int32_t length) { return static_cast<float>(length) / float{sand::kProbePerCell}; };
-    const float all[10]{cells(probe.x),
-                        cells(probe.y),
-                        cells(probe.z),
-                        cells(tool.radius),
-                        session->replica().engaged() ? 1.0F : 0.0F,
-                        static_cast<float>(tool.kind),
-                        cells(tool.halfWidth),
-                        static_cast<float>(tool.heading.x),
-                        static_cast<float>(tool.heading.y),
-                        tool.heading.mirrored ? 1.0F : 0.0F};
-    std::copy(std::begin(all), std::end(all), numbers);
-    return numbers;
+API int sw_arrays() { return static_cast<int>(page.piece.arrays.size()); }
+API const char* sw_array_name(std::uint32_t array) { return page.piece.arrays.at(array).name.c_str(); }
+/// The type of its numbers: their place in web::Piece::Numbers.
+API int sw_array_type(std::uint32_t array) { return static_cast<int>(page.piece.arrays.at(array).numbers.index()); }
+API int sw_array_length(std::uint32_t array) {
+    return std::visit([](const auto& numbers) { return static_cast<int>(numbers.size()); },
+                      page.piece.arrays.at(array).numbers);
 }
-/// Humidity of the sand, 0 to 1.
-API double sw_humidity() { return session->humidity(); }
+API const void* sw_array(std::uint32_t array) {
+    return std::visit([](const auto& numbers) { return static_cast<const void*>(numbers.data()); },
+                      page.piece.arrays.at(array).numbers);
+}

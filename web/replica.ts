@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The replica's C functions (replica.cpp) as a class.
 
-import { kReadingNumbers, type ToolChange } from "./messages";
+import { kReadingNumbers, type Piece, type ToolChange } from "./messages";
 
 type Module = Record<string, any>;
 
+const kArrays = [Float32Array, Int32Array, Uint32Array, Int16Array, Uint16Array, Uint8Array];  // in the order of web::Piece::Numbers
 const kMostBytes = 2 ** 32 - 1;  // that a size of 32 bits can name; more than a page has
 
 export class Replica {
@@ -30,7 +31,6 @@ export class Replica {
     }
     /** Returns an address, unless there is no memory. */
     private room(address: number): number { return this.require(address > 0 ? address : -1); }
-    private floats(at: number, count: number): Float32Array { return this.wasm.HEAPF32.slice(at >> 2, (at >> 2) + count); }
     private ints(at: number, count: number): Int32Array { return this.wasm.HEAP32.slice(at >> 2, (at >> 2) + count); }
 
     private withText(text: string, call: (address: number) => number): number {
@@ -58,14 +58,13 @@ export class Replica {
         const w = this.wasm;
         return {
             name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
-            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), look: this.floats(w._sw_look(), 11),
+            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), middle: w._sw_middle(), tin: w._sw_has_heights() === 0,
         };
     }
     session() {
         const w = this.wasm;
         return { ...this.ground(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(), marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()) };
     }
-    isTin(): boolean { return this.require(this.wasm._sw_draw()) === 1; }
     advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
     stepOn(): boolean { return this.require(this.wasm._sw_step_on()) === 1; }
     get step(): number { return this.wasm._sw_step(); }
@@ -85,26 +84,19 @@ export class Replica {
         write(this.wasm.HEAPU8.subarray(at, at + length));
         this.require(this.wasm._sw_restore());
     }
-    sand(columns: number, rows: number): { heights?: Int32Array; places?: Float32Array; corners?: Uint32Array } {
-        const w = this.wasm;
-        if (this.require(w._sw_draw()) === 0) {
-            return { heights: this.ints(w._sw_heights(), columns * rows) };
+    /** Returns what differs from the drawing before. */
+    draw(): Piece[] {
+        const w = this.wasm, pieces: Piece[] = [];
+        this.require(w._sw_draw());
+        while (this.require(w._sw_next_piece()) === 1) {
+            const piece: Piece = {};
+            for (let i = 0; i < w._sw_arrays(); ++i) {
+                piece[this.text(w._sw_array_name(i))] = new kArrays[w._sw_array_type(i)](w.HEAPU8.buffer, w._sw_array(i), w._sw_array_length(i)).slice();
+            }
+            pieces.push(piece);
         }
-        return {
-            places: this.floats(w._sw_places(), 3 * w._sw_vertices()),
-            corners: new Uint32Array(this.ints(w._sw_corners(), 3 * w._sw_triangles()).buffer),
-        };
+        return pieces;
     }
-    /** Returns a byte for each cell, which is 1 if it has no ground, or undefined if all have ground. */
-    holes(columns: number, rows: number): Uint8Array | undefined {
-        if (this.require(this.wasm._sw_take_holes()) === 0) {
-            return undefined;
-        }
-        const at = this.wasm._sw_holes();
-        return this.wasm.HEAPU8.slice(at, at + columns * rows);
-    }
-    tool(): Float32Array { return this.floats(this.wasm._sw_tool(), 10); }
-    get humidity(): number { return this.wasm._sw_humidity(); }
 
     // Digging
 

@@ -1,30 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// The meshes of a session: sand, its cut sides, the box around it, and the tool.
+// The meshes of a session: sand, its cut sides, the box around it, and the tool. The replica has computed all of them.
 import {
-    BufferAttribute, BufferGeometry, DataTexture, IntType, LinearFilter, LinearMipmapNearestFilter, Matrix4, type Mesh, NearestFilter,
-    type RawShaderMaterial, RedIntegerFormat, RepeatWrapping, RGBAFormat, type Scene, Vector4,
+    BufferAttribute, BufferGeometry, DataTexture, InterleavedBuffer, InterleavedBufferAttribute, LinearFilter, LinearMipmapNearestFilter, Matrix4,
+    type Mesh, RepeatWrapping, RGBAFormat, type Scene, Vector4,
 } from "three";
-import { type GrainLevel, makeGrain } from "./grain";
-import { GridField, type Point } from "./grid_field";
-import { type FrameMessage, kUnitsPerCell, type SandMessage } from "./messages";
-import { SandBox } from "./sand_box";
+import type { Piece, SandMessage } from "./messages";
 import { SandPrograms } from "./sand_programs";
-import { cutsOfTin, lightTin } from "./tin_light";
-import { makeTool, shapeOf, type Tool, toolOf } from "./tool_shape";
 
 const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall
 
-/** Returns a texture of whole numbers, one per cell. */
-function heightTexture(columns: number, rows: number): DataTexture {
-    const texture = new DataTexture(new Int32Array(columns * rows), columns, rows, RedIntegerFormat, IntType);
-    texture.internalFormat = "R32I";
-    texture.minFilter = texture.magFilter = NearestFilter;
-    return texture;
-}
-
-function grainTexture(grain: GrainLevel[]): DataTexture {
-    const texture = new DataTexture(grain[0].data, grain[0].width, grain[0].height, RGBAFormat);
-    texture.mipmaps = grain as unknown as typeof texture.mipmaps;
+function grainTexture(grain: Uint8Array): DataTexture {
+    const levels: { data: Uint8Array; width: number; height: number }[] = [];
+    for (let side = 256, at = 0; side >= 1; at += 4 * side * side, side /= 2) {
+        levels.push({ data: grain.subarray(at, at + 4 * side * side), width: side, height: side });
+    }
+    const texture = new DataTexture(levels[0].data, levels[0].width, levels[0].height, RGBAFormat);
+    texture.mipmaps = levels as unknown as typeof texture.mipmaps;
     texture.minFilter = LinearMipmapNearestFilter;
     texture.magFilter = LinearFilter;
     texture.wrapS = texture.wrapT = RepeatWrapping;
@@ -32,117 +23,103 @@ function grainTexture(grain: GrainLevel[]): DataTexture {
     return texture;
 }
 
-/** Returns the lowest height of a frame [scene unit]. */
-function lowestOf(session: SandMessage, frame: FrameMessage): number {
-    if (frame.heights) {
-        return frame.heights.reduce((least, height) => Math.min(least, height)) * session.cell / kUnitsPerCell;
-    }
-    return frame.places!.reduce((least, n, i) => (i % 3 === 2 ? Math.min(least, n) : least), Infinity) * session.cell;
+/** Returns a geometry with room for the sand's vertices. */
+function sandOf(vertices: number): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("aHeight", new BufferAttribute(new Float32Array(vertices), 1));
+    geometry.setAttribute("aGrid", new BufferAttribute(new Float32Array(2 * vertices), 2));
+    geometry.setAttribute("aNormal", new BufferAttribute(new Int16Array(2 * vertices), 2, true));
+    geometry.setAttribute("aShade", new BufferAttribute(new Uint16Array(2 * vertices), 2, true));
+    return geometry;
+}
+
+/** Gives a mesh the triangles of a solid body: eight numbers for each vertex. */
+function setSolid(mesh: Mesh, numbers: Float32Array): void {
+    const vertices = new InterleavedBuffer(numbers, 8), geometry = new BufferGeometry();
+    geometry.setAttribute("aPosition", new InterleavedBufferAttribute(vertices, 3, 0));
+    geometry.setAttribute("aNormal", new InterleavedBufferAttribute(vertices, 3, 3));
+    geometry.setAttribute("aAlong", new InterleavedBufferAttribute(vertices, 2, 6));
+    geometry.setDrawRange(0, numbers.length / 8);
+    mesh.geometry.dispose();
+    mesh.geometry = geometry;
 }
 
 export class SandMeshes {
     readonly sceneToRoom: Matrix4;
     readonly programs: SandPrograms;
-    private readonly grain: GrainLevel[];
-    private readonly mottling: DataTexture;
-    private readonly textures: DataTexture[] = [];
+    private readonly scale: number;             // of the room [m per scene unit]
+    private readonly model = new Vector4();     // place and radius of the tool
     private readonly sand: Mesh;
-    private readonly sides: Mesh;
-    private readonly tool: Mesh;
-    private readonly box: SandBox;
-    private readonly field?: GridField;      // of a grid
-    private readonly heights?: DataTexture;
-    private shape = "";                      // of the tool's mesh
+    private readonly solids: Record<string, Mesh>;
+    private grain?: DataTexture;
 
-    /** Adds the meshes of a session to `scene`. Its first frame is `frame`, which show() then shows. */
-    constructor(scene: Scene, private readonly session: SandMessage, frame: FrameMessage) {
-        const { columns, rows, cell, look, holes } = session, width = columns * cell, height = rows * cell;
-        const scale = kTray / Math.max(width, height);
+    /** Adds the meshes of a session to `scene`. The first pieces that show() gets have all of them. */
+    constructor(scene: Scene, { columns, rows, cell, middle }: SandMessage) {
+        const width = columns * cell, height = rows * cell, scale = this.scale = kTray / Math.max(width, height);
         // North is away from the viewer, and the middle of the sand is at 0.
         this.sceneToRoom = new Matrix4().makeScale(scale, scale, scale).premultiply(new Matrix4().set(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1))
-            .multiply(new Matrix4().makeTranslation(-width / 2, -height / 2, -look[10] * cell));
-        this.grain = makeGrain([look[6], look[7]]);
-        this.textures.push(this.mottling = grainTexture(this.grain));
-        this.programs = new SandPrograms(scene, look, this.sceneToRoom, scale, this.mottling);
-        if (!session.tin) {
-            this.field = new GridField(columns, rows, cell, holes);
-            this.textures.push(this.heights = heightTexture(columns, rows));
-        }
-        this.sand = this.field ? this.addGrid(this.field, frame.heights!) : this.programs.add(new BufferGeometry(), "tin");
-        const edge = this.field ? this.field.cuts(frame.heights!).edge : this.cutsOf(frame);
-        this.box = new SandBox(width, height, edge, lowestOf(session, frame), look[9] !== 0);
-        this.sides = this.programs.add(new BufferGeometry(), "sides");
-        this.programs.add(this.box.boards, "boards", { uModel: { value: new Vector4(0, 0, 0, 1) } });
-        this.tool = this.programs.add(new BufferGeometry(), "tool", { uModel: { value: new Vector4() }, uEngaged: { value: 0 } });
-    }
-    private addGrid(field: GridField, heights: Int32Array): Mesh {
-        const { columns, rows, cell, holes } = this.session;
-        const start = heightTexture(columns, rows), mask = heightTexture(holes ? columns : 1, holes ? rows : 1);
-        start.image.data.set(heights);
-        mask.image.data.set(holes ?? [0]);
-        start.needsUpdate = mask.needsUpdate = true;
-        this.textures.push(start, mask);
-        const uniforms = {
-            uHeights: { value: this.heights! }, uStart: { value: start }, uHoles: { value: mask }, uMottling: { value: this.mottling },
-            uSize: { value: new Int32Array([columns, rows]) }, uUnit: { value: cell / kUnitsPerCell }, uCell: { value: cell },
+            .multiply(new Matrix4().makeTranslation(-width / 2, -height / 2, -middle * cell));
+        this.programs = new SandPrograms(scene, this.sceneToRoom);
+        this.sand = this.programs.add("sand");
+        this.solids = {
+            sides: this.programs.add("sides"), boards: this.programs.add("boards", { uModel: { value: new Vector4(0, 0, 0, 1) } }),
+            tool: this.programs.add("tool", { uModel: { value: this.model } }),
         };
-        const geometry = new BufferGeometry(), edges = field.holeEdges();
-        geometry.setIndex(new BufferAttribute(field.index(), 1));
-        const sand = this.programs.add(geometry, "heights", uniforms);
-        if (edges) {
-            this.programs.add(edges, "holeEdges", uniforms);
-        }
-        return sand;
     }
     dispose(): void {
         this.programs.dispose();
-        for (const texture of this.textures) {
-            texture.dispose();
-        }
+        this.grain?.dispose();
     }
 
-    private cutsOf(frame: FrameMessage): Point[][] {
-        if (!frame.heights) {
-            return cutsOfTin(frame.places!, frame.corners!, this.session.cell);
+    show(pieces: Piece[]): void {
+        pieces.forEach((piece) => this.take(piece));
+        const triangles = pieces.flatMap((piece) => (piece.triangles ? [piece.triangles as Uint32Array] : []));
+        if (triangles.length > 0) {
+            this.beginSand(triangles);
         }
-        const { edge, holes } = this.field!.cuts(frame.heights);
-        return [...edge, ...holes];
     }
-
-    show(frame: FrameMessage): void {
-        if (frame.heights) {
-            this.heights!.image.data = frame.heights as unknown as Uint8ClampedArray;
-            this.heights!.needsUpdate = true;
-        } else {
-            this.showTin(frame.places!, frame.corners!);
+    private take(piece: Piece): void {
+        this.programs.take(piece);
+        if (piece.grain) {
+            this.grain = grainTexture(piece.grain as Uint8Array);
+            this.programs.set("uGrain", this.grain);
+            this.programs.set("uGrainScale", this.scale / piece.grainPeriod[0]);
         }
-        this.sides.geometry.dispose();
-        this.sides.geometry = this.box.sides(this.cutsOf(frame));
-        const tool = toolOf(frame.tool, this.session.cell);
-        this.programs.take(tool, frame.humidity);
-        this.showTool(tool);
+        if (piece.vertices) {
+            this.sand.geometry.dispose();
+            this.sand.geometry = sandOf(piece.vertices[0]);
+        }
+        if (piece.first) {
+            this.takeVertices(piece);
+        }
+        for (const [name, mesh] of Object.entries(this.solids)) {
+            if (piece[name]) {
+                setSolid(mesh, piece[name] as Float32Array);
+            }
+        }
+        if (piece.uModel) {
+            this.model.fromArray(piece.uModel as Float32Array);
+            this.solids.tool.visible = this.model.w > 0;
+            this.programs.make(piece.ball[0] === 1);
+        }
     }
-    private showTin(places: Float32Array, corners: Uint32Array): void {
-        const { cell, columns, rows } = this.session, geometry = new BufferGeometry();
-        geometry.setAttribute("position", new BufferAttribute(places.map((n) => n * cell), 3));
-        geometry.setIndex(new BufferAttribute(corners, 1));
-        geometry.computeVertexNormals();
-        geometry.setAttribute("shade", new BufferAttribute(lightTin(places, corners, columns, rows, this.grain[0].data), 2));
-        this.sand.geometry.dispose();
-        this.sand.geometry = geometry;
+    private takeVertices(piece: Piece): void {
+        for (const name of ["aHeight", "aGrid", "aNormal", "aShade"]) {
+            const attribute = this.sand.geometry.getAttribute(name) as BufferAttribute, first = piece.first[0] * attribute.itemSize;
+            attribute.array.set(piece[name], first);
+            attribute.addUpdateRange(first, piece[name].length);
+            attribute.needsUpdate = true;
+        }
     }
-    private showTool(tool: Tool): void {
-        this.tool.visible = tool.radius > 0;
-        if (!this.tool.visible) {
-            return;
-        }
-        if (shapeOf(tool) !== this.shape) {
-            this.shape = shapeOf(tool);
-            this.tool.geometry.dispose();
-            this.tool.geometry = makeTool(tool);
-        }
-        const { uModel, uEngaged } = (this.tool.material as RawShaderMaterial).uniforms;
-        uModel.value.set(tool.place.x, tool.place.y, tool.place.z, tool.radius);
-        uEngaged.value = tool.engaged ? 1 : 0;
+    /** Gives new sand its triangles. Its heights are those of the session's start. */
+    private beginSand(triangles: Uint32Array[]): void {
+        const all = new Uint32Array(triangles.reduce((sum, part) => sum + part.length, 0));
+        triangles.reduce((at, part) => {
+            all.set(part, at);
+            return at + part.length;
+        }, 0);
+        const { geometry } = this.sand;
+        geometry.setIndex(new BufferAttribute(all, 1));
+        geometry.setAttribute("aStart", new BufferAttribute(geometry.getAttribute("aHeight").array.slice(), 1));
     }
 }

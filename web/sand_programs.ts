@@ -1,47 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wall's shaders, put together as programs for the page's meshes, and the numbers that all of them share.
-import {
-    BufferGeometry, DataTexture, GLSL3, type IUniform, Matrix3, Matrix4, Mesh, RawShaderMaterial, type Scene, Vector2, Vector3, Vector4,
-} from "three";
-import ball from "../render_node/shaders/ball.glsl";
-import light from "../render_node/shaders/light.glsl";
-import near from "../render_node/shaders/near.frag.glsl";
-import sheen from "../render_node/shaders/sheen.glsl";
-import side from "../render_node/shaders/side.vert.glsl";
-import solid from "../render_node/shaders/solid.vert.glsl";
-import stamp from "../render_node/shaders/stamp.glsl";
-import sunlit from "../render_node/shaders/sunlit.glsl";
-import toolFragment from "../render_node/shaders/tool.frag.glsl";
-import wood from "../render_node/shaders/wood.frag.glsl";
-import heightsVertex from "./heights.vert.glsl";
-import lightVertex from "./light_vertex.glsl";
-import tinVertex from "./tin.vert.glsl";
-import { isBall, lightOf, type Tool } from "./tool_shape";
+import { BufferGeometry, GLSL3, type IUniform, Matrix4, Mesh, RawShaderMaterial, type Scene, Vector2, Vector3 } from "three";
+import ball from "../shapes/shaders/ball.glsl";
+import light from "../shapes/shaders/light.glsl";
+import near from "../shapes/shaders/near.frag.glsl";
+import sand from "../shapes/shaders/sand.vert.glsl";
+import sheen from "../shapes/shaders/sheen.glsl";
+import side from "../shapes/shaders/side.vert.glsl";
+import solid from "../shapes/shaders/solid.vert.glsl";
+import stamp from "../shapes/shaders/stamp.glsl";
+import sunlit from "../shapes/shaders/sunlit.glsl";
+import toolFragment from "../shapes/shaders/tool.frag.glsl";
+import wood from "../shapes/shaders/wood.frag.glsl";
+import cutAndFill from "./cut_and_fill.vert.glsl";
+import type { Piece } from "./messages";
 
 export type Uniforms = Record<string, IUniform>;
 
 const kPrecision = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
-const kNoTool = new Vector4(0, 0, 1e9, 1);  // too far away to take any light
-// three.js binds attributes by these names.
-const named = (vertex: string) => vertex.replace(/layout\(location = \d\) /g, "").replaceAll("aPosition", "position")
-    .replaceAll("aNormal", "normal").replaceAll("aAlong", "along");
-const kSolid = named(solid);
 
 /** Vertex and fragment shader of a kind of mesh. */
 export const kPrograms = {
-    heights: [lightVertex + heightsVertex, near],
-    holeEdges: ["#define HOLE_EDGES\n" + lightVertex + heightsVertex, near],
-    tin: [lightVertex + tinVertex, near],
-    sides: [named(side), near],
-    boards: [kSolid, wood],
-    tool: [kSolid, toolFragment],
+    sand: ["#define main placeSand\n" + sand + "#undef main\n" + cutAndFill, near],
+    sides: [side, near],
+    boards: [solid, wood],
+    tool: [solid, toolFragment],
 };
-
-/** Returns the albedo of wet sand, as wetAlbedo() of render_node/scene_painter.cpp does. */
-function wetAlbedo(dry: number, humidity: number): number {
-    const share = 0.68 * humidity * (2 - humidity);
-    return dry * (1 - share) / (1 - share * Math.max(0, Math.min(1, dry)));
-}
 
 /** The meshes of a session, and what their shaders share. */
 export class SandPrograms {
@@ -49,18 +33,15 @@ export class SandPrograms {
     private made = "";  // for which tool and sand the programs were made
     private readonly uniforms: Uniforms;
 
-    /** `look` is that of a SandMessage. `scale` is that of the room [m per scene unit]. */
-    constructor(private readonly scene: Scene, private readonly look: Float32Array, sceneToRoom: Matrix4, scale: number, grain: DataTexture) {
+    constructor(private readonly scene: Scene, sceneToRoom: Matrix4) {
         this.uniforms = {
             uSceneToRoom: { value: sceneToRoom }, uRoomToClip: { value: new Matrix4() }, uSceneToClip: { value: new Matrix4() },
-            uEye: { value: new Vector3() }, uHalfPicture: { value: new Vector2() }, uSun: { value: new Vector3(look[6], look[7], look[8]).normalize() },
-            uSand: { value: new Vector3() }, uWet: { value: 0 }, uTool: { value: new Vector4() }, uToolSpace: { value: new Matrix3() },
-            uToolSun: { value: new Vector3() }, uToolStep: { value: 1 }, uGrain: { value: grain },
-            uGrainScale: { value: scale / (256 * 0.0006) }, uCutAndFill: { value: 0 },
+            uEye: { value: new Vector3() }, uHalfPicture: { value: new Vector2() }, uCutAndFill: { value: 0 },
         };
     }
-    add(geometry: BufferGeometry, program: keyof typeof kPrograms, uniforms: Uniforms = {}): Mesh {
-        const mesh = new Mesh(geometry);
+    /** Adds a mesh. `uniforms` are its own. */
+    add(program: keyof typeof kPrograms, uniforms: Uniforms = {}): Mesh {
+        const mesh = new Mesh(new BufferGeometry());
         mesh.frustumCulled = false;
         this.meshes.push({ mesh, program, uniforms });
         this.scene.add(mesh);
@@ -75,29 +56,23 @@ export class SandPrograms {
         }
     }
 
-    /** Shows the sand's humidity, and the tool in it. */
-    take(tool: Tool, humidity: number): void {
-        this.make(tool, humidity > 0);
-        this.uniforms.uSand.value.set(...[0, 1, 2].map((i) => wetAlbedo(this.look[i], humidity)));
-        this.uniforms.uWet.value = humidity;
-        if (tool.radius === 0) {
-            this.uniforms.uTool.value.copy(kNoTool);
-            return;
+    set(name: string, value: unknown): void { (this.uniforms[name] ??= { value }).value = value; }
+    /** Takes the arrays that have the name of a uniform. */
+    take(piece: Piece): void {
+        for (const [name, numbers] of Object.entries(piece)) {
+            if (name.startsWith("u")) {
+                this.set(name, numbers.length === 1 ? numbers[0] : numbers);
+            }
         }
-        const lit = lightOf(tool, this.uniforms.uSun.value), { x, y, z } = isBall(tool) ? tool.place : lit.centre;
-        this.uniforms.uTool.value.set(x, y, z, isBall(tool) ? 1 / tool.radius : 1);
-        this.uniforms.uToolSpace.value.copy(lit.space);
-        this.uniforms.uToolSun.value.copy(lit.sun);
-        this.uniforms.uToolStep.value = lit.step;
     }
-    /** Gives all meshes the programs for this tool and for dry or wet sand. */
-    private make(tool: Tool, wet: boolean): void {
-        const wanted = `${isBall(tool)} ${wet}`;
+    /** Gives all meshes the programs for dry or wet sand, and for a tool that is a ball or another. */
+    make(ballTool: boolean): void {
+        const wet = this.uniforms.uWet.value > 0, wanted = `${ballTool} ${wet}`;
         if (wanted === this.made) {
             return;
         }
         this.made = wanted;
-        const shared = kPrecision + light + (wet ? sheen : "") + sunlit + (isBall(tool) ? ball : stamp);
+        const shared = kPrecision + light + (wet ? sheen : "") + sunlit + (ballTool ? ball : stamp);
         for (const { mesh, program, uniforms } of this.meshes) {
             const [vertex, fragment] = kPrograms[program];
             (mesh.material as RawShaderMaterial).dispose();
@@ -107,7 +82,6 @@ export class SandPrograms {
         }
     }
 
-    set cutAndFill(on: boolean) { this.uniforms.uCutAndFill.value = on ? 1 : 0; }
     /** `eye` is in the room. */
     lookFrom(eye: Vector3, roomToClip: Matrix4, halfPicture: Vector2): void {
         const { uRoomToClip, uSceneToClip, uSceneToRoom, uEye, uHalfPicture } = this.uniforms;

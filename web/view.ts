@@ -5,11 +5,6 @@ import { Eye } from "./eye";
 import type { FrameMessage, SandMessage } from "./messages";
 import { SandMeshes } from "./sand_meshes";
 
-/** Returns the level of a share of light: exact, unlike encode() of the shaders. */
-function encoded(linear: number): number {
-    return Math.round(255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * linear ** (1 / 2.4) - 0.055)) / 255;
-}
-
 export class View {
     readonly eye: Eye;
     private readonly renderer: WebGLRenderer;
@@ -45,19 +40,20 @@ export class View {
     begin(session: SandMessage, frame: FrameMessage): void {
         this.meshes?.dispose();
         this.session = session;
-        this.meshes = new SandMeshes(this.scene, session, frame);
-        this.scene.background = new Color().setRGB(...([3, 4, 5].map((i) => encoded(session.look[i])) as [number, number, number]), LinearSRGBColorSpace);
+        this.meshes = new SandMeshes(this.scene, session);
+        const [red, green, blue] = frame.pieces.find((piece) => piece.background)!.background;
+        this.scene.background = new Color().setRGB(red, green, blue, LinearSRGBColorSpace);
         this.eye.begin();
         this.show(frame);
     }
     /** Returns whether a frame of this sand was the last one. */
     shows(session: SandMessage): boolean { return this.session === session; }
     show(frame: FrameMessage): void {
-        this.meshes!.show(frame);
+        this.meshes!.show(frame.pieces);
         this.dirty = true;
     }
     set cutAndFill(on: boolean) {
-        this.meshes!.programs.cutAndFill = on;
+        this.meshes!.programs.set("uCutAndFill", on ? 1 : 0);
         this.dirty = true;
     }
 

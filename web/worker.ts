@@ -13,7 +13,6 @@ const kVectors = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1,
 let replica: Replica | undefined;
 let source: StepSource | undefined;
 let keyframes = new Keyframes();
-let session: { columns: number; rows: number } | undefined;
 let mayShow = true, shownStep = -1;
 let working = false;
 let failed = false;           // a step has failed, so that no other follows
@@ -29,9 +28,8 @@ function show(): boolean {
     }
     mayShow = false;
     shownStep = replica!.step;
-    const sand = replica!.sand(session!.columns, session!.rows);
-    const buffers = [sand.heights, sand.places, sand.corners].filter((array) => array !== undefined).map((array) => array!.buffer);
-    tell({ kind: "frame", step: shownStep, tool: replica!.tool(), humidity: replica!.humidity, ...sand }, buffers as Transferable[]);
+    const pieces = replica!.draw(), heights = pieces.find((piece) => piece.heights)?.heights as Int32Array | undefined;
+    tell({ kind: "frame", step: shownStep, pieces, heights }, pieces.flatMap((piece) => Object.values(piece).map((array) => array.buffer as ArrayBuffer)));
     return true;
 }
 
@@ -71,9 +69,8 @@ async function loaded(): Promise<Replica> {
 }
 
 /** Begins with the sand that the replica has now. */
-function begin(next: StepSource, opened: { columns: number; rows: number }): void {
+function begin(next: StepSource): void {
     source = next;
-    session = opened;
     shownStep = -1;
     mayShow = true;
     failed = false;
@@ -83,8 +80,8 @@ async function open({ name, address, parts }: OpenMessage): Promise<void> {
     const it = await loaded();
     it.open(name, parts);
     const opened = it.session();
-    begin(new JournalSource(it, opened, keyframes, { tell, show }), opened);
-    tell({ kind: "session", address, tin: it.isTin(), holes: it.holes(opened.columns, opened.rows), ...opened });
+    begin(new JournalSource(it, opened, keyframes, { tell, show }));
+    tell({ kind: "session", address, ...opened });
 }
 
 async function dig(message: DigMessage): Promise<void> {
@@ -97,8 +94,8 @@ async function dig(message: DigMessage): Promise<void> {
     it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
     keyframes = new Keyframes();  // digging needs no memory for states
     const begun = it.ground();
-    begin(new HandSource(it, begun.stepsPerSecond, { tell, show }), begun);
-    tell({ kind: "dig", tin: it.isTin(), holes: it.holes(begun.columns, begun.rows), ...begun });
+    begin(new HandSource(it, begun.stepsPerSecond, { tell, show }));
+    tell({ kind: "dig", ...begun });
 }
 
 /** Begins anew. If that is refused, the session before goes on. */

@@ -34,7 +34,7 @@ public:
             std::array<char, 1024> log{};
             glGetShaderInfoLog(id_, static_cast<GLsizei>(log.size()), nullptr, log.data());
             glDeleteShader(id_);
-            throw std::runtime_error("render_node/shaders/" + parts.back()->file +
+            throw std::runtime_error(parts.back()->path() +
                                      ": the OpenGL driver does not compile it: " + firstLine(log.data()));
         }
     }
@@ -61,7 +61,7 @@ const ShaderSource& shaderSource(std::string_view file) {
 GlProgram::GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment) {
     const Shader first(GL_VERTEX_SHADER, {&light, &vertex});
     const Shader second(GL_FRAGMENT_SHADER, {&light, &fragment});
-    link(std::array{first.id(), second.id()}, vertex.file, fragment.file);
+    link(std::array{first.id(), second.id()}, vertex, fragment);
 }
 
 GlProgram::GlProgram(const ProgramFiles& files) {
@@ -87,10 +87,10 @@ GlProgram::GlProgram(const ProgramFiles& files) {
     for (const auto& shader : shaders) {
         ids.push_back(shader->id());
     }
-    link(ids, std::string(files.vertex), std::string(files.fragment));
+    link(ids, shaderSource(files.vertex), shaderSource(files.fragment));
 }
 
-void GlProgram::link(std::span<const GLuint> shaders, const std::string& vertex, const std::string& fragment) {
+void GlProgram::link(std::span<const GLuint> shaders, const ShaderSource& vertex, const ShaderSource& fragment) {
     for (const GLuint shader : shaders) {
         glAttachShader(program_.id(), shader);
     }
@@ -100,8 +100,8 @@ void GlProgram::link(std::span<const GLuint> shaders, const std::string& vertex,
     if (fine != GL_TRUE) {
         std::array<char, 1024> log{};
         glGetProgramInfoLog(program_.id(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-        throw std::runtime_error("render_node/shaders/" + fragment + ": the OpenGL driver does not link it with " +
-                                 vertex + ": " + firstLine(log.data()));
+        throw std::runtime_error(fragment.path() + ": the OpenGL driver does not link it with " + vertex.file + ": " +
+                                 firstLine(log.data()));
     }
 }
 

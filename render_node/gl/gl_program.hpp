@@ -11,10 +11,13 @@
 
 namespace render_node {
 
-/// Shader file from render_node/shaders, embedded at build time.
+/// Shader file from render_node/shaders, or from shapes/shaders if the web page needs it, too. Embedded at build time.
 struct ShaderSource {
-    std::string file;  // file name without folder, as messages show it
+    std::string file;  // file name without folder
     std::string text;  // GLSL 3.30 without the #version line
+    std::string folder = "render_node/shaders";
+    /// Returns the file as messages show it.
+    [[nodiscard]] std::string path() const { return folder + "/" + file; }
 };
 
 /// Returns all shader files, in the order of CMakeLists.txt.
@@ -36,7 +39,8 @@ struct ProgramFiles {
 class GlProgram {
 public:
     /// Compiles and links the shaders. `light` is put before both. Throws std::runtime_error, with one line
-    /// "render_node/shaders/FILE: message" that contains the first error of the driver's compiler.
+    /// "render_node/shaders/FILE: message" (or "shapes/shaders/FILE: …") that contains the first error of the driver's
+    /// compiler.
     GlProgram(const ShaderSource& vertex, const ShaderSource& light, const ShaderSource& fragment);
     /// Compiles and links embedded files. light.glsl is put before all of them. Throws std::runtime_error if a file
     /// does not compile or link.
@@ -67,7 +71,7 @@ public:
     }
 
 private:
-    void link(std::span<const GLuint> shaders, const std::string& vertex, const std::string& fragment);
+    void link(std::span<const GLuint> shaders, const ShaderSource& vertex, const ShaderSource& fragment);
     [[nodiscard]] GLint find(const char* name) const { return glGetUniformLocation(program_.id(), name); }
     GlHandle<ProgramKind> program_;
     mutable bool drawn_ = false;

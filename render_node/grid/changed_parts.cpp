@@ -8,14 +8,14 @@ constexpr int kSmallestSide = 32;  // [cell], side of a square
 
 }  // namespace
 
-std::vector<sand::CellRect> changedParts(std::span<const GridVertices::Overwritten> overwritten) {
+std::vector<sand::CellRect> changedParts(std::span<const shapes::GridVertices::Overwritten> overwritten) {
     sand::CellRect all;
     for (const auto& [cells, before] : overwritten) {
         all = all.joinedWith(cells);
     }
     // The squares begin at a corner of a block, so that each block lies in one square.
-    all.x0 -= all.x0 % GridVertices::kBlock;
-    all.y0 -= all.y0 % GridVertices::kBlock;
+    all.x0 -= all.x0 % shapes::GridVertices::kBlock;
+    all.y0 -= all.y0 % shapes::GridVertices::kBlock;
     int side = kSmallestSide;
     const auto squaresOf = [&side](int first, int end) { return (end - first + side - 1) / side; };
     while (squaresOf(all.x0, all.x1) * squaresOf(all.y0, all.y1) > kMostChangedParts) {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "render_node/grid/vertices.hpp"
+#include "shapes/grid/vertices.hpp"
 
 namespace render_node {
 
@@ -17,6 +17,6 @@ inline constexpr int kMostChangedParts = 36;
 ///
 /// The squares are as small as kMostChangedParts allows, and at least 32 cells wide. Small parts follow the sand
 /// closely, and a list of few parts is quick to read.
-[[nodiscard]] std::vector<sand::CellRect> changedParts(std::span<const GridVertices::Overwritten> overwritten);
+[[nodiscard]] std::vector<sand::CellRect> changedParts(std::span<const shapes::GridVertices::Overwritten> overwritten);
 
 }  // namespace render_node

@@ -14,16 +14,16 @@ namespace {
 void describeVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(GridVertex),
+        glVertexAttribPointer(index, count, type, normalised, sizeof(shapes::GridVertex),
                               reinterpret_cast<const void*>(offset));
     };
-    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(GridVertex, height));
-    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(GridVertex, column));
-    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(GridVertex, normalEast));
-    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(GridVertex, open));
+    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(shapes::GridVertex, height));
+    attribute(1, 2, GL_UNSIGNED_SHORT, GL_FALSE, offsetof(shapes::GridVertex, column));
+    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(shapes::GridVertex, normalEast));
+    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(shapes::GridVertex, open));
 }
 
-GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices * sizeof(GridVertex)); }
+GLintptr bytesOf(std::size_t vertices) { return static_cast<GLintptr>(vertices * sizeof(shapes::GridVertex)); }
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void ChunkGeometry::markStale(const sand::CellRect& vertices) {
     stale_ = stale_.joinedWith(vertices.clippedTo(vertices_));
 }
 
-void ChunkGeometry::refresh(const GridVertices& surface, const HoleEdges* holes) {
+void ChunkGeometry::refresh(const shapes::GridVertices& surface, const shapes::HoleEdges* holes) {
     if (stale_.empty()) {
         return;
     }
@@ -42,7 +42,7 @@ void ChunkGeometry::refresh(const GridVertices& surface, const HoleEdges* holes)
         sendAll(surface, holes);
     } else {
         glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
-        std::vector<GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
+        std::vector<shapes::GridVertex> row(static_cast<std::size_t>(stale_.x1 - stale_.x0));
         const int across = vertices_.x1 - vertices_.x0;
         for (int y = stale_.y0; y < stale_.y1; ++y) {
             surface.vertices(stale_.x0, y, row);
@@ -53,14 +53,14 @@ void ChunkGeometry::refresh(const GridVertices& surface, const HoleEdges* holes)
     stale_ = {};
 }
 
-void ChunkGeometry::sendAll(const GridVertices& surface, const HoleEdges* holes) {
-    std::vector<GridVertex> vertices = verticesOf(surface, vertices_, level_);
+void ChunkGeometry::sendAll(const shapes::GridVertices& surface, const shapes::HoleEdges* holes) {
+    std::vector<shapes::GridVertex> vertices = verticesOf(surface, vertices_, level_);
     if (holes != nullptr) {
-        const std::vector<GridVertex> added = holes->added(vertices);
+        const std::vector<shapes::GridVertex> added = holes->added(vertices);
         vertices.insert(vertices.end(), added.begin(), added.end());
     }
     const bool first = bytes_ == 0;
-    bytes_ = vertices.size() * sizeof(GridVertex);
+    bytes_ = vertices.size() * sizeof(shapes::GridVertex);
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
     glBufferData(GL_ARRAY_BUFFER, bytesOf(vertices.size()), vertices.data(), GL_DYNAMIC_DRAW);

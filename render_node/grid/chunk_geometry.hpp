@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "render_node/gl/gl_handle.hpp"
-#include "render_node/grid/hole_edges.hpp"
-#include "render_node/grid/vertices.hpp"
+#include "shapes/grid/hole_edges.hpp"
+#include "shapes/grid/vertices.hpp"
 
 namespace render_node {
 
@@ -19,7 +19,7 @@ public:
     /// Marks vertices whose look the sand has changed.
     void markStale(const sand::CellRect& vertices);
     /// Computes the marked vertices and sends them to GL. `holes` belongs to a chunk with holes, at level 0.
-    void refresh(const GridVertices& surface, const HoleEdges* holes);
+    void refresh(const shapes::GridVertices& surface, const shapes::HoleEdges* holes);
     [[nodiscard]] int level() const { return level_; }
     [[nodiscard]] GLuint array() const { return array_.id(); }
     [[nodiscard]] std::size_t bytes() const { return bytes_; }  // memory in GL; 0 before the first refresh()
@@ -27,7 +27,7 @@ public:
     std::uint64_t used = 0;  // number of the draw() that used it last; the owner sets it
 
 private:
-    void sendAll(const GridVertices& surface, const HoleEdges* holes);
+    void sendAll(const shapes::GridVertices& surface, const shapes::HoleEdges* holes);
 
     sand::CellRect vertices_, stale_;  // of the vertex grid
     int level_;

@@ -112,22 +112,20 @@ private:
 
 }  // namespace
 
-std::vector<GridVertex> verticesOf(const GridVertices& surface, const sand::CellRect& vertices, int level) {
-    std::vector<GridVertex> out;
+std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface, const sand::CellRect& vertices,
+                                           int level) {
+    if (level == 0) {
+        return surface.verticesIn(vertices);
+    }
+    std::vector<shapes::GridVertex> out;
     const int stride = 1 << level;
-    const auto across = static_cast<std::size_t>(vertices.x1 - vertices.x0);
     for (int row = vertices.y0; row < vertices.y1; row += stride) {
-        if (stride == 1) {
-            out.resize(out.size() + across);
-            surface.vertices(vertices.x0, row, std::span(out).last(across));
-            continue;
-        }
         for (int column = vertices.x0; column < vertices.x1; column += stride) {
             out.push_back(surface.vertex(column, row));
         }
     }
     const glm::ivec2 quads(vertices.x1 - vertices.x0 - 1, vertices.y1 - vertices.y0 - 1);
-    for (std::size_t edge = 0; edge < 4 && level > 0; ++edge) {
+    for (std::size_t edge = 0; edge < 4; ++edge) {
         for (int along = 0; along <= lengthOf(quads, edge); ++along) {
             const glm::ivec2 place = placeOf(quads, edge, along, 0);
             out.push_back(surface.vertex(vertices.x0 + place.x, vertices.y0 + place.y));
@@ -136,28 +134,13 @@ std::vector<GridVertex> verticesOf(const GridVertices& surface, const sand::Cell
     return out;
 }
 
-std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown) {
-    constexpr int kSide = 8;  // [quad]
-    std::vector<TriangleBlock> blocks;
-    int first = 0;
-    for (int y = 0; y < quadsDown; y += kSide) {
-        for (int x = 0; x < quadsAcross; x += kSide) {
-            const sand::CellRect quads{x, y, std::min(x + kSide, quadsAcross), std::min(y + kSide, quadsDown)};
-            const int count = 6 * (quads.x1 - quads.x0) * (quads.y1 - quads.y0);
-            blocks.push_back({quads, first, count});
-            first += count;
-        }
-    }
-    return blocks;
-}
-
 std::vector<std::uint16_t> trianglesOf(int quadsAcross, int quadsDown, const ChunkLevels& levels) {
     Triangulation triangles(quadsAcross, quadsDown, levels);
     const int stride = 1 << levels.level;
     const int across = quadsAcross / stride;
     const int down = quadsDown / stride;
     if (levels.level == 0) {  // the edges then have level 0 too
-        for (const TriangleBlock& block : blocksOf(quadsAcross, quadsDown)) {
+        for (const shapes::TriangleBlock& block : shapes::blocksOf(quadsAcross, quadsDown)) {
             triangles.addQuads(block.quads.x0, block.quads.y0, block.quads.x1, block.quads.y1);
         }
     } else {

@@ -8,8 +8,6 @@
 namespace render_node {
 namespace {
 
-constexpr int kKeptCells = 128;
-
 // Range of the change of shade by mottling, as in shaders/sunlit.glsl.
 constexpr float kDarkest = 0.86F;
 constexpr float kMottling = 0.28F;
@@ -73,15 +71,8 @@ float distance(const Samples& samples, const std::vector<float>& shareEast, cons
 
 }  // namespace
 
-int coarsestLevel(int columns, int rows) {
-    int level = 0;
-    while (level + 1 < kLevels && (std::max(columns, rows) >> (level + 1)) >= kKeptCells) {
-        ++level;
-    }
-    return level;
-}
-
-LevelErrors errorsOf(const GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun, int coarsest) {
+LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun,
+                     int coarsest) {
     const int across = vertices.x1 - vertices.x0;
     const int down = vertices.y1 - vertices.y0;
     const std::size_t all = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
@@ -104,7 +95,7 @@ LevelErrors errorsOf(const GridVertices& surface, const sand::CellRect& vertices
     }
     LevelErrors errors;
     constexpr std::array kDistances{distance<1>, distance<2>, distance<4>, distance<8>, distance<16>};
-    static_assert(kDistances.size() == kLevels);
+    static_assert(kDistances.size() == shapes::kLevels);
     for (std::size_t level = 1; level <= static_cast<std::size_t>(coarsest); ++level) {
         const std::vector<float> shareEast = sharesOf(east, 1 << level);
         const std::vector<float> shareNorth = sharesOf(north, 1 << level);

@@ -7,21 +7,16 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "render_node/grid/vertices.hpp"
 #include "render_node/surface/level_rule.hpp"
+#include "shapes/grid/chunk_layout.hpp"
+#include "shapes/grid/vertices.hpp"
 
 namespace render_node {
 
-/// Returns the coarsest level for a field: the longer side still has at least 128 cells at that level.
-///
-/// A change of the sand makes the largest triangle around it change. With one more level, a hand that digs in a field
-/// of 512 cells would cost more than the level saves.
-[[nodiscard]] int coarsestLevel(int columns, int rows);
-
 /// Returns the errors of the levels up to `coarsest` in a square part of the vertex grid. The errors of coarser levels
 /// are 0. The part may extend beyond the field. `sun` points towards the sun and has length 1.
-[[nodiscard]] LevelErrors errorsOf(const GridVertices& surface, const sand::CellRect& vertices, const glm::vec3& sun,
-                                   int coarsest);
+[[nodiscard]] LevelErrors errorsOf(const shapes::GridVertices& surface, const sand::CellRect& vertices,
+                                   const glm::vec3& sun, int coarsest);
 
 /// Level of a chunk and of its four edges: south, east, north, west. No edge is coarser than the chunk.
 struct ChunkLevels {
@@ -34,16 +29,8 @@ struct ChunkLevels {
 /// Returns the vertices of a chunk of side × side quads at one level. The vertices of the level's grid come first, row
 /// by row from the south-west. Above level 0 all vertices of the four edges follow, counter-clockwise. They are needed
 /// beside a finer chunk or the rim.
-[[nodiscard]] std::vector<GridVertex> verticesOf(const GridVertices& surface, const sand::CellRect& vertices,
-                                                 int level);
-
-/// Neighbouring triangles with consecutive indices in trianglesOf(), so that a part of a chunk can be drawn.
-struct TriangleBlock {
-    sand::CellRect quads;
-    int first, count;  // [index]
-};
-/// Returns the blocks of level 0, of 8 × 8 quads each. A coarser level has few triangles and no blocks.
-[[nodiscard]] std::vector<TriangleBlock> blocksOf(int quadsAcross, int quadsDown);
+[[nodiscard]] std::vector<shapes::GridVertex> verticesOf(const shapes::GridVertices& surface,
+                                                         const sand::CellRect& vertices, int level);
 
 /// Returns the triangles of a chunk as indices into verticesOf(), counter-clockwise from above. Neighbours that agree
 /// on the level of their common edge use the same vertices there, so that there is no crack. Above level 0, 2^(level+1)

@@ -9,29 +9,12 @@
 namespace render_node {
 namespace {
 
-constexpr int kChunk = 16;  // [quad], shortest side of a chunk, except in small fields
-constexpr int kGroup = 8;   // [chunk], side of a group
-
-// Levels need sides that are multiples of twice the largest stride. A field without levels gets chunks of equal size.
-int shortestSide(int coarsest) { return std::max(kChunk, 2 << coarsest); }
-int chunksFor(int quads, int coarsest) {
-    const int side = shortestSide(coarsest);
-    return coarsest > 0 ? (quads + side - 1) / side : std::max(1, quads / side);
-}
-int sideFor(int quads, int coarsest) {
-    return coarsest > 0 ? shortestSide(coarsest) : (quads + chunksFor(quads, 0) - 1) / chunksFor(quads, 0);
-}
+constexpr int kGroup = 8;  // [chunk], side of a group
 
 }  // namespace
 
 GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
-    : surface_(data.field, data.ground),
-      sun_(sun),
-      coarsest_(coarsestLevel(surface_.columns(), surface_.rows())),
-      across_(chunksFor(surface_.columns() + 1, coarsest_)),
-      down_(chunksFor(surface_.rows() + 1, coarsest_)),
-      quadsAcross_(sideFor(surface_.columns() + 1, coarsest_)),
-      quadsDown_(sideFor(surface_.rows() + 1, coarsest_)) {
+    : surface_(data.field, data.ground), sun_(sun), layout_(surface_.columns(), surface_.rows()) {
     makeChunks();
     makeGroups();
     ever_ = groups_.front().heights;
@@ -41,11 +24,11 @@ GridMesh::GridMesh(const sand::GridData& data, const glm::vec3& sun)
 }
 
 void GridMesh::makeChunks() {
-    chunks_.reserve(static_cast<std::size_t>(across_) * static_cast<std::size_t>(down_));
-    for (int y = 0; y < down_; ++y) {
-        for (int x = 0; x < across_; ++x) {
+    chunks_.reserve(static_cast<std::size_t>(layout_.across) * static_cast<std::size_t>(layout_.down));
+    for (int y = 0; y < layout_.down; ++y) {
+        for (int x = 0; x < layout_.across; ++x) {
             Chunk& made = chunks_.emplace_back();
-            made.vertices = {x * quadsAcross_, y * quadsDown_, (x + 1) * quadsAcross_ + 1, (y + 1) * quadsDown_ + 1};
+            made.vertices = layout_.vertices(x, y);
             made.heights = heightsUnder(made.vertices);
             if (surface_.hasHole(made.vertices)) {
                 made.holes.emplace(surface_, made.vertices);
@@ -55,12 +38,12 @@ void GridMesh::makeChunks() {
 }
 
 void GridMesh::makeGroups() {
-    for (int y = 0; y < down_; y += kGroup) {
-        for (int x = 0; x < across_; x += kGroup) {
+    for (int y = 0; y < layout_.down; y += kGroup) {
+        for (int x = 0; x < layout_.across; x += kGroup) {
             Group group;
-            group.chunks = {x, y, std::min(x + kGroup, across_), std::min(y + kGroup, down_)};
-            group.vertices = {x * quadsAcross_, y * quadsDown_, group.chunks.x1 * quadsAcross_ + 1,
-                              group.chunks.y1 * quadsDown_ + 1};
+            group.chunks = {x, y, std::min(x + kGroup, layout_.across), std::min(y + kGroup, layout_.down)};
+            group.vertices = {x * layout_.quadsAcross, y * layout_.quadsDown, group.chunks.x1 * layout_.quadsAcross + 1,
+                              group.chunks.y1 * layout_.quadsDown + 1};
             group.heights = heightsUnder(group.vertices);
             groups_.push_back(group);
         }
@@ -71,18 +54,19 @@ void GridMesh::makeGroups() {
 sand::CellRect GridMesh::verticesOver(const sand::CellRect& cells) const {
     // Cell c lies under vertex c + 1. The normals and the shade of the vertices around it depend on the cell.
     const sand::CellRect reached =
-        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(GridVertices::kReach);
+        sand::CellRect{cells.x0 + 1, cells.y0 + 1, cells.x1 + 1, cells.y1 + 1}.grownBy(shapes::GridVertices::kReach);
     // The outermost ring repeats the ring next to it. Vertices of chunks beyond the grid repeat the outermost ring.
     const auto first = [](int vertex) { return vertex <= 1 ? 0 : vertex; };
     const auto end = [](int vertex, int count, int withBeyond) { return vertex > count ? withBeyond : vertex; };
-    return {first(reached.x0), first(reached.y0), end(reached.x1, surface_.columns(), across_ * quadsAcross_ + 1),
-            end(reached.y1, surface_.rows(), down_ * quadsDown_ + 1)};
+    return {first(reached.x0), first(reached.y0),
+            end(reached.x1, surface_.columns(), layout_.across * layout_.quadsAcross + 1),
+            end(reached.y1, surface_.rows(), layout_.down * layout_.quadsDown + 1)};
 }
 
-HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
-                                    std::span<const GridVertices::Overwritten> overwritten) const {
+shapes::HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
+                                            std::span<const shapes::GridVertices::Overwritten> overwritten) const {
     const sand::CellRect cells = surface_.cellsUnder(vertices.grownBy(longestStride()));
-    HeightRange heights = surface_.heights(cells);
+    shapes::HeightRange heights = surface_.heights(cells);
     for (const auto& [changed, before] : overwritten) {
         if (!changed.clippedTo(cells).empty()) {
             heights = around(heights, before);
@@ -93,7 +77,7 @@ HeightRange GridMesh::heightsAround(const sand::CellRect& vertices,
 
 bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& change, std::span<const glm::dmat4>) {
     const sand::HeightField& field = std::get<sand::GridData>(data).field;
-    std::vector<GridVertices::Overwritten> overwritten;
+    std::vector<shapes::GridVertices::Overwritten> overwritten;
     if (change.whole) {
         surface_.takeOver(field, field.bounds(), overwritten);
     } else {
@@ -108,7 +92,7 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
     bool rim = false;
     for (const sand::CellRect& cells : changedParts(overwritten)) {
         const sand::CellRect vertices = verticesOver(cells);
-        const HeightRange heights = heightsAround(vertices, overwritten);
+        const shapes::HeightRange heights = heightsAround(vertices, overwritten);
         changes_.add(revision_, {vertices, heights});
         ever_ = around(ever_, heights);
         markChanged(chunksAround(vertices), vertices);
@@ -119,9 +103,9 @@ bool GridMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& 
 
 sand::CellRect GridMesh::chunksAround(const sand::CellRect& vertices) const {
     // A vertex on an edge belongs to both chunks.
-    return sand::CellRect{(vertices.x0 - 1) / quadsAcross_, (vertices.y0 - 1) / quadsDown_,
-                          (vertices.x1 - 1) / quadsAcross_ + 1, (vertices.y1 - 1) / quadsDown_ + 1}
-        .clippedTo({0, 0, across_, down_});
+    return sand::CellRect{(vertices.x0 - 1) / layout_.quadsAcross, (vertices.y0 - 1) / layout_.quadsDown,
+                          (vertices.x1 - 1) / layout_.quadsAcross + 1, (vertices.y1 - 1) / layout_.quadsDown + 1}
+        .clippedTo({0, 0, layout_.across, layout_.down});
 }
 
 void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices) {
@@ -138,14 +122,14 @@ void GridMesh::markChanged(const sand::CellRect& chunks, const sand::CellRect& v
             changed.measured = false;
             changed.heights = heightsUnder(changed.vertices);
             Group& group =
-                groups_[static_cast<std::size_t>(y / kGroup * ((across_ + kGroup - 1) / kGroup) + x / kGroup)];
+                groups_[static_cast<std::size_t>(y / kGroup * ((layout_.across + kGroup - 1) / kGroup) + x / kGroup)];
             group.revision = revision_;
             group.heights = around(group.heights, changed.heights);
         }
     }
 }
 
-Box GridMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) const {
+shapes::Box GridMesh::boxOf(const sand::CellRect& vertices, const shapes::HeightRange& heights) const {
     // A hundredth of a cell more, for rounding of GL's floats.
     const double margin = 0.01 * double{surface_.cellSize()};
     const glm::dvec3 low(surface_.east(vertices.x0), surface_.north(vertices.y0), heights.lowest);
@@ -155,10 +139,11 @@ Box GridMesh::boxOf(const sand::CellRect& vertices, const HeightRange& heights) 
 
 /// Returns whether the level of a chunk may be visible: in the chunk, or along the edges of the chunks around it.
 bool GridMesh::mayMatter(int x, int y, const LevelRule& rule) const {
-    const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+    const sand::CellRect beside =
+        sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, layout_.across, layout_.down});
     for (int v = beside.y0; v < beside.y1; ++v) {
         for (int u = beside.x0; u < beside.x1; ++u) {
-            const Chunk& near = chunks_[static_cast<std::size_t>(v * across_ + u)];
+            const Chunk& near = chunks_[static_cast<std::size_t>(v * layout_.across + u)];
             if (rule.sees(boxOf(near.vertices, near.heights))) {
                 return true;
             }
@@ -173,20 +158,20 @@ int GridMesh::strideAround(const sand::CellRect& vertices, const DrawnLevels& le
     const sand::CellRect chunks = levels.empty() ? sand::CellRect{} : chunksAround(vertices);
     for (int y = chunks.y0; y < chunks.y1; ++y) {
         for (int x = chunks.x0; x < chunks.x1; ++x) {
-            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * across_ + x)]));
+            level = std::max(level, static_cast<int>(levels[static_cast<std::size_t>(y * layout_.across + x)]));
         }
     }
     return 1 << level;
 }
 
 /// Returns the box around these vertices and around `margin` more vertices on each side.
-Box GridMesh::boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const {
+shapes::Box GridMesh::boxAround(const sand::CellRect& vertices, const shapes::HeightRange& heights, int margin) const {
     const sand::CellRect grid{0, 0, surface_.columns() + 2, surface_.rows() + 2};
     return boxOf(vertices.grownBy(margin).clippedTo(grid), heights);
 }
 
-std::vector<Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
-    std::vector<Box> changed;
+std::vector<shapes::Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& levels, const LevelRule& rule) {
+    std::vector<shapes::Box> changed;
     for (const auto& [since, part] : changes_.since(revision)) {
         changed.push_back(boxAround(part.vertices, part.heights, strideAround(part.vertices, levels)));
     }
@@ -195,7 +180,7 @@ std::vector<Box> GridMesh::changesSince(std::uint64_t revision, DrawnLevels& lev
 }
 
 void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
-                            std::vector<Box>& changed) {
+                            std::vector<shapes::Box>& changed) {
     ++choice_;
     for (const Group& group : groups_) {
         if (levels.empty() || group.revision <= revision) {
@@ -203,7 +188,7 @@ void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
         }
         for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
             for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
-                std::int8_t& drawn = levels[static_cast<std::size_t>(y * across_ + x)];
+                std::int8_t& drawn = levels[static_cast<std::size_t>(y * layout_.across + x)];
                 if (chunk(x, y).revision <= revision || (drawn < 0 && !mayMatter(x, y, rule))) {
                     continue;
                 }
@@ -211,7 +196,7 @@ void GridMesh::updateLevels(DrawnLevels& levels, std::uint64_t revision, const L
                     drawn = static_cast<std::int8_t>(levelOf(x, y, rule));
                     // The outermost triangles of the neighbours depend on this chunk's edges.
                     const sand::CellRect& vertices = chunk(x, y).vertices;
-                    const HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
+                    const shapes::HeightRange heights = heightsUnder(vertices.grownBy(longestStride()));
                     changed.push_back(boxAround(vertices, heights, strideAround(vertices, levels)));
                 }
             }

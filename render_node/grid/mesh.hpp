@@ -11,12 +11,13 @@
 #include "render_node/gl/gl_handle.hpp"
 #include "render_node/gl/triangle_pace.hpp"
 #include "render_node/grid/chunk_geometry.hpp"
-#include "render_node/grid/hole_edges.hpp"
 #include "render_node/grid/levels.hpp"
-#include "render_node/grid/vertices.hpp"
 #include "render_node/surface/change_history.hpp"
 #include "render_node/surface/drawn_surface.hpp"
-#include "render_node/surface/frustum.hpp"
+#include "shapes/grid/chunk_layout.hpp"
+#include "shapes/grid/hole_edges.hpp"
+#include "shapes/grid/vertices.hpp"
+#include "shapes/model/box.hpp"
 
 namespace render_node {
 
@@ -24,9 +25,9 @@ namespace render_node {
 /// before and after the change.
 struct ChangedVertices {
     sand::CellRect vertices;
-    HeightRange heights;
+    shapes::HeightRange heights;
     friend ChangedVertices around(const ChangedVertices& a, const ChangedVertices& b) {
-        return {a.vertices.joinedWith(b.vertices), render_node::around(a.heights, b.heights)};
+        return {a.vertices.joinedWith(b.vertices), shapes::around(a.heights, b.heights)};
     }
 };
 
@@ -45,13 +46,13 @@ public:
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-               const std::function<void(const Box&)>& before) override;
+               const std::function<void(const shapes::Box&)>& before) override;
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) override;
-    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
-                                                const LevelRule& rule) override;
+    [[nodiscard]] std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
+                                                        const LevelRule& rule) override;
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
-    [[nodiscard]] HeightRange heightsEver() const override { return ever_; }
-    [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
+    [[nodiscard]] shapes::HeightRange heightsEver() const override { return ever_; }
+    [[nodiscard]] shapes::SandRim rim() const override { return surface_.rim(); }
     [[nodiscard]] int chunks() const override { return static_cast<int>(chunks_.size()); }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
     [[nodiscard]] std::int64_t placesRead() const override { return surface_.placesRead(); }
@@ -60,64 +61,64 @@ private:
     struct Indices {
         GlBuffer buffer;
         int count;
-        std::vector<TriangleBlock> blocks;  // of level 0
+        std::vector<shapes::TriangleBlock> blocks;  // of level 0
     };
     struct Chunk {
         sand::CellRect vertices;  // of the vertex grid
-        HeightRange heights;
+        shapes::HeightRange heights;
         std::uint64_t revision = 0;  // last revision that changed it
         bool measured = false;       // `errors` belong to the current surface
         LevelErrors errors;
         std::uint64_t chosenFor = 0;  // value of choice_ for which `level` was chosen
         int level = 0;
         std::vector<ChunkGeometry> geometries;
-        std::optional<HoleEdges> holes;  // nullopt if all cells have ground; otherwise the level is 0
-        std::optional<Indices> indices;  // of holes, made when the chunk is first drawn
+        std::optional<shapes::HoleEdges> holes;  // nullopt if all cells have ground; otherwise the level is 0
+        std::optional<Indices> indices;          // of holes, made when the chunk is first drawn
     };
     /// Neighbouring chunks that are culled together, so that few chunks are tested one by one.
     struct Group {
         sand::CellRect chunks;  // columns and rows of chunks
         sand::CellRect vertices;
-        HeightRange heights;
+        shapes::HeightRange heights;
         std::uint64_t revision = 0;
     };
     void makeChunks();
     void makeGroups();
-    [[nodiscard]] HeightRange heightsUnder(const sand::CellRect& vertices) const {
+    [[nodiscard]] shapes::HeightRange heightsUnder(const sand::CellRect& vertices) const {
         return surface_.heights(surface_.cellsUnder(vertices));
     }
     /// Returns the range of heights of all triangles that reach these vertices, now and before the heights were
     /// overwritten.
-    [[nodiscard]] HeightRange heightsAround(const sand::CellRect& vertices,
-                                            std::span<const GridVertices::Overwritten> overwritten) const;
+    [[nodiscard]] shapes::HeightRange heightsAround(
+        const sand::CellRect& vertices, std::span<const shapes::GridVertices::Overwritten> overwritten) const;
     [[nodiscard]] sand::CellRect verticesOver(const sand::CellRect& cells) const;
     [[nodiscard]] sand::CellRect chunksAround(const sand::CellRect& vertices) const;
     void markChanged(const sand::CellRect& chunks, const sand::CellRect& vertices);
-    [[nodiscard]] Box boxOf(const sand::CellRect& vertices, const HeightRange& heights) const;
-    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * across_ + x)]; }
+    [[nodiscard]] shapes::Box boxOf(const sand::CellRect& vertices, const shapes::HeightRange& heights) const;
+    [[nodiscard]] Chunk& chunk(int x, int y) { return chunks_[static_cast<std::size_t>(y * layout_.across + x)]; }
     template <class Visit>  // void(int x, int y), with column and row of a chunk
     void visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit);
     [[nodiscard]] int levelOf(int x, int y, const LevelRule& rule);
     /// Returns the longest side of a triangle of any level along an axis [cell].
-    [[nodiscard]] int longestStride() const { return 1 << coarsest_; }
+    [[nodiscard]] int longestStride() const { return 1 << layout_.coarsest; }
     [[nodiscard]] int strideAround(const sand::CellRect& vertices, const DrawnLevels& levels) const;
-    [[nodiscard]] Box boxAround(const sand::CellRect& vertices, const HeightRange& heights, int margin) const;
-    void updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule, std::vector<Box>& changed);
+    [[nodiscard]] shapes::Box boxAround(const sand::CellRect& vertices, const shapes::HeightRange& heights,
+                                        int margin) const;
+    void updateLevels(DrawnLevels& levels, std::uint64_t revision, const LevelRule& rule,
+                      std::vector<shapes::Box>& changed);
     [[nodiscard]] bool mayMatter(int x, int y, const LevelRule& rule) const;
     [[nodiscard]] ChunkLevels levelsOf(int x, int y, const LevelRule& rule);
     [[nodiscard]] ChunkGeometry& geometryOf(Chunk& chunk, int level);
     [[nodiscard]] const Indices& indicesOf(const ChunkLevels& levels);
     [[nodiscard]] const Indices& indicesOf(Chunk& chunk, const ChunkLevels& levels);
-    [[nodiscard]] Indices send(std::span<const std::uint16_t> indices, std::vector<TriangleBlock> blocks);
+    [[nodiscard]] Indices send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks);
     int drawTriangles(const Chunk& chunk, const Indices& indices, const glm::dmat4* frustum) const;
     void dropUnused();
 
-    GridVertices surface_;
+    shapes::GridVertices surface_;
     glm::vec3 sun_;
-    int coarsest_;                 // level
-    int across_, down_;            // chunks
-    int quadsAcross_, quadsDown_;  // of every chunk
-    std::vector<Chunk> chunks_;    // row by row from the south-west
+    shapes::ChunkLayout layout_;
+    std::vector<Chunk> chunks_;  // row by row from the south-west
     std::vector<Group> groups_;
     std::map<ChunkLevels, Indices> indices_;  // each index has 16 bits
     std::size_t bytes_ = 0;
@@ -125,7 +126,7 @@ private:
     std::uint64_t choice_ = 0;  // number of the current choice of levels; levels are chosen again after it changes
     ChangeHistory<ChangedVertices> changes_;
     TrianglePace pace_;
-    HeightRange ever_;
+    shapes::HeightRange ever_;
 };
 
 }  // namespace render_node

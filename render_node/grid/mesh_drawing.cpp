@@ -21,12 +21,12 @@ constexpr std::uint64_t kLately = 120;  // [draw]; one or two seconds
 template <class Visit>
 void GridMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
     for (const Group& group : groups_) {
-        if (culling && !inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
+        if (culling && !shapes::inFrustum(boxOf(group.vertices, group.heights), sceneToClip)) {
             continue;
         }
         for (int y = group.chunks.y0; y < group.chunks.y1; ++y) {
             for (int x = group.chunks.x0; x < group.chunks.x1; ++x) {
-                if (!culling || inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
+                if (!culling || shapes::inFrustum(boxOf(chunk(x, y).vertices, chunk(x, y).heights), sceneToClip)) {
                     visit(x, y);
                 }
             }
@@ -41,10 +41,10 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
     }
     if (asked.chosenFor != choice_) {
         if (!asked.measured && !rule.needsEveryCell()) {
-            asked.errors = errorsOf(surface_, asked.vertices, sun_, coarsest_);
+            asked.errors = errorsOf(surface_, asked.vertices, sun_, layout_.coarsest);
             asked.measured = true;
         }
-        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, coarsest_);
+        asked.level = rule.level(boxOf(asked.vertices, asked.heights), asked.errors, layout_.coarsest);
         asked.chosenFor = choice_;
     }
     return asked.level;
@@ -53,12 +53,12 @@ int GridMesh::levelOf(int x, int y, const LevelRule& rule) {
 /// Returns the levels of a chunk and of its edges. The finer of two chunks determines their common edge. Edges at the
 /// rim have level 0, because the cut sides of the sand have all vertices.
 ChunkLevels GridMesh::levelsOf(int x, int y, const LevelRule& rule) {
-    if (coarsest_ == 0) {
+    if (layout_.coarsest == 0) {
         return {};
     }
     ChunkLevels levels{levelOf(x, y, rule), {}};
     const auto edge = [&](int besideX, int besideY) {
-        const bool rim = besideX < 0 || besideY < 0 || besideX == across_ || besideY == down_;
+        const bool rim = besideX < 0 || besideY < 0 || besideX == layout_.across || besideY == layout_.down;
         return rim ? 0 : std::min(levels.level, levelOf(besideX, besideY, rule));
     };
     levels.edges = {edge(x, y - 1), edge(x + 1, y), edge(x, y + 1), edge(x - 1, y)};
@@ -66,16 +66,18 @@ ChunkLevels GridMesh::levelsOf(int x, int y, const LevelRule& rule) {
 }
 
 DrawnLevels GridMesh::levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) {
-    if (coarsest_ == 0) {
+    if (layout_.coarsest == 0) {
         return {};
     }
     ++choice_;
     DrawnLevels levels(chunks_.size(), -1);
     visitSeen(sceneToClip, true, [&](int x, int y) {
-        const sand::CellRect beside = sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, across_, down_});
+        const sand::CellRect beside =
+            sand::CellRect{x - 1, y - 1, x + 2, y + 2}.clippedTo({0, 0, layout_.across, layout_.down});
         for (int v = beside.y0; v < beside.y1; ++v) {
             for (int u = beside.x0; u < beside.x1; ++u) {
-                levels[static_cast<std::size_t>(v * across_ + u)] = static_cast<std::int8_t>(levelOf(u, v, rule));
+                levels[static_cast<std::size_t>(v * layout_.across + u)] =
+                    static_cast<std::int8_t>(levelOf(u, v, rule));
             }
         }
     });
@@ -100,9 +102,9 @@ const GridMesh::Indices& GridMesh::indicesOf(const ChunkLevels& levels) {
         return found->second;
     }
     return indices_
-        .try_emplace(levels,
-                     send(trianglesOf(quadsAcross_, quadsDown_, levels),
-                          levels.level == 0 ? blocksOf(quadsAcross_, quadsDown_) : std::vector<TriangleBlock>()))
+        .try_emplace(levels, send(trianglesOf(layout_.quadsAcross, layout_.quadsDown, levels),
+                                  levels.level == 0 ? shapes::blocksOf(layout_.quadsAcross, layout_.quadsDown)
+                                                    : std::vector<shapes::TriangleBlock>()))
         .first->second;
 }
 
@@ -111,12 +113,13 @@ const GridMesh::Indices& GridMesh::indicesOf(Chunk& chunk, const ChunkLevels& le
         return indicesOf(levels);
     }
     if (!chunk.indices) {
-        chunk.indices = send(chunk.holes->indices(), chunk.holes->blocks());
+        const auto indices = chunk.holes->indices();
+        chunk.indices = send(std::vector<std::uint16_t>(indices.begin(), indices.end()), chunk.holes->blocks());
     }
     return *chunk.indices;
 }
 
-GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<TriangleBlock> blocks) {
+GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::vector<shapes::TriangleBlock> blocks) {
     Indices made{{}, static_cast<int>(indices.size()), std::move(blocks)};
     // A core profile binds an element buffer only to a vertex array. Any vertex array will do here.
     const GlVertexArray array;
@@ -129,14 +132,14 @@ GridMesh::Indices GridMesh::send(std::span<const std::uint16_t> indices, std::ve
 }
 
 void GridMesh::prepare(const GlProgram& program) const {
-    // Places are in half cells, so that the corners of cells are whole numbers, too.
-    program.set("uCell", surface_.cellSize() / 2);
-    program.set("uCells", glm::vec2(2 * surface_.columns(), 2 * surface_.rows()));
-    program.set("uFirst", 1.0F);
+    const shapes::PlaceUniforms places = surface_.places();
+    program.set("uCell", places.cell);
+    program.set("uCells", places.cells);
+    program.set("uFirst", places.first);
 }
 
 GridMesh::Drawn GridMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-                               const std::function<void(const Box&)>& before) {
+                               const std::function<void(const shapes::Box&)>& before) {
     Drawn drawn;
     ++choice_;
     visitSeen(sceneToClip, culling, [&](int x, int y) {
@@ -169,10 +172,10 @@ int GridMesh::drawTriangles(const Chunk& chunk, const Indices& indices, const gl
         return indices.count / 3;
     }
     int first = 0, count = 0, triangles = 0;  // first and count: adjacent blocks that are not drawn yet
-    for (const TriangleBlock& block : indices.blocks) {
+    for (const shapes::TriangleBlock& block : indices.blocks) {
         const sand::CellRect vertices{chunk.vertices.x0 + block.quads.x0, chunk.vertices.y0 + block.quads.y0,
                                       chunk.vertices.x0 + block.quads.x1 + 1, chunk.vertices.y0 + block.quads.y1 + 1};
-        if (!inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
+        if (!shapes::inFrustum(boxOf(vertices, chunk.heights), *frustum)) {
             continue;
         }
         triangles += block.count / 3;

@@ -8,8 +8,7 @@
 
 namespace render_node {
 
-FlatPainter::FlatPainter()
-    : program_(shaderSource("flat/flat.vert.glsl"), ShaderSource{}, shaderSource("flat/flat.frag.glsl")) {
+FlatPainter::FlatPainter() : program_(shaderSource("flat.vert.glsl"), ShaderSource{}, shaderSource("flat.frag.glsl")) {
     glBindVertexArray(array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
     glEnableVertexAttribArray(0);

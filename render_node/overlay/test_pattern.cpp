@@ -58,7 +58,7 @@ TestPatternView::TestPatternView(const walls::Wall& wall, const walls::Tile& til
       host_(std::move(host)),
       corner_(cornerOf(wall, tile)),
       spacing_(gridSpacing(extentOf(wall, tile))),
-      gridProgram_(shaderSource("flat/whole.vert.glsl"), ShaderSource{}, shaderSource("flat/grid.frag.glsl")) {}
+      gridProgram_(shaderSource("whole.vert.glsl"), ShaderSource{}, shaderSource("grid.frag.glsl")) {}
 
 void TestPatternView::draw(Pattern pattern, Eye eye, std::uint64_t frame, const EyeTarget& target) {
     const glm::ivec2 size(target.width(), target.height());

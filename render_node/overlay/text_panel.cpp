@@ -39,7 +39,7 @@ TextPanel::TextPanel(const Sheet& sheet, glm::ivec2 topLeft, int tileHeight)
 }
 
 PanelPainter::PanelPainter()
-    : program_(shaderSource("flat/whole.vert.glsl"), ShaderSource{}, shaderSource("flat/panel.frag.glsl")) {}
+    : program_(shaderSource("whole.vert.glsl"), ShaderSource{}, shaderSource("panel.frag.glsl")) {}
 
 void PanelPainter::draw(const TextPanel& panel, const EyeTarget& target) const {
     const PixelRect& pixels = panel.pixels();

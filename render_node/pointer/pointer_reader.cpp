@@ -58,7 +58,7 @@ void fill(std::vector<Reading>& readings) {
     }
 }
 
-sand::HeightSpan inCells(const HeightRange& heights /* [scene unit] */, double cell) {
+sand::HeightSpan inCells(const shapes::HeightRange& heights /* [scene unit] */, double cell) {
     return {heights.lowest / cell, heights.highest / cell};
 }
 
@@ -128,7 +128,8 @@ void PointerReader::followView(const Shown& shown, PointerReport& report) {
 }
 
 PointerReport PointerReader::read(std::span<const PointerEvent> events, const sand::Replica& replica,
-                                  const lockstep::ViewState& view, HeightRange heights, std::int64_t clockAhead) {
+                                  const lockstep::ViewState& view, shapes::HeightRange heights,
+                                  std::int64_t clockAhead) {
     PointerReport report;
     readings_.clear();
     for (const PointerEvent& event : events) {

@@ -12,8 +12,8 @@
 #include "lockstep/frame_message.hpp"
 #include "render_node/gl/gl_platform.hpp"
 #include "render_node/pointer/window_ray.hpp"
-#include "render_node/surface/height_range.hpp"
 #include "sand/replica.hpp"
+#include "shapes/model/height_range.hpp"
 #include "walls/wall.hpp"
 
 namespace render_node {
@@ -33,7 +33,7 @@ public:
     /// @param heights  No height of the sand is outside of these [scene unit].
     /// @param clockAhead  This rank's clock − master's clock [ns].
     [[nodiscard]] haptic_bridge::PointerReport read(std::span<const PointerEvent> events, const sand::Replica& replica,
-                                                    const lockstep::ViewState& view, HeightRange heights,
+                                                    const lockstep::ViewState& view, shapes::HeightRange heights,
                                                     std::int64_t clockAhead);
 
 private:
@@ -47,7 +47,7 @@ private:
     struct Shown {
         const sand::Replica& replica;
         const lockstep::ViewState& view;
-        HeightRange heights;
+        shapes::HeightRange heights;
     };
     enum class Drag : std::uint8_t { none, turn, pan };
 

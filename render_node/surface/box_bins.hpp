@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "render_node/surface/frustum.hpp"
+#include "shapes/model/box.hpp"
 
 namespace render_node {
 
@@ -13,15 +13,15 @@ namespace render_node {
 class BoxBins {
 public:
     BoxBins(double width, double depth /* of the field [scene unit] */);
-    void add(const Box& box);
+    void add(const shapes::Box& box);
     /// Returns boxes around all boxes that were added since the last call.
-    [[nodiscard]] std::vector<Box> take();
+    [[nodiscard]] std::vector<shapes::Box> take();
 
 private:
     static constexpr int kSide = 32;               // [bin]
     static constexpr std::size_t kMostBoxes = 36;  // largest number of boxes that take() returns
     double acrossWidth_, acrossDepth_;             // bins per scene unit
-    std::vector<std::optional<Box>> bins_;
+    std::vector<std::optional<shapes::Box>> bins_;
     std::vector<int> used_;
 };
 

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "render_node/gl/gl_program.hpp"
-#include "render_node/surface/frustum.hpp"
-#include "render_node/surface/height_range.hpp"
 #include "render_node/surface/level_rule.hpp"
-#include "render_node/surface/sand_rim.hpp"
 #include "sand/model/surface_data.hpp"
+#include "shapes/model/box.hpp"
+#include "shapes/model/height_range.hpp"
+#include "shapes/model/sand_rim.hpp"
 
 namespace render_node {
 
@@ -52,7 +52,7 @@ public:
     /// may be a part of the picture for which `rule` was made. Either the program is in use, or `before` chooses one
     /// for the box of each chunk.
     virtual Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-                       const std::function<void(const Box&)>& before) = 0;
+                       const std::function<void(const shapes::Box&)>& before) = 0;
     /// Draws the marks of this kind of surface over the wires. `prepare` is called with the program and must set it up.
     virtual void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                            const std::function<void(const GlProgram&)>& prepare) {
@@ -63,14 +63,14 @@ public:
     [[nodiscard]] virtual DrawnLevels levelsWithin(const glm::dmat4& sceneToClip, const LevelRule& rule) = 0;
     /// Returns boxes around all differences from a picture that was drawn at `revision` by the same rule at these
     /// levels. Updates `levels`.
-    [[nodiscard]] virtual std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
-                                                        const LevelRule& rule) = 0;
+    [[nodiscard]] virtual std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels& levels,
+                                                                const LevelRule& rule) = 0;
     /// Returns the number of updates that changed something.
     [[nodiscard]] virtual std::uint64_t revision() const = 0;
     /// Returns the lowest and the highest height that any sand has ever had.
-    [[nodiscard]] virtual HeightRange heightsEver() const = 0;
+    [[nodiscard]] virtual shapes::HeightRange heightsEver() const = 0;
     /// Returns the current edge of the sand.
-    [[nodiscard]] virtual SandRim rim() const = 0;
+    [[nodiscard]] virtual shapes::SandRim rim() const = 0;
 
     [[nodiscard]] virtual int chunks() const = 0;
     /// Returns the memory of vertices and indices in GL [byte].

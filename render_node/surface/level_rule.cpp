@@ -13,11 +13,11 @@ LevelRule::LevelRule(const glm::dmat4& sceneToClip, glm::ivec2 size, double boun
 ///
 /// All tiles of a plane get the same value. Their clip coordinates differ by a scale and by a multiple of w. The number
 /// of pixels compensates the scale, and the difference below removes the multiple of w.
-double LevelRule::pixelsPerUnit(const Box& box) const {
+double LevelRule::pixelsPerUnit(const shapes::Box& box) const {
     double nearest = std::numeric_limits<double>::infinity();
     glm::dvec2 most(0);
     const glm::dvec4 up = sceneToClip_[2];
-    for (const glm::dvec3& corner : cornersOf(box)) {
+    for (const glm::dvec3& corner : shapes::cornersOf(box)) {
         const glm::dvec4 clip = sceneToClip_ * glm::dvec4(corner, 1);
         nearest = std::min(nearest, clip.w);
         most = glm::max(most, glm::abs(glm::dvec2(up) * clip.w - glm::dvec2(clip) * up.w));
@@ -25,7 +25,7 @@ double LevelRule::pixelsPerUnit(const Box& box) const {
     return nearest <= 0 ? std::numeric_limits<double>::infinity() : glm::length(half_ * most) / (nearest * nearest);
 }
 
-int LevelRule::level(const Box& box, const LevelErrors& errors, int coarsest) const {
+int LevelRule::level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const {
     if (needsEveryCell() || coarsest == 0) {
         return 0;
     }

@@ -4,18 +4,15 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "render_node/surface/frustum.hpp"
+#include "shapes/model/box.hpp"
+#include "shapes/model/levels.hpp"
 
 namespace render_node {
 
-/// Number of levels. Level l of a chunk uses every 2^l-th vertex of the sand, so that a coarser level only smooths the
-/// surface between its vertices.
-inline constexpr int kLevels = 5;
-
 /// Largest error of each level over all vertices of a chunk.
 struct LevelErrors {
-    std::array<float, kLevels> height{};  // [scene unit], along the vertical
-    std::array<float, kLevels> light{};   // share of the sun's full light, mottling included
+    std::array<float, shapes::kLevels> height{};  // [scene unit], along the vertical
+    std::array<float, shapes::kLevels> light{};   // share of the sun's full light, mottling included
 };
 
 /// Rule for the level at which a chunk is drawn.
@@ -32,12 +29,12 @@ public:
     /// Returns whether the rule chooses level 0 whatever the errors are.
     [[nodiscard]] bool needsEveryCell() const { return bound_ <= 0; }
     /// Returns whether a box may reach into the picture.
-    [[nodiscard]] bool sees(const Box& box) const { return inFrustum(box, sceneToClip_); }
+    [[nodiscard]] bool sees(const shapes::Box& box) const { return shapes::inFrustum(box, sceneToClip_); }
     /// Returns the level for the sand within `box`, at most `coarsest`.
-    [[nodiscard]] int level(const Box& box, const LevelErrors& errors, int coarsest) const;
+    [[nodiscard]] int level(const shapes::Box& box, const LevelErrors& errors, int coarsest) const;
 
 private:
-    [[nodiscard]] double pixelsPerUnit(const Box& box) const;
+    [[nodiscard]] double pixelsPerUnit(const shapes::Box& box) const;
 
     glm::dmat4 sceneToClip_;
     glm::dvec2 half_;  // [pixel], half of the picture's size

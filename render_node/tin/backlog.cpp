@@ -5,7 +5,7 @@
 
 namespace render_node {
 
-void TinBacklog::add(const sand::TinChange& change, const Box& box) {
+void TinBacklog::add(const sand::TinChange& change, const shapes::Box& box) {
     triangles_.add(change.triangles);
     vertices_.add(change.vertices);
     if (boxes_.size() < kMostBoxes) {
@@ -16,9 +16,9 @@ void TinBacklog::add(const sand::TinChange& change, const Box& box) {
 }
 
 bool TinBacklog::isSeen(std::span<const glm::dmat4> cameras) const {
-    return std::ranges::any_of(boxes_, [cameras](const Box& box) {
+    return std::ranges::any_of(boxes_, [cameras](const shapes::Box& box) {
         return cameras.empty() || std::ranges::any_of(cameras, [&box](const glm::dmat4& sceneToClip) {
-                   return inFrustum(box, sceneToClip);
+                   return shapes::inFrustum(box, sceneToClip);
                });
     });
 }

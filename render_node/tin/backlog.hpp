@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "base/index_set.hpp"
-#include "render_node/surface/frustum.hpp"
 #include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
+#include "shapes/model/box.hpp"
 
 namespace render_node {
 
@@ -20,7 +20,7 @@ namespace render_node {
 class TinBacklog {
 public:
     /// Adds changes that lie within `box`.
-    void add(const sand::TinChange& change, const Box& box);
+    void add(const sand::TinChange& change, const shapes::Box& box);
     /// Returns whether a camera sees some of the changes. `cameras` are matrices from the scene to clip coordinates. If
     /// the list is empty, returns whether there is any change.
     [[nodiscard]] bool isSeen(std::span<const glm::dmat4> cameras) const;
@@ -33,7 +33,7 @@ private:
     static constexpr std::size_t kMostBoxes = 32;
 
     base::IndexList triangles_, vertices_;
-    std::vector<Box> boxes_;
+    std::vector<shapes::Box> boxes_;
 };
 
 }  // namespace render_node

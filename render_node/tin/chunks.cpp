@@ -22,7 +22,7 @@ struct Ordered {
     friend auto operator<=>(const Ordered&, const Ordered&) = default;
 };
 
-bool overlapOnGround(const Box& a, const Box& b) {
+bool overlapOnGround(const shapes::Box& a, const shapes::Box& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
 }
 
@@ -38,7 +38,7 @@ TinChunks::TinChunks(std::int32_t width, std::int32_t depth, double side)
       side_(side),
       chunks_(static_cast<std::size_t>(across_) * static_cast<std::size_t>(depth / side + 1)) {}
 
-void TinChunks::replace(TinGeometry& geometry, std::int32_t slot, const TinTriangle& now) {
+void TinChunks::replace(shapes::TinGeometry& geometry, std::int32_t slot, const shapes::TinTriangle& now) {
     if (geometry.triangle(slot).alive()) {
         leaveChunk(slot);
     }
@@ -54,7 +54,7 @@ void TinChunks::replace(TinGeometry& geometry, std::int32_t slot, const TinTrian
     chunk.changed = chunk.reshaped = chunk.partsReshaped = true;
 }
 
-TinChunks::InChunk TinChunks::homeOf(const TinGeometry& geometry, const TinTriangle& triangle) const {
+TinChunks::InChunk TinChunks::homeOf(const shapes::TinGeometry& geometry, const shapes::TinTriangle& triangle) const {
     double x = 0, y = 0;  // [probe unit], sum of three corners
     for (const sand::tin::Vertex corner : triangle.corner) {
         x += geometry.vertex(corner).x;
@@ -66,8 +66,8 @@ TinChunks::InChunk TinChunks::homeOf(const TinGeometry& geometry, const TinTrian
             .part = row % kPartsAcross * kPartsAcross + column % kPartsAcross};
 }
 
-void TinChunks::keepHome(TinGeometry& geometry, std::int32_t slot) {
-    const TinTriangle same = geometry.triangle(slot);
+void TinChunks::keepHome(shapes::TinGeometry& geometry, std::int32_t slot) {
+    const shapes::TinTriangle same = geometry.triangle(slot);
     const InChunk &in = inChunk_[static_cast<std::size_t>(slot)], home = homeOf(geometry, same);
     if (in.chunk != home.chunk || in.part != home.part) {
         replace(geometry, slot, same);
@@ -90,7 +90,7 @@ void TinChunks::leaveChunk(std::int32_t slot) {
     in = {};
 }
 
-bool TinChunks::settle(const TinGeometry& geometry, TinChunk& chunk) {
+bool TinChunks::settle(const shapes::TinGeometry& geometry, TinChunk& chunk) {
     if (!chunk.changed) {
         return false;
     }
@@ -108,14 +108,14 @@ bool TinChunks::settle(const TinGeometry& geometry, TinChunk& chunk) {
     return true;
 }
 
-const std::vector<TinChunk::Part>& TinChunks::partsOf(const TinGeometry& geometry, TinChunk& chunk) const {
+const std::vector<TinChunk::Part>& TinChunks::partsOf(const shapes::TinGeometry& geometry, TinChunk& chunk) const {
     if (chunk.partsReshaped) {
         chunk.parts.clear();
         int last = -1;
         for (std::size_t i = 0; i < chunk.slots.size(); ++i) {
-            const TinTriangle& one = geometry.triangle(chunk.slots[i]);
+            const shapes::TinTriangle& one = geometry.triangle(chunk.slots[i]);
             const int number = inChunk_[static_cast<std::size_t>(chunk.slots[i])].part;
-            const Box box = geometry.boxOf(one);
+            const shapes::Box box = geometry.boxOf(one);
             if (std::exchange(last, number) != number) {
                 chunk.parts.push_back({i, i, box});
             }
@@ -128,7 +128,7 @@ const std::vector<TinChunk::Part>& TinChunks::partsOf(const TinGeometry& geometr
     return chunk.parts;
 }
 
-const Box& TinChunks::boxOf(const TinGeometry& geometry, TinChunk& chunk) {
+const shapes::Box& TinChunks::boxOf(const shapes::TinGeometry& geometry, TinChunk& chunk) {
     if (chunk.reshaped) {
         chunk.box = geometry.boxOf(geometry.triangle(chunk.slots.front()));
         for (const std::int32_t slot : chunk.slots) {
@@ -139,8 +139,8 @@ const Box& TinChunks::boxOf(const TinGeometry& geometry, TinChunk& chunk) {
     return chunk.box;
 }
 
-Box TinChunks::withChunksAt(const TinGeometry& geometry, const Box& box) {
-    Box all = box;
+shapes::Box TinChunks::withChunksAt(const shapes::TinGeometry& geometry, const shapes::Box& box) {
+    shapes::Box all = box;
     for (TinChunk& chunk : chunks_) {
         if (!chunk.slots.empty() && overlapOnGround(boxOf(geometry, chunk), box)) {
             all = around(all, boxOf(geometry, chunk));

@@ -54,16 +54,17 @@ void forEachRunOf(const std::vector<TinChunk::Part>& parts, const Wanted& wanted
 void describeTinVertex() {
     const auto attribute = [](GLuint index, GLint count, GLenum type, GLboolean normalised, std::size_t offset) {
         glEnableVertexAttribArray(index);
-        glVertexAttribPointer(index, count, type, normalised, sizeof(TinVertex), reinterpret_cast<const void*>(offset));
+        glVertexAttribPointer(index, count, type, normalised, sizeof(shapes::TinVertex),
+                              reinterpret_cast<const void*>(offset));
     };
-    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(TinVertex, height));
-    attribute(1, 2, GL_INT, GL_FALSE, offsetof(TinVertex, x));
-    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(TinVertex, normalEast));
-    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(TinVertex, open));
+    attribute(0, 1, GL_FLOAT, GL_FALSE, offsetof(shapes::TinVertex, height));
+    attribute(1, 2, GL_INT, GL_FALSE, offsetof(shapes::TinVertex, x));
+    attribute(2, 2, GL_SHORT, GL_TRUE, offsetof(shapes::TinVertex, normalEast));
+    attribute(3, 2, GL_UNSIGNED_SHORT, GL_TRUE, offsetof(shapes::TinVertex, open));
 }
 
 /// Returns the corners of a triangle, starting with corner `first`.
-Indices indicesOf(const TinTriangle& triangle, std::size_t first) {
+Indices indicesOf(const shapes::TinTriangle& triangle, std::size_t first) {
     const auto corner = [&](std::size_t i) { return static_cast<std::uint32_t>(triangle.corner[(first + i) % 3]); };
     return {corner(0), corner(1), corner(2)};
 }
@@ -97,9 +98,9 @@ bool TinMesh::update(const sand::SurfaceData& data, const sand::SurfaceChange& c
     const auto& parts = std::get<TinChange>(change.parts);
     bool rimToo = false;  // a change of the rim also changes the box around the sand, which is visible from everywhere
     if (!parts.triangles.empty() || !parts.vertices.empty()) {
-        const std::optional<Box> reach = surface_.reachOf(tin, parts);
+        const std::optional<shapes::Box> reach = surface_.reachOf(tin, parts);
         rimToo = !reach;
-        backlog_.add(parts, reach.value_or(Box{}));
+        backlog_.add(parts, reach.value_or(shapes::Box{}));
     }
     if (!rimToo && !backlog_.isSeen(cameras)) {
         return false;
@@ -114,13 +115,13 @@ bool TinMesh::takeOver(const TinVertices::Change& change) {
         return false;
     }
     ++revision_;
-    for (const Box& box : change.boxes) {
+    for (const shapes::Box& box : change.boxes) {
         changes_.add(revision_, box);
     }
     if (change.whole) {
         buffers_.clear();
         buffers_.resize(surface_.chunks().size());
-        bytes_ = room_ * sizeof(TinVertex);
+        bytes_ = room_ * sizeof(shapes::TinVertex);
     }
     if (change.whole || surface_.vertices().size() > room_) {
         sendAllVertices();
@@ -131,20 +132,20 @@ bool TinMesh::takeOver(const TinVertices::Change& change) {
 }
 
 void TinMesh::sendAllVertices() {
-    const std::vector<TinVertex>& all = surface_.vertices();
-    bytes_ -= room_ * sizeof(TinVertex);
+    const std::vector<shapes::TinVertex>& all = surface_.vertices();
+    bytes_ -= room_ * sizeof(shapes::TinVertex);
     // Leaves room, so that a growing surface is not sent whole each time.
     room_ = std::max(room_, all.size() + all.size() / 4);
-    bytes_ += room_ * sizeof(TinVertex);
+    bytes_ += room_ * sizeof(shapes::TinVertex);
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
-    glBufferData(GL_ARRAY_BUFFER, bytesOf<TinVertex>(room_), nullptr, GL_DYNAMIC_DRAW);
-    glBufferSubData(GL_ARRAY_BUFFER, 0, bytesOf<TinVertex>(all.size()), all.data());
+    glBufferData(GL_ARRAY_BUFFER, bytesOf<shapes::TinVertex>(room_), nullptr, GL_DYNAMIC_DRAW);
+    glBufferSubData(GL_ARRAY_BUFFER, 0, bytesOf<shapes::TinVertex>(all.size()), all.data());
 }
 
 void TinMesh::sendVertices(std::span<const Vertex> changed) {
     glBindBuffer(GL_ARRAY_BUFFER, vertices_.id());
     forEachRun(changed, [this](std::size_t first, std::size_t end) {
-        glBufferSubData(GL_ARRAY_BUFFER, bytesOf<TinVertex>(first), bytesOf<TinVertex>(end - first),
+        glBufferSubData(GL_ARRAY_BUFFER, bytesOf<shapes::TinVertex>(first), bytesOf<shapes::TinVertex>(end - first),
                         &surface_.vertices()[first]);
     });
 }
@@ -159,14 +160,14 @@ template <class Visit>
 void TinMesh::visitSeen(const glm::dmat4& sceneToClip, bool culling, const Visit& visit) {
     for (std::size_t i = 0; i < buffers_.size(); ++i) {
         TinChunk& chunk = surface_.chunks()[i];
-        if (!chunk.slots.empty() && (!culling || inFrustum(surface_.boxOf(chunk), sceneToClip))) {
+        if (!chunk.slots.empty() && (!culling || shapes::inFrustum(surface_.boxOf(chunk), sceneToClip))) {
             visit(i);
         }
     }
 }
 
 DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule&,
-                                  const std::function<void(const Box&)>& before) {
+                                  const std::function<void(const shapes::Box&)>& before) {
     Drawn drawn;
     glBindVertexArray(array_.id());
     visitSeen(sceneToClip, culling, [&](std::size_t i) {
@@ -176,7 +177,9 @@ DrawnSurface::Drawn TinMesh::draw(const glm::dmat4& sceneToClip, bool culling, c
             before(surface_.boxOf(chunk));
         }
         ++drawn.chunks;
-        const auto seen = [&](const TinChunk::Part& part) { return !culling || inFrustum(part.box, sceneToClip); };
+        const auto seen = [&](const TinChunk::Part& part) {
+            return !culling || shapes::inFrustum(part.box, sceneToClip);
+        };
         forEachRunOf(surface_.partsOf(chunk), seen, [&](std::size_t first, std::size_t end) {
             const auto count = static_cast<int>(end - first);
             glDrawElements(GL_TRIANGLES, 3 * count, GL_UNSIGNED_INT,
@@ -234,7 +237,7 @@ void TinMesh::sendMarks(std::size_t i) {
     }
     std::vector<Indices> marks;
     for (const std::int32_t slot : surface_.chunks()[i].slots) {
-        const TinTriangle& triangle = surface_.triangles()[static_cast<std::size_t>(slot)];
+        const shapes::TinTriangle& triangle = surface_.triangles()[static_cast<std::size_t>(slot)];
         for (std::size_t edge = 0; edge < 3; ++edge) {
             if (triangle.marked[edge]) {
                 marks.push_back(indicesOf(triangle, edge));
@@ -253,8 +256,8 @@ void TinMesh::sendMarks(std::size_t i) {
     }
 }
 
-std::vector<Box> TinMesh::changesSince(std::uint64_t revision, DrawnLevels&, const LevelRule&) {
-    std::vector<Box> boxes;
+std::vector<shapes::Box> TinMesh::changesSince(std::uint64_t revision, DrawnLevels&, const LevelRule&) {
+    std::vector<shapes::Box> boxes;
     for (const auto& part : changes_.since(revision)) {
         boxes.push_back(part.where);
     }

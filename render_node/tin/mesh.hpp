@@ -26,15 +26,16 @@ public:
                               std::span<const glm::dmat4> cameras) override;
     void prepare(const GlProgram& program) const override;
     Drawn draw(const glm::dmat4& sceneToClip, bool culling, const LevelRule& rule,
-               const std::function<void(const Box&)>& before) override;
+               const std::function<void(const shapes::Box&)>& before) override;
     /// Draws the constraints.
     void drawMarks(const glm::dmat4& sceneToClip, bool culling,
                    const std::function<void(const GlProgram&)>& prepare) override;
     [[nodiscard]] DrawnLevels levelsWithin(const glm::dmat4&, const LevelRule&) override { return {}; }
-    [[nodiscard]] std::vector<Box> changesSince(std::uint64_t revision, DrawnLevels&, const LevelRule&) override;
+    [[nodiscard]] std::vector<shapes::Box> changesSince(std::uint64_t revision, DrawnLevels&,
+                                                        const LevelRule&) override;
     [[nodiscard]] std::uint64_t revision() const override { return revision_; }
-    [[nodiscard]] HeightRange heightsEver() const override { return surface_.heightsEver(); }
-    [[nodiscard]] SandRim rim() const override { return surface_.rim(); }
+    [[nodiscard]] shapes::HeightRange heightsEver() const override { return surface_.heightsEver(); }
+    [[nodiscard]] shapes::SandRim rim() const override { return surface_.rim(); }
     [[nodiscard]] int chunks() const override { return static_cast<int>(buffers_.size()); }
     [[nodiscard]] std::size_t bytes() const override { return bytes_; }
     [[nodiscard]] std::int64_t placesRead() const override { return placesRead_; }
@@ -67,7 +68,7 @@ private:
     std::size_t bytes_ = 0;
     std::int64_t placesRead_ = 0;
     std::uint64_t revision_ = 0;
-    ChangeHistory<Box> changes_;
+    ChangeHistory<shapes::Box> changes_;
     TrianglePace pace_;
 };
 

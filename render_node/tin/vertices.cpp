@@ -36,7 +36,7 @@ TinVertices::TinVertices(const SurfaceView& tin, double cellSize, double chunkSi
     elsewhere_ = std::vector<Vertex>();  // frees the room for all vertices
     for (std::size_t slot = 0; slot < mesh.triangles.size(); ++slot) {
         const auto number = static_cast<std::int32_t>(slot);
-        chunks_.replace(geometry_, number, TinGeometry::drawnOf(mesh, number));
+        chunks_.replace(geometry_, number, shapes::TinGeometry::drawnOf(mesh, number));
         keepCuts(number, true);
     }
     light_.lightAll(tin, geometry_, all);
@@ -65,7 +65,7 @@ TinVertices::Change TinVertices::update(const SurfaceView& tin, const sand::TinC
     Change change;
     const Triangles& mesh = tin.triangles;
     grow(mesh);
-    const auto drawn = [&](std::int32_t slot) { return TinGeometry::drawnOf(mesh, slot); };
+    const auto drawn = [&](std::int32_t slot) { return shapes::TinGeometry::drawnOf(mesh, slot); };
     std::vector<std::int32_t> replaced;
     for (const std::int32_t slot : sandChange.triangles) {
         if (geometry_.triangle(slot) != drawn(slot)) {
@@ -131,16 +131,16 @@ void TinVertices::addBoxes(const std::vector<std::int32_t>& slots) {
     }
 }
 
-std::optional<Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
-    const TinBounds changed = geometry_.boundsOf(tin, sandChange);
+std::optional<shapes::Box> TinVertices::reachOf(const SurfaceView& tin, const sand::TinChange& sandChange) {
+    const shapes::TinBounds changed = geometry_.boundsOf(tin, sandChange);
     if (hasHoles_ || changed.west <= 0 || changed.south <= 0 || changed.east >= width_ || changed.north >= depth_) {
         return std::nullopt;
     }
     const double probe = geometry_.probe;
-    const Box reach{{changed.west * probe, changed.south * probe, changed.lowest},
-                    {changed.east * probe, changed.north * probe, changed.highest}};
+    const shapes::Box reach{{changed.west * probe, changed.south * probe, changed.lowest},
+                            {changed.east * probe, changed.north * probe, changed.highest}};
     // Vertices within this distance see a changed sky, and the triangles around them are shaded again.
-    const double margin = TinLight::kReach * geometry_.cellSize;
+    const double margin = shapes::TinLight::kReach * geometry_.cellSize;
     return chunks_.withChunksAt(geometry_, {reach.low - margin, reach.high + margin});
 }
 
@@ -149,8 +149,8 @@ bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices)
     bool rim = false;
     elsewhere_.clear();
     for (const Vertex number : vertices) {
-        TinVertex& drawn = geometry_.vertex(number);
-        const TinVertex before = std::exchange(drawn, geometry_.placed(tin, number));
+        shapes::TinVertex& drawn = geometry_.vertex(number);
+        const shapes::TinVertex before = std::exchange(drawn, geometry_.placed(tin, number));
         if (before.x != drawn.x || before.y != drawn.y) {
             light_.move(number, before, drawn);
             if (drawn.x >= 0) {
@@ -158,7 +158,7 @@ bool TinVertices::move(const SurfaceView& tin, std::span<const Vertex> vertices)
             }
         }
         if (drawn.x >= 0) {
-            drawn.mottling = TinLight::mottlingOf(drawn.x, drawn.y);
+            drawn.mottling = shapes::TinLight::mottlingOf(drawn.x, drawn.y);
             widen(tin, number);
             rim |= cutsAt_[static_cast<std::size_t>(number)] > 0;
         }
@@ -182,7 +182,7 @@ void TinVertices::widen(const SurfaceView& tin, Vertex number) {
 
 bool TinVertices::keepCuts(std::int32_t slot, bool present) {
     constexpr std::int32_t kSquare = 32 * kCell;  // [probe unit]
-    const TinTriangle& triangle = geometry_.triangle(slot);
+    const shapes::TinTriangle& triangle = geometry_.triangle(slot);
     bool any = false;
     for (std::size_t corner = 0; corner < 3 && triangle.alive(); ++corner) {
         if (!triangle.cut.at(corner)) {
@@ -190,7 +190,7 @@ bool TinVertices::keepCuts(std::int32_t slot, bool present) {
         }
         any = true;
         const Vertex from = triangle.corner.at((corner + 1) % 3), to = triangle.corner.at((corner + 2) % 3);
-        const TinVertex& begin = geometry_.vertex(from);
+        const shapes::TinVertex& begin = geometry_.vertex(from);
         for (const Vertex end : {from, to}) {
             cutsAt_[static_cast<std::size_t>(end)] += present ? 1 : -1;
         }
@@ -203,15 +203,15 @@ bool TinVertices::keepCuts(std::int32_t slot, bool present) {
     return any;
 }
 
-SandRim TinVertices::rim() const {
-    SandRim rim{glm::vec2(width_ * geometry_.probe, depth_ * geometry_.probe), {}, hasHoles_};
+shapes::SandRim TinVertices::rim() const {
+    shapes::SandRim rim{glm::vec2(width_ * geometry_.probe, depth_ * geometry_.probe), {}, hasHoles_};
     std::vector<std::tuple<std::int32_t, std::int32_t, std::size_t>> cuts;  // square, slot, corner
     for (const auto& [edge, square] : cuts_) {
         cuts.emplace_back(square, edge.first, edge.second);
     }
     std::ranges::sort(cuts);  // so that neighbouring edges follow each other
     for (const auto& [square, slot, corner] : cuts) {
-        const TinTriangle& triangle = geometry_.triangle(slot);
+        const shapes::TinTriangle& triangle = geometry_.triangle(slot);
         rim.cuts.push_back({glm::vec3(geometry_.at(triangle.corner.at((corner + 1) % 3))),
                             glm::vec3(geometry_.at(triangle.corner.at((corner + 2) % 3)))});
     }

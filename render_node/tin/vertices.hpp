@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "base/index_set.hpp"
-#include "render_node/grid/vertices.hpp"
 #include "render_node/surface/box_bins.hpp"
-#include "render_node/surface/frustum.hpp"
-#include "render_node/surface/sand_rim.hpp"
 #include "render_node/tin/chunks.hpp"
-#include "render_node/tin/geometry.hpp"
-#include "render_node/tin/light.hpp"
 #include "sand/model/surface_data.hpp"
 #include "sand/tin/geometry/surface_view.hpp"
+#include "shapes/grid/vertices.hpp"
+#include "shapes/model/box.hpp"
+#include "shapes/model/sand_rim.hpp"
+#include "shapes/tin/geometry.hpp"
+#include "shapes/tin/light.hpp"
 
 namespace render_node {
 
@@ -42,7 +42,7 @@ public:
         bool whole = false;                       // everything has changed
         bool rim = false;                         // the edge of the sand has changed
         std::vector<sand::tin::Vertex> vertices;  // changed vertices, in ascending order
-        std::vector<Box> boxes;                   // around everything that looks different, before and after
+        std::vector<shapes::Box> boxes;           // around everything that looks different, before and after
     };
     [[nodiscard]] Change update(const sand::tin::SurfaceView& tin, const sand::TinChange& sandChange);
     /// Replaces the whole surface, as an update of everything would.
@@ -52,10 +52,11 @@ public:
     ///
     /// The boxes of all changes of the sand since the last update together bound the result of one update with all of
     /// them.
-    [[nodiscard]] std::optional<Box> reachOf(const sand::tin::SurfaceView& tin, const sand::TinChange& sandChange);
+    [[nodiscard]] std::optional<shapes::Box> reachOf(const sand::tin::SurfaceView& tin,
+                                                     const sand::TinChange& sandChange);
 
-    [[nodiscard]] const std::vector<TinVertex>& vertices() const { return geometry_.vertices; }
-    [[nodiscard]] const std::vector<TinTriangle>& triangles() const { return geometry_.triangles; }  // by slot
+    [[nodiscard]] const std::vector<shapes::TinVertex>& vertices() const { return geometry_.vertices; }
+    [[nodiscard]] const std::vector<shapes::TinTriangle>& triangles() const { return geometry_.triangles; }  // by slot
     [[nodiscard]] std::vector<TinChunk>& chunks() { return chunks_.all(); }
     /// Sorts the triangles of a chunk by part and by corners. Returns whether they differ from those at the last call.
     /// The order matters because it is visible where wires cross at a ridge.
@@ -65,10 +66,10 @@ public:
         return chunks_.partsOf(geometry_, chunk);
     }
     /// Returns the box around a chunk that has triangles.
-    [[nodiscard]] const Box& boxOf(TinChunk& chunk) const { return TinChunks::boxOf(geometry_, chunk); }
+    [[nodiscard]] const shapes::Box& boxOf(TinChunk& chunk) const { return TinChunks::boxOf(geometry_, chunk); }
     /// Returns the lowest and the highest height that any vertex of ground has ever had.
-    [[nodiscard]] HeightRange heightsEver() const { return ever_; }
-    [[nodiscard]] SandRim rim() const;
+    [[nodiscard]] shapes::HeightRange heightsEver() const { return ever_; }
+    [[nodiscard]] shapes::SandRim rim() const;
 
 private:
     using Vertex = sand::tin::Vertex;
@@ -83,11 +84,11 @@ private:
     void addBoxes(const std::vector<std::int32_t>& slots);
 
     std::int32_t width_, depth_;  // [probe unit]
-    TinGeometry geometry_;
+    shapes::TinGeometry geometry_;
     TinChunks chunks_;
-    TinLight light_;
+    shapes::TinLight light_;
     BoxBins changedBoxes_;
-    HeightRange ever_{};
+    shapes::HeightRange ever_{};
     bool hasHoles_;  // never changes
     // Edges at which the sand is cut: slot and opposite corner, with a square of the field in which the edge was made.
     std::map<std::pair<std::int32_t, std::size_t>, std::int32_t> cuts_;

@@ -24,7 +24,7 @@ struct Ring {
 };
 
 /// Adds the faces between two circles.
-void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring& low, const Ring& high) {
+void addBand(std::vector<shapes::SolidVertex>& out, const ForceArrow& arrow, const Ring& low, const Ring& high) {
     const glm::vec3 axis = glm::normalize(arrow.to - arrow.from);
     const glm::vec3 aside = std::abs(axis.z) < 0.9F ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0);
     const glm::vec3 first = glm::normalize(glm::cross(aside, axis));
@@ -33,7 +33,7 @@ void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring&
         const float angle = glm::two_pi<float>() * static_cast<float>(side) / kSides;
         const glm::vec3 outward = std::cos(angle) * first + std::sin(angle) * second;
         const glm::vec3 normal = glm::normalize((high.along - low.along) * outward + (low.radius - high.radius) * axis);
-        return SolidVertex{arrow.from + ring.along * axis + ring.radius * outward, normal, {0, 0}};
+        return shapes::SolidVertex{arrow.from + ring.along * axis + ring.radius * outward, normal, {0, 0}};
     };
     for (int side = 0; side < kSides; ++side) {
         for (const auto& [ring, step] :
@@ -45,12 +45,12 @@ void addBand(std::vector<SolidVertex>& out, const ForceArrow& arrow, const Ring&
 
 }  // namespace
 
-std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius) {
+std::vector<shapes::SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius) {
     const float length = glm::length(arrow.to - arrow.from);
     // A short arrow is a small arrow, so that it always has a shaft.
     const float size = toolRadius * std::min(1.0F, length / (1.5F * kHeadLength * toolRadius));
     const float neck = length - kHeadLength * size;
-    std::vector<SolidVertex> triangles;
+    std::vector<shapes::SolidVertex> triangles;
     addBand(triangles, arrow, {0, 0}, {0, kShaft * size});
     addBand(triangles, arrow, {0, kShaft * size}, {neck, kShaft * size});
     addBand(triangles, arrow, {neck, kShaft * size}, {neck, kHead * size});
@@ -58,7 +58,7 @@ std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius) {
     return triangles;
 }
 
-Box boxOf(const ForceArrow& arrow, float toolRadius) {
+shapes::Box boxOf(const ForceArrow& arrow, float toolRadius) {
     const double wide = 1.01 * double{kHead} * double{toolRadius};  // a little more, for rounding of GL's floats
     return {glm::dvec3(glm::min(arrow.from, arrow.to)) - wide, glm::dvec3(glm::max(arrow.from, arrow.to)) + wide};
 }

@@ -6,7 +6,7 @@
 
 #include "render_node/gl/gl_program.hpp"
 #include "render_node/gl/solid_mesh.hpp"
-#include "render_node/surface/frustum.hpp"
+#include "shapes/model/box.hpp"
 
 namespace render_node {
 
@@ -19,9 +19,9 @@ struct ForceArrow {
 
 /// Returns the triangles of an arrow: a shaft and a head, with a thickness for a tool of radius `toolRadius` [scene
 /// unit].
-[[nodiscard]] std::vector<SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius);
+[[nodiscard]] std::vector<shapes::SolidVertex> makeArrow(const ForceArrow& arrow, float toolRadius);
 /// Returns a box around the triangles of makeArrow().
-[[nodiscard]] Box boxOf(const ForceArrow& arrow, float toolRadius);
+[[nodiscard]] shapes::Box boxOf(const ForceArrow& arrow, float toolRadius);
 
 /// Arrow in GL. Used by one thread, with its context current.
 class ForceArrowView {

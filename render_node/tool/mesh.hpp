@@ -4,21 +4,9 @@
 #include <optional>
 
 #include "render_node/gl/solid_mesh.hpp"
-#include "render_node/surface/frustum.hpp"
-#include "render_node/tool/drawn_tool.hpp"
+#include "shapes/tool/mesh.hpp"
 
 namespace render_node {
-
-/// Returns the triangles of a sphere of radius 1 around the origin. They come from an icosahedron: each triangle is
-/// split into four, `splits` times.
-[[nodiscard]] std::vector<SolidVertex> makeSphere(int splits);
-/// Returns the triangles of a tool around its centre, scaled to radius 1. Flat tools and soles are plates
-/// on a handle.
-[[nodiscard]] std::vector<SolidVertex> makeTool(const sand::Tool& tool);
-/// Returns a box around makeTool() for any heading.
-[[nodiscard]] Box boxOfTool(const sand::Tool& tool);
-/// Returns a box around a tool at its place [scene unit].
-[[nodiscard]] Box bodyOf(const DrawnTool& drawn);
 
 /// Tool of radius 1 in GL. The shader moves and scales it.
 class ToolMesh {
@@ -29,13 +17,7 @@ public:
     void draw() const { mesh_.draw(); }
 
 private:
-    struct Shown {
-        sand::ToolKind kind;
-        double width;  // [radius]
-        sand::Heading heading;
-        friend bool operator==(const Shown&, const Shown&) = default;
-    };
-    std::optional<Shown> shown_;
+    std::optional<shapes::ToolForm> shown_;
     SolidMesh mesh_;
 };
 

@@ -14,7 +14,7 @@ constexpr double kPenumbra = 0.08 + 0.01, kPenumbraGrowth = 0.07;
 constexpr double kBegins = 1.2;   // higher above the centre there is no shadow
 constexpr double kLowSun = 0.25;  // least z of `sun_`; below it the shadow is too long to be bounded at two heights
 
-bool overlap(const Box& a, const Box& b) {
+bool overlap(const shapes::Box& a, const shapes::Box& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
 }
 
@@ -22,22 +22,22 @@ bool overlap(const Box& a, const Box& b) {
 
 double ToolReach::halfWidth(double along) const { return (1 + kPenumbra) * radius_ + kPenumbraGrowth * along; }
 
-Box ToolReach::shadowAt(double along) const {
+shapes::Box ToolReach::shadowAt(double along) const {
     const glm::dvec3 middle = centre_ - along * sun_;
     return {middle - halfWidth(along), middle + halfWidth(along)};
 }
 
-bool ToolReach::meets(const Box& box) const {
+bool ToolReach::meets(const shapes::Box& box) const {
     const glm::dvec3 apart = centre_ - glm::clamp(centre_, box.low, box.high);
     const double reach = kSkyReach * radius_;
     if (glm::dot(apart, apart) <= reach * reach) {
         return true;
     }
-    const std::array<Box, 2> shadow = shadowBetween(box.low.z, box.high.z);
+    const std::array<shapes::Box, 2> shadow = shadowBetween(box.low.z, box.high.z);
     return overlap(box, around(shadow.front(), shadow.back()));
 }
 
-Box ToolReach::closeBy(double lowest, double highest) const {
+shapes::Box ToolReach::closeBy(double lowest, double highest) const {
     const double reach = kSkyReach * radius_;
     // If the tool is high above everything, the sphere in which it takes skylight reaches only little of the scene, or
     // misses it.
@@ -49,7 +49,7 @@ Box ToolReach::closeBy(double lowest, double highest) const {
 
 // The cone of the shadow meets a height in an ellipse, elongated away from the sun. Every line within the cone passes
 // through the ellipses at both ends.
-Box ToolReach::shadowAtHeight(double height) const {
+shapes::Box ToolReach::shadowAtHeight(double height) const {
     const double slant = std::hypot(sun_.x, sun_.y) / sun_.z;
     const double along = (centre_.z - height) / sun_.z;
     const double half = std::max(halfWidth(0), halfWidth(along) / (1 - kPenumbraGrowth * slant));
@@ -58,7 +58,7 @@ Box ToolReach::shadowAtHeight(double height) const {
     return {middle - wide, middle + wide};
 }
 
-std::array<Box, 2> ToolReach::shadowBetween(double lowest, double highest) const {
+std::array<shapes::Box, 2> ToolReach::shadowBetween(double lowest, double highest) const {
     const double longest = kShadowLength * radius_;
     if (sun_.z < kLowSun) {
         return {shadowAt(0), shadowAt(longest)};

@@ -4,9 +4,9 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "render_node/surface/frustum.hpp"
-#include "render_node/tool/drawn_tool.hpp"
-#include "render_node/tool/light.hpp"
+#include "shapes/model/box.hpp"
+#include "shapes/tool/drawn_tool.hpp"
+#include "shapes/tool/light.hpp"
 
 namespace render_node {
 
@@ -19,22 +19,22 @@ public:
     /// All lengths are in scene units. `sun` points towards the sun and has length 1. The radius is positive.
     ToolReach(const glm::dvec3& centre, double radius, const glm::dvec3& sun)
         : centre_(centre), radius_(radius), sun_(sun) {}
-    ToolReach(const DrawnTool& tool, const glm::dvec3& sun) : ToolReach(ToolLight(tool), sun) {}
+    ToolReach(const shapes::DrawnTool& tool, const glm::dvec3& sun) : ToolReach(shapes::ToolLight(tool), sun) {}
 
     /// Returns whether the tool may change the look of anything within a box.
-    [[nodiscard]] bool meets(const Box& box) const;
+    [[nodiscard]] bool meets(const shapes::Box& box) const;
     /// Returns the box in which the tool takes skylight away. All objects are between these heights.
-    [[nodiscard]] Box closeBy(double lowest, double highest) const;
+    [[nodiscard]] shapes::Box closeBy(double lowest, double highest) const;
     /// Returns two boxes. The convex hull of their corners contains the shadow between two heights. The second box is
     /// the lower one.
-    [[nodiscard]] std::array<Box, 2> shadowBetween(double lowest, double highest) const;
+    [[nodiscard]] std::array<shapes::Box, 2> shadowBetween(double lowest, double highest) const;
 
 private:
-    ToolReach(const ToolLight& light, const glm::dvec3& sun) : ToolReach(light.centre, light.radius, sun) {}
+    ToolReach(const shapes::ToolLight& light, const glm::dvec3& sun) : ToolReach(light.centre, light.radius, sun) {}
     // Returns half of the shadow's width at the distance `along` behind the tool [scene unit].
     [[nodiscard]] double halfWidth(double along) const;
-    [[nodiscard]] Box shadowAt(double along) const;
-    [[nodiscard]] Box shadowAtHeight(double height) const;  // around the ellipse of the shadow at this height
+    [[nodiscard]] shapes::Box shadowAt(double along) const;
+    [[nodiscard]] shapes::Box shadowAtHeight(double height) const;  // around the ellipse of the shadow at this height
 
     glm::dvec3 centre_;
     double radius_;

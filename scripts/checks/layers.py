@@ -7,8 +7,9 @@ a header, so it may only include headers of libraries that its library links PUB
 a circle, and a folder's own files are above its subfolders: they may include these, and these never include them, not even
 through other folders. This also holds in bench/ and tests/. A source is in the folder of the header that it implements.
 A header with the line `// Private to this folder.` is only included from its folder and from its tests. A folder holds at
-most 25 sources of one language. A header that declares one type, and no function, is named by it. A namespace is that of the top folder,
-with sand::grid, sand::tin, sand::force and scene::relax.
+most 25 sources of one language. shapes/, which the web page compiles, includes base/, sand/ and GLM alone, and no OpenGL.
+A header that declares one type, and no function, is named by it. A namespace is that of the top folder, with sand::grid,
+sand::tin, sand::force and scene::relax.
 
 usage: scripts/checks/layers.py BUILD [--svg FILE]   (BUILD: a configured build folder; drawing needs graphviz)
 """
@@ -27,6 +28,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_SOURCES = 25
 OTHER_LANGUAGES = ("py", "sh", "mjs", "ts", "glsl")
 PRIVATE = "// Private to this folder."
+# Pure folders, and all that they may include besides their own files and the standard library.
+PURE = {"shapes/": ("base/", "sand/", "glm/")}
 OUTER = ("tests/", "bench/", "examples/", "haptic_bridge/examples/")  # folders that no other folder may include
 # Folders of a module alone. It may include what the library that loads it may include.
 LOADED_BY = {"scene/gdal": "scene_import"}
@@ -181,6 +184,16 @@ def circles(project):
         yield from visit(folder)
 
 
+def impure(project):
+    """Yields a message for each header of another library, such as OpenGL, that a pure folder includes."""
+    for path, text in project.sources.items():
+        for folder, allowed in PURE.items():
+            for name in re.findall(r'^ *# *include *[<"]([^>"]+)[>"]', text, re.MULTILINE) if path.startswith(folder) else ():
+                standard = "/" not in name and "." not in name
+                if not standard and not name.startswith((folder, *allowed)):
+                    yield f"{path}: includes {name}; {folder} includes {', '.join(allowed)} and the standard library alone"
+
+
 def snake_case(name):
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])", "_", name).lower()
 
@@ -213,7 +226,7 @@ def foreign_namespaces(project):
             yield f"{path}: is in another namespace than {own}"
 
 
-CHECKS = (wrong_links, misplaced, crowded, circles, misnamed, foreign_namespaces)
+CHECKS = (wrong_links, misplaced, crowded, circles, impure, misnamed, foreign_namespaces)
 
 
 def faults(project):
@@ -241,7 +254,7 @@ def fingerprint(project):
     return hashlib.sha256(repr(sorted(project.drawn_edges())).encode()).hexdigest()[:16]
 
 
-COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "scene": "#dfe8c6", "journal": "#e6dce0", "web": "#c9e4e4", "haptic_bridge": "#f2cfc4",
+COLOURS = {"base": "#e9e4d8", "host": "#e9e4d8", "sand": "#f3dfb0", "shapes": "#f6ebcf", "scene": "#dfe8c6", "journal": "#e6dce0", "web": "#c9e4e4", "haptic_bridge": "#f2cfc4",
            "lockstep": "#cfdcef", "master": "#d9d0ea", "render_node": "#c9e4e4"}
 
 

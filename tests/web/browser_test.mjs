@@ -35,6 +35,16 @@ const colours = (page) => page.evaluate(async () => {
     return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
 });
 
+/** Switches cut and fill on and off, which must change the picture and bring it back. */
+async function cutAndFill(page) {
+    const picture = () => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(() => resolve(document.getElementById("sand").toDataURL())))));
+    const before = await picture();
+    await page.evaluate(() => document.getElementById("cut").click());
+    assert.notEqual(await picture(), before, "cut and fill has colours");
+    await page.evaluate(() => document.getElementById("cut").click());
+    assert.equal(await picture(), before);
+}
+
 /** Bad files leave the session as it is, and the page says what to do. Then goes on with a good one. */
 async function badFiles(page, good) {
     const input = await page.$("#files"), before = await page.evaluate(() => ({ ...document.body.dataset }));
@@ -74,6 +84,9 @@ try {
         }
         last = await open(session);
         assert.ok(await colours(last.page) > 100, "the picture shows sand");
+        if (await last.page.evaluate(() => !document.getElementById("cut").disabled)) {
+            await cutAndFill(last.page);
+        }
     }
     await badFiles(last.page, path.join(folder, sessions.at(-1)[0]));
     last.end();

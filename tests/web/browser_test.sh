@@ -3,6 +3,7 @@
 # Opens sessions in a browser, and compares them with the native program. usage:
 #   browser_test.sh chromium|firefox SESSION_FILES           two sessions, in the test run
 #   browser_test.sh chromium|firefox SESSION_FILES --all     all sessions that SESSION_FILES writes
+#   browser_test.sh chromium SESSION_FILES --pictures        the pictures of a grid, a TIN and three tools, with the wall's
 #   browser_test.sh chromium|firefox FOLDER_OF_A_SESSION...  these sessions, such as out/demo
 # Builds the page with what scripts/web.sh has fetched. Without that or the browser it says so, and its status is 77.
 set -euo pipefail
@@ -40,6 +41,11 @@ if [[ -d $2 ]]; then
         echo "$name.journal 1 $steps $hashes $hash" >>"$folder/list"
     done
     "${display[@]}" node tests/web/browser_test.mjs "$browser" "$folder" "$folder/list"
+    exit
+fi
+if [[ ${3:-} == --pictures ]]; then
+    "$2" "$folder" pictures
+    node scripts/figures/web_pictures.mjs "$folder/pictures" "$folder"/*.journal
     exit
 fi
 "$2" "$folder" >"$folder/list"

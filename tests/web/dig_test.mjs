@@ -42,15 +42,10 @@ function rest(count) {
     }
 }
 
-/** Returns the heights of a grid, or the sorted corners of a TIN's triangles. */
+/** Returns the heights of a grid, or the sorted vertices of a TIN's triangles. */
 function heights() {
-    if (replica._sw_draw() === 0) {
-        const at = replica._sw_heights() >> 2;
-        return replica.HEAP32.slice(at, at + replica._sw_columns() * replica._sw_rows());
-    }
-    const places = replica._sw_places() >> 2, corners = replica._sw_corners() >> 2;
-    const used = new Set(replica.HEAP32.slice(corners, corners + 3 * replica._sw_triangles()));
-    return [...used].map((vertex) => replica.HEAPF32.slice(places + 3 * vertex, places + 3 * vertex + 3).join(" ")).sort();
+    const pieces = loaded.draw(), of = (name) => pieces.find((piece) => piece[name])?.[name];
+    return of("heights") ?? [...new Set(of("triangles"))].map((vertex) => [of("aHeight")[vertex], of("aGrid")[2 * vertex], of("aGrid")[2 * vertex + 1]].join(" ")).sort();
 }
 const material = () => replica.HEAPF64.slice(replica._sw_material() >> 3, (replica._sw_material() >> 3) + 12);
 

@@ -60,4 +60,15 @@ class LoadedReplica {
         write(this.wasm.HEAPU8.subarray(at, at + length));
         this.good(this.wasm._sw_restore());
     }
+
+    /** Returns the pieces of a drawing, as Replica.draw() of web/replica.ts does. */
+    draw() {
+        const w = this.wasm, pieces = [], arrays = [Float32Array, Int32Array, Uint32Array, Int16Array, Uint16Array, Uint8Array];
+        this.good(w._sw_draw());
+        while (this.good(w._sw_next_piece()) === 1) {
+            pieces.push(Object.fromEntries(Array.from({ length: w._sw_arrays() }, (_, i) => [this.text(w._sw_array_name(i)),
+                new arrays[w._sw_array_type(i)](w.HEAPU8.buffer, w._sw_array(i), w._sw_array_length(i)).slice()])));
+        }
+        return pieces;
+    }
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes sessions for the test of the page's replica: the sample scenes, rock with walls, and every tool and edit.
-// usage: session_files FOLDER [times|hour]. Prints a line for each: FILE PARTS STEPS HASHES HASH.
-// `times` and `hour` write the longer sessions of scripts/figures/web_times.mjs.
+// usage: session_files FOLDER [pictures|times|hour]. Prints a line for each: FILE PARTS STEPS HASHES HASH.
+// `pictures` writes a few short sessions, whose last pictures scripts/figures/web_pictures.mjs compares. `times` and
+// `hour` write the longer sessions of scripts/figures/web_times.mjs.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,12 +21,18 @@
 
 namespace {
 
+/// Returns a scene whose picture has every cell, because a page has no levels of detail.
+scene::Scene withEveryCell(scene::Scene scene) {
+    scene.look.detail = 0;
+    return scene;
+}
+
 /// A session that is computed as it is written.
 class Written {
 public:
     /// If `owes`, each third step owes half of its sweeps, and the next one pays them.
     explicit Written(const scene::Scene& scene, bool owes = true)
-        : scene_(scene), sand_(scene_), journal_(scene_), owes_(owes) {}
+        : scene_(withEveryCell(scene)), sand_(scene_), journal_(scene_), owes_(owes) {}
 
     /// Adds a frame with `count` steps.
     void frame(int count, const std::function<sand::Step(std::uint64_t)>& make) {
@@ -125,9 +132,9 @@ void edit(Written& session, sand::Step& step, base::Bytes& saved) {
     step.edit.number = step.number;
 }
 
-void sampleScene(const std::string& name, const std::filesystem::path& folder) {
+void sampleScene(const std::string& name, const std::filesystem::path& folder, int frames = 45) {
     Written session(scene::loadScene("scenes/" + name + ".toml"));
-    for (int frame = 0; frame < 45; ++frame) {
+    for (int frame = 0; frame < frames; ++frame) {
         session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
     }
     session.end(folder / (name + ".journal"));
@@ -153,7 +160,7 @@ void everyEdit(const std::string& name, const scene::Scene& scene, const std::fi
 }
 
 /// Rock that is bare in places, walls, a band, long cells and an open rim, with every tool.
-void everyTool(const std::filesystem::path& folder) {
+void everyTool(const std::filesystem::path& folder, int frames = 200) {
     scene::Scene scene = samples::flatScene(97, 61, 6);
     sand::grid::makeDunes({.bed = 2, .height = 6, .length = 30, .seed = 5}, scene.terrain);
     auto ground = std::make_shared<sand::Ground>(scene.terrain.columns(), scene.terrain.rows());
@@ -173,32 +180,36 @@ void everyTool(const std::filesystem::path& folder) {
     scene.rules.rim = sand::Rim::open;
     Written session(scene, false);  // its hand never waits
     std::mt19937 random(73);
-    for (int frame = 0; frame < 200; ++frame) {
+    for (int frame = 0; frame < frames; ++frame) {
         session.frame(1, [&](std::uint64_t number) { return samples::wildStep(number, scene.rules, random); });
     }
     session.end(folder / "every_tool.journal");
 }
 
-/// A short session for each kind of tool, turned and mirrored. Its tool is in the sand at the end. The last session has
-/// wet sand.
-void everyShape(const std::filesystem::path& folder) {
-    for (int kind = 0; kind <= sand::kToolKinds; ++kind) {
-        const bool wet = kind == sand::kToolKinds;
-        scene::Scene scene = samples::flatScene(160, 120, 14);
-        sand::grid::makeDunes({.bed = 4, .height = 8, .length = 50, .seed = 3}, scene.terrain);
-        sand::Tool& tool = scene.rules.tuning.tool;
-        tool.kind = wet ? sand::ToolKind::sphere : static_cast<sand::ToolKind>(kind);
-        tool.halfWidth =
-            sand::isRound(tool.kind) ? 0 : static_cast<std::int32_t>(tool.radius * sand::usualWidth(tool.kind));
-        tool.heading = sand::headingOf(25, tool.kind == sand::ToolKind::footprint).value();
-        scene.material.humidity = wet ? 0.6 : 0;
-        Written session(scene);
-        for (int frame = 0; frame < 20; ++frame) {
-            session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
-        }
-        session.end(folder / (wet ? "wet.journal"
-                                  : fmt::format("tool_{}.journal",
-                                                sand::valuesOf(tool.kind).at(static_cast<std::size_t>(kind)).name)));
+/// A short session of a kind of tool, turned and mirrored. The tool is in the sand at the end.
+void shape(const std::string& name, sand::ToolKind kind, double humidity, const std::filesystem::path& folder,
+           int frames = 20) {
+    scene::Scene scene = samples::flatScene(160, 120, 14);
+    sand::grid::makeDunes({.bed = 4, .height = 8, .length = 50, .seed = 3}, scene.terrain);
+    sand::Tool& tool = scene.rules.tuning.tool;
+    tool.kind = kind;
+    tool.halfWidth = sand::isRound(kind) ? 0 : static_cast<std::int32_t>(tool.radius * sand::usualWidth(kind));
+    tool.heading = sand::headingOf(25, kind == sand::ToolKind::footprint).value();
+    scene.material.humidity = humidity;
+    Written session(scene);
+    for (int frame = 0; frame < frames; ++frame) {
+        session.frame(2, [&](std::uint64_t number) { return loops(session, number); });
+    }
+    session.end(folder / (name + ".journal"));
+}
+
+/// Sessions of one grid, one TIN and three tools.
+void forPictures(const std::filesystem::path& folder) {
+    constexpr int kFrames = 3;
+    everyTool(folder, kFrames);
+    sampleScene("gis_tin", folder, kFrames);
+    for (const sand::ToolKind kind : {sand::ToolKind::sphere, sand::ToolKind::rectangle, sand::ToolKind::footprint}) {
+        shape(fmt::format("tool_{}", base::nameOf(kind)), kind, 0, folder, kFrames);
     }
 }
 
@@ -220,11 +231,15 @@ void longSession(const std::string& name, const std::string& file, double radius
 
 int main(int count, char** arguments) {
     const std::string what = count == 3 ? arguments[2] : "";
-    if (count < 2 || count > 3 || (count == 3 && what != "times" && what != "hour")) {
-        fmt::print(stderr, "usage: session_files FOLDER [times|hour]\n");
+    if (count < 2 || count > 3 || (count == 3 && what != "pictures" && what != "times" && what != "hour")) {
+        fmt::print(stderr, "usage: session_files FOLDER [pictures|times|hour]\n");
         return 2;
     }
     const std::filesystem::path folder = arguments[1];
+    if (what == "pictures") {
+        forPictures(folder);
+        return 0;
+    }
     if (what == "times") {
         longSession("writing", "small_tool", 2.56, 1800, 4, folder);
         longSession("writing", "large_tool", 12, 1800, 4, folder);
@@ -242,6 +257,9 @@ int main(int count, char** arguments) {
     everyEdit("edits_of_a_grid", scene::loadScene("scenes/stroke.toml"), folder);
     everyEdit("edits_of_a_tin", scene::loadScene("scenes/gis_tin.toml"), folder);
     everyTool(folder);
-    everyShape(folder);
+    for (const auto& [kind, name] : sand::valuesOf(sand::ToolKind{})) {
+        shape(fmt::format("tool_{}", name), kind, 0, folder);
+    }
+    shape("wet", sand::ToolKind::sphere, 0.6, folder);
     return 0;
 }

@@ -10,7 +10,7 @@
 
 namespace {
 
-using render_node::GridVertices;
+using shapes::GridVertices;
 
 constexpr int kBlock = GridVertices::kBlock;
 

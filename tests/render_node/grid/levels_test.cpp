@@ -18,9 +18,9 @@ namespace {
 
 using render_node::ChunkLevels;
 using render_node::EyeTarget;
-using render_node::GridVertex;
-using render_node::GridVertices;
 using render_node::ScenePainter;
+using shapes::GridVertex;
+using shapes::GridVertices;
 using VertexBits = std::array<std::uint32_t, 4>;
 
 constexpr int kSide = 32;   // [quad], side of a chunk
@@ -56,7 +56,7 @@ class Patchwork {
 public:
     explicit Patchwork(std::uint32_t seed) : random_(seed) {
         for (int& level : levels_) {
-            level = static_cast<int>(random_() % render_node::kLevels);
+            level = static_cast<int>(random_() % shapes::kLevels);
         }
     }
     [[nodiscard]] ChunkLevels at(int x, int y) const {
@@ -141,8 +141,8 @@ TEST(Levels, AreAsFarFromTheSandAsTheySay) {
     const glm::vec3 sun = glm::normalize(glm::vec3(-0.55, 0.35, 0.6));
     for (int chunk = 0; chunk < kChunks * kChunks; chunk += 3) {
         const sand::CellRect vertices = chunkAt(chunk % kChunks, chunk / kChunks);
-        const auto errors = render_node::errorsOf(surface, vertices, sun, render_node::kLevels - 1);
-        for (int level = 1; level < render_node::kLevels; ++level) {
+        const auto errors = render_node::errorsOf(surface, vertices, sun, shapes::kLevels - 1);
+        for (int level = 1; level < shapes::kLevels; ++level) {
             const double said = errors.height[static_cast<std::size_t>(level)];
             // The north and east edges belong to the chunks beyond them.
             const double whole = distanceOf(surface, vertices, {level, {level, level, level, level}});
@@ -159,14 +159,6 @@ TEST(Levels, CountMottlingAsTheShaderShadesIt) {
     EXPECT_NE(shader.find("* (0.86 + 0.28 * mottling)"), std::string::npos) << shader;
 }
 
-TEST(Levels, OfASmallFieldAreNone) {
-    EXPECT_EQ(render_node::coarsestLevel(128, 128), 0);
-    EXPECT_EQ(render_node::coarsestLevel(255, 64), 0);
-    EXPECT_EQ(render_node::coarsestLevel(256, 64), 1);
-    EXPECT_EQ(render_node::coarsestLevel(512, 512), 2);
-    EXPECT_EQ(render_node::coarsestLevel(16384, 16384), render_node::kLevels - 1);
-}
-
 // Tiles of one plane, seen by one eye, must draw each chunk alike.
 TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     const walls::Wall wall = walls::loadWall(sample::wallFolder() / "tiled_3x4.toml");
@@ -176,14 +168,14 @@ TEST(Levels, AreThoseOfEveryTileOfAPlane) {
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 low(random(source, 2), random(source, 2), 0);
         render_node::LevelErrors errors;
-        for (std::size_t level = 1; level < render_node::kLevels; ++level) {
+        for (std::size_t level = 1; level < shapes::kLevels; ++level) {
             errors.height[level] = static_cast<float>(random(source, 1e-3)) + errors.height[level - 1];
         }
-        std::array<int, render_node::kLevels> asked{};
+        std::array<int, shapes::kLevels> asked{};
         for (const walls::Tile& tile : wall.tiles) {
             const auto seen = walls::viewOf(tile.screen, wall.viewer.eye, wall.clip.near, wall.clip.far);
             const render_node::LevelRule rule(seen.viewProjection * sceneToRoom, tile.pixels, 0.5);
-            ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, render_node::kLevels - 1)));
+            ++asked.at(static_cast<std::size_t>(rule.level({low, low + 0.03}, errors, shapes::kLevels - 1)));
         }
         EXPECT_EQ(*std::ranges::max_element(asked), static_cast<int>(wall.tiles.size())) << "box " << i;
         coarse += asked[0] == 0 ? 1 : 0;

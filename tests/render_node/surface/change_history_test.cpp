@@ -8,7 +8,7 @@
 #include <set>
 
 #include "render_node/grid/mesh.hpp"
-#include "render_node/surface/frustum.hpp"
+#include "shapes/model/box.hpp"
 
 namespace history {
 namespace {
@@ -73,7 +73,7 @@ TEST(ChangeHistory, GivesAllPartsOfARevision) {
 }
 
 TEST(ChangeHistory, JoinsBoxesOfATin) {
-    const render_node::Box both = around(render_node::Box{{1, 2, 3}, {4, 5, 6}}, {{0, 3, 2}, {3, 7, 8}});
+    const shapes::Box both = around(shapes::Box{{1, 2, 3}, {4, 5, 6}}, {{0, 3, 2}, {3, 7, 8}});
     EXPECT_EQ(both.low, glm::dvec3(0, 2, 2));
     EXPECT_EQ(both.high, glm::dvec3(4, 7, 8));
 }

@@ -8,10 +8,10 @@
 namespace level_rules {
 namespace {
 
-using render_node::Box;
-using render_node::kLevels;
 using render_node::LevelErrors;
 using render_node::LevelRule;
+using shapes::Box;
+using shapes::kLevels;
 
 constexpr Box kBox{{-1, -1, -1}, {1, 1, 1}};
 constexpr int kCoarsest = kLevels - 1;

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "scene/model/scene.hpp"
+#include "shapes/tin/parts.hpp"
 #include "tests/support/pictures/sample_tin.hpp"
 
 namespace {
@@ -96,40 +100,50 @@ TEST(TinVertices, BesideAHoleOnlyWhatIsNearIsDrawnAnew) {
     const glm::dvec2 at = glm::dvec2(place.x, place.y) * (cell / sand::kProbePerCell);
     const double reach = 14 * cell;  // reach of light, and a triangle's side
     EXPECT_FALSE(change.boxes.empty());
-    for (const render_node::Box& box : change.boxes) {
+    for (const shapes::Box& box : change.boxes) {
         EXPECT_TRUE(glm::all(glm::greaterThan(glm::dvec2(box.low), at - reach))) << box.low.x << ", " << box.low.y;
         EXPECT_TRUE(glm::all(glm::lessThan(glm::dvec2(box.high), at + reach))) << box.high.x << ", " << box.high.y;
     }
 }
 
-TEST(TinRelief, TellsTheSameHeightWhereNothingIsBeyondTheField) {
-    render_node::TinRelief relief(20 * 256, 16 * 256);
-    std::mt19937 random(5);
-    const auto corner = [&](std::int32_t x, std::int32_t y) {
-        return render_node::ReliefCorner{{x * 256, y * 256}, static_cast<double>(random() % 100000)};
+TEST(TinVertices, AndTheirTrianglesAndCutsAreThoseOfAPage) {
+    const scene::Scene scene = sample::duneScene(64);
+    const double cell = scene.terrain.cellSize(), middle = 32 * sand::kProbePerCell, half = 2 * sand::kProbePerCell;
+    Tin tin(scene.terrain);
+    tin.cut([&](double x, double y) { return std::abs(x - middle) < half && std::abs(y - middle) < half; });
+    (void)tin.takeParts();
+    const sand::tin::SurfaceView view = tin.view();
+    const TinVertices wall(view, cell);
+    shapes::TinParts page(cell);
+    ASSERT_TRUE(page.take(sand::TinData{view}).whole);
+    const shapes::SurfacePart part = page.part(0);
+    ASSERT_EQ(part.heights.size(), wall.vertices().size());
+    std::size_t corners = 0;
+    const std::vector<std::uint32_t> triangles = page.triangles(0);
+    for (const shapes::TinTriangle& triangle : wall.triangles()) {
+        for (std::size_t i = 0; i < 3 && triangle.alive(); ++i) {
+            const auto number = static_cast<std::size_t>(triangle.corner.at(i));
+            const shapes::TinVertex& vertex = wall.vertices()[number];
+            ASSERT_EQ(triangles.at(corners++), number);
+            ASSERT_EQ(part.heights[number], vertex.height);
+            ASSERT_EQ(part.places[2 * number], static_cast<float>(vertex.x));
+            ASSERT_EQ(part.normals[2 * number + 1], vertex.normalNorth);
+            ASSERT_EQ(part.shades[2 * number], vertex.open);
+            ASSERT_EQ(part.shades[2 * number + 1], vertex.mottling);
+        }
+    }
+    EXPECT_EQ(corners, triangles.size());
+    const auto sorted = [](const shapes::SandRim& rim) {
+        std::vector<std::array<float, 6>> cuts;
+        for (const std::vector<glm::vec3>& line : rim.cuts) {
+            cuts.push_back({line[0].x, line[0].y, line[0].z, line[1].x, line[1].y, line[1].z});
+        }
+        std::ranges::sort(cuts);
+        return cuts;
     };
-    for (int y = 0; y < 16; y += 2) {
-        for (int x = 0; x < 20; x += 2) {
-            const auto a = corner(x, y), b = corner(x + 2, y), c = corner(x + 2, y + 2), d = corner(x, y + 2);
-            relief.put({a, b, c});
-            relief.put({a, c, d});
-        }
-    }
-    constexpr int kReach = 3;
-    int within = 0, beyond = 0;
-    for (int i = 0; i < 2000; ++i) {
-        const auto place = render_node::TinRelief::between(static_cast<std::int32_t>(random() % (20 * 256)),
-                                                           static_cast<std::int32_t>(random() % (16 * 256)));
-        const bool isWithin = relief.isWithin(place, kReach);
-        (isWithin ? within : beyond) += 1;
-        for (int north = -kReach; isWithin && north <= kReach; ++north) {
-            for (int east = -kReach; east <= kReach; ++east) {
-                ASSERT_EQ(relief.within(place, east, north), relief.at(place, east, north)) << "seed 5, " << i;
-            }
-        }
-    }
-    EXPECT_GT(within, 200);
-    EXPECT_GT(beyond, 200);
+    EXPECT_EQ(sorted(page.rim()), sorted(wall.rim()));
+    EXPECT_TRUE(page.rim().hasHoles);
+    EXPECT_EQ(page.lowest(), wall.heightsEver().lowest);
 }
 
 }  // namespace

@@ -144,8 +144,8 @@ TEST_F(Arrow, LiesWithinItsBox) {
          {glm::vec3(0.1F, 0, 0.001F), {0, 0, 0.3F}, {-0.01F, 0.02F, 0.01F}, {0.05F, -0.2F, -0.1F}}) {
         const ForceArrow arrow{{1, 1, 0}, glm::vec3(1, 1, 0) + to, false};
         constexpr auto kBall = static_cast<float>(kRadius);
-        const render_node::Box box = boxOf(arrow, kBall);
-        for (const render_node::SolidVertex& vertex : makeArrow(arrow, kBall)) {
+        const shapes::Box box = boxOf(arrow, kBall);
+        for (const shapes::SolidVertex& vertex : makeArrow(arrow, kBall)) {
             EXPECT_TRUE(glm::all(glm::lessThanEqual(box.low, glm::dvec3(vertex.position))));
             EXPECT_TRUE(glm::all(glm::greaterThanEqual(box.high, glm::dvec3(vertex.position))));
             EXPECT_NEAR(glm::length(vertex.normal), 1, 1e-5);

@@ -9,7 +9,7 @@
 
 namespace {
 
-using render_node::Box;
+using shapes::Box;
 
 const glm::dvec3 kBallCentre(0.3, -0.2, 1.1);
 constexpr double kBallRadius = 0.4, kLowestSand = -1.5, kHighestSand = 1.7;

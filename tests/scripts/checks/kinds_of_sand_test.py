@@ -27,7 +27,7 @@ PLACES = {
     "render_node/surface_factory.cpp": "makes the object that draws it",
     "sand/force/surface_patch.cpp": "takes the part that a hand feels",
     "scene/export/results.cpp": "takes rasters and triangles from it",
-    "web/drawn_sand.cpp": "takes heights or triangles for a page",
+    "web/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
 }
 # Code of one kind of sand. It may use its own alternative, and throws if it gets the other one.
 KINDS = {
@@ -35,6 +35,8 @@ KINDS = {
     "sand/tin/": "Tin",
     "render_node/grid/": "Grid|Cell",
     "render_node/tin/": "Tin",
+    "shapes/grid/": "Grid|Cell",
+    "shapes/tin/": "Tin",
 }
 # Files of sand that belong to no kind, and ask whether a Start is a TIN.
 STARTS = {
@@ -65,7 +67,7 @@ KNOWING = {
     "scene/relax/steepness.cpp": "slopes by the flux limits of a height field",
     "scene/relax/tin_sand.cpp": "makes a TIN of a file",
     "scene/relax/tin_sand.hpp": "declares this",
-    "web/drawn_sand.cpp": "takes heights or triangles for a page",
+    "web/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
 }
 MOST_KNOWING = 23
 
@@ -80,7 +82,7 @@ START = re.compile(r"\btin\s*(?:==|!=)\s*nullptr|\bnullptr\s*(?:==|!=)\s*[\w.>-]
                    r"(?:\bif\s*\(|&&|\|\||!|\()\s*!?(?:\w+(?:\.|->))+tin\s*(?:\)|&&|\|\||\?)")
 # Anything of one kind: a header, a namespace, a class, FieldSize::nominal, or the word tin in a name or in a text. The
 # other words that begin with Grid are rasters and walls.
-KIND = re.compile(r"\"(?:sand|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Mesh|Surface|Vert\w+)\b|\bCellChange\b|"
+KIND = re.compile(r"\"(?:sand|shapes|render_node)/(?:grid|tin)/|\b(?:grid|tin)\s*::|\bGrid(?:Data|Mesh|Surface|Vert\w+)\b|\bCellChange\b|"
                   r"\b(?:is|has)Grid\b|(?:\.|->)nominal\b|\b[tT]in(?![a-z])\w*|\b\w*[a-z0-9_]Tin(?![a-z])\w*|\b\w+_tin(?![a-z])\w*")
 
 
@@ -118,7 +120,7 @@ def starting(files):
 def knowing(files):
     """Returns the files outside sand/ and its drawing that know a kind of sand."""
     return {path for path, text in files.items()
-            if not path.startswith(("sand/", "render_node/grid/", "render_node/tin/")) and KIND.search(text)}
+            if not path.startswith(("sand/", "render_node/grid/", "render_node/tin/", "shapes/grid/", "shapes/tin/")) and KIND.search(text)}
 
 
 class KindsOfSand(unittest.TestCase):
@@ -143,7 +145,7 @@ class KindsOfSand(unittest.TestCase):
     def test_a_fifth_place_is_found_however_it_asks(self):
         for path, text in {
             "render_node/tile_painter.cpp": "if (const auto* tin = std::get_if<sand::TinData>(&data)) {",
-            "render_node/sand_box.cpp": "const auto& field = std::get<sand::GridData>(terrain.surface().data()).field;",
+            "shapes/sand_box.cpp": "const auto& field = std::get<sand::GridData>(terrain.surface().data()).field;",
             "master/session.cpp": "if (std::holds_alternative<sand::GridData>(terrain.surface().data())) {",
             "lockstep/frame_barrier.cpp": "const sand::SurfaceChange change; std::visit(Send{}, change.parts);",
             "scene/model/scene.cpp": "const SurfaceData data; return data.index() == 1;",
@@ -176,7 +178,7 @@ class KindsOfSand(unittest.TestCase):
                      "if (rules.tin == 0) {", "return scene->tin;", "file.has(\"tin\")", "void check(int rows, bool tin);",
                      "bool isTin() const;", "const bool has_tin = true;", "sand::TinStart start;", "TinMesh mesh;", "bool tin_;",
                      "sand::GridData{scene.terrain}", "if (size.nominal) {", "std::get<sand::CellChange>(parts)"):
-            for path in ("master/start_up.cpp", "scene/load/memory.hpp", "render_node/sand_box.cpp"):
+            for path in ("master/start_up.cpp", "scene/load/memory.hpp", "shapes/sand_box.cpp"):
                 with self.subTest(text, path=path):
                     self.assertEqual(knowing({path: text}), {path})
 

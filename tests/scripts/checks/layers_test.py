@@ -77,7 +77,7 @@ class Layers(unittest.TestCase):
 
     def test_a_subfolder_that_includes_the_folder_above_is_named(self):
         for path, name in (("sand/force/surface_patch.cpp", "sand/replica.hpp"), ("bench/sand/parts.cpp", "bench/bench.hpp"),
-                           ("render_node/tool/light.cpp", "render_node/redraw.hpp"),
+                           ("render_node/tool/reach.cpp", "render_node/redraw.hpp"),
                            ("tests/master/steps/live_steps_test.cpp", "tests/master/steps.hpp")):
             with self.subTest(path):
                 below, above = path.rpartition("/")[0], name.rpartition("/")[0]
@@ -154,12 +154,23 @@ class Layers(unittest.TestCase):
             self.assertNotIn("haptic_loop", linked(name), name)
 
     def test_a_replica_with_its_journal_and_its_hand_links_neither_files_nor_threads_nor_sockets(self):
-        pure = {"base", "sand", "sand_force", "sand_grid", "sand_model", "sand_tin", "scene_model", "scene_text", "journal", "haptic_hand",
+        pure = {"base", "shapes", "glm::glm", "sand", "sand_force", "sand_grid", "sand_model", "sand_tin", "scene_model", "scene_text", "journal", "haptic_hand",
                 "fmt::fmt", "PkgConfig::XXHASH", "PkgConfig::ZSTD"}
         for name in ("journal", "haptic_hand", "scene_text", "web"):
             self.assertIn("scene_model", linked(name))
             self.assertEqual(linked(name) - pure, set(), name)
         self.assertIn("host", linked("journal_files"))
+
+    def test_shapes_include_neither_opengl_nor_another_folder(self):
+        path = "shapes/tool/mesh.cpp"
+        for name in ("glad/gl.h", "GL/gl.h", "GLFW/glfw3.h", "fmt/format.h", "scene/model/scene.hpp"):
+            with self.subTest(name):
+                found = changed({path: PROJECT.sources[path] + f"\n#include <{name}>\n"})
+                self.assertEqual(found, [f"{path}: includes {name}; shapes/ includes base/, sand/, glm/ and the standard library alone"])
+        self.assertTrue(any("of render_gl, which shapes does not link" in fault
+                            for fault in changed(including(path, "render_node/gl/solid_mesh.hpp"))))
+        self.assertEqual(changed({path: PROJECT.sources[path] + "\n#include <glm/gtc/constants.hpp>\n#include <bit>\n"}), [])
+        self.assertEqual(linked("shapes") - {"base", "sand_model", "glm::glm", "fmt::fmt", "PkgConfig::XXHASH", "PkgConfig::ZSTD"}, set())
 
     def test_the_drawing_is_of_these_arrows(self):
         drawn = layers.fingerprint(PROJECT) in (ROOT / "docs" / "layers.svg").read_text()
