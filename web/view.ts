@@ -53,7 +53,7 @@ export class View {
         this.dirty = true;
     }
     set cutAndFill(on: boolean) {
-        this.meshes!.programs.cutAndFill = on;
+        this.meshes!.programs.set("uCutAndFill", on ? 1 : 0);
         this.dirty = true;
     }
 
