@@ -10,6 +10,7 @@
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "walls/stereo_change.hpp"
 #include "walls/window_size.hpp"
@@ -25,13 +26,6 @@ std::string line(const Json& json) {
 }
 
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
-
-/// Returns the material in the units in which an operator types it.
-Json materialNow(const scene::Material& material) {
-    return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
-            {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
-            {"band", material.band},         {"settling-time", material.settlingSeconds}};
-}
 
 }  // namespace
 
@@ -352,7 +346,7 @@ std::string OperatorDesk::status() const {
     status["stereo"] = std::string(walls::stereoName(shown_.stereo));
     status["swap_eyes"] = shown_.swapEyes;
     status["eye_separation"] = views_.eyeSeparation();
-    status["material"] = materialNow(material_);
+    status["material"] = host::jsonOf<Json>(scene::MaterialNumbers{material_});
     status["force_share"] = orNull(force_);
     status["force_ceiling"] = orNull(session_.requests->forceCeiling());
     status["edits_waiting"] = edits_.size();
