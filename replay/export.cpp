@@ -18,8 +18,6 @@
 namespace replay {
 namespace {
 
-constexpr std::array<std::string_view, sand::kEdits> kEditNames{"", "settle", "reset", "undo", "tune", "load"};
-
 /// The tool, as the steps so far have changed it.
 class ExportedTool {
 public:
@@ -82,8 +80,7 @@ void exportSteps(const std::filesystem::path& journal, const std::filesystem::pa
             last = step.number;
             tool.begin(step);
             fmt::print(out.stream(), "{},{},{},{},{},{},{}\n", step.epoch, step.number, frame->frame,
-                       step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()),
-                       kEditNames.at(static_cast<std::size_t>(step.edit.kind)));
+                       step.engaged ? 1 : 0, tool.text(), pathText(step, tool.unit()), base::nameOf(step.edit.kind));
             tool.end(step);
         }
     }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "base/byte_stream.hpp"
+#include "base/names.hpp"
 #include "sand/model/probe_point.hpp"
 #include "sand/model/rules.hpp"
 
@@ -29,6 +31,10 @@ struct Edit {
         load     // replaces the sand by saved sand
     };
     using enum Kind;
+    friend constexpr auto valuesOf(Kind) {
+        return std::array{base::Named{none, ""},     base::Named{settle, "settle"}, base::Named{reset, "reset"},
+                          base::Named{undo, "undo"}, base::Named{tune, "tune"},     base::Named{load, "load"}};
+    }
 
     /// Given by the master when an operator asks for the edit. It counts from 1 over a whole session, also over resumes
     /// and epochs; 0 for no edit. An edit has the same number in every message and in the journal. So it is found again
@@ -47,7 +53,7 @@ struct Edit {
     [[nodiscard]] bool any() const { return kind != Kind::none; }
     friend bool operator==(const Edit& a, const Edit& b);
 };
-inline constexpr int kEdits = 6;  // number of kinds
+inline constexpr int kEdits = static_cast<int>(valuesOf(Edit::Kind{}).size());
 
 /// Writes number and data of an edit, without its kind.
 void encodeDetails(const Edit& edit, base::ByteWriter& writer);
