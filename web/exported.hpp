@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "web/drawing.hpp"
@@ -35,6 +36,7 @@ struct Exported {
     DugSession* dug = nullptr;            // the session, if its steps are those of a hand
     base::Bytes bytes;                    // a state or a journal
     std::string problem;                  // sentence for the user
+    std::string said;                     // text that the page reads next
 
     static constexpr const char* kNoMemory = "This page has no more memory";
     // A 32-bit heap that may grow to 2 GiB, less what journal and states take.
@@ -54,6 +56,11 @@ struct Exported {
         drawing.reset();
         session = std::move(shown);
         drawing.emplace(*session);
+    }
+    /// Returns the address of a text, which stays until the next one.
+    const char* say(std::string text) {
+        said = std::move(text);
+        return said.c_str();
     }
     /// Returns what `work` returns, or -1 if it throws; `problem` then has the sentence.
     template <class Work>

@@ -6,6 +6,8 @@ const element = <T extends HTMLElement>(id: string) => document.getElementById(i
 const say = element("say"), numbers = element("numbers"), slider = element<HTMLInputElement>("step"), speed = element<HTMLSelectElement>("speed");
 const playButton = element<HTMLButtonElement>("play");
 
+const kMostMarks = 2000;
+
 export class JournalPage {
     private session?: SessionMessage;   // none while the page digs
     private progress?: ProgressMessage;
@@ -86,10 +88,10 @@ export class JournalPage {
     private showMarks({ marks, lastStep }: SessionMessage): void {
         const timeline = element("marks");
         timeline.replaceChildren();
-        for (let i = 0; i < marks.length && i < 4000; i += 2) {
+        for (const { step, what } of marks.slice(0, kMostMarks)) {
             const mark = document.createElement("i");
-            mark.style.left = `${100 * marks[i] / Math.max(lastStep, 1)}%`;
-            mark.className = marks[i + 1] === 0 ? "stroke" : "edit";
+            mark.style.left = `${100 * step / Math.max(lastStep, 1)}%`;
+            mark.className = what === "stroke" ? "stroke" : "edit";
             timeline.append(mark);
         }
     }

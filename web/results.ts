@@ -52,7 +52,7 @@ export class Results {
         this.sand = sand;
         this.frame = undefined;
         this.address = address;
-        button("heights").disabled = sand.tin;
+        button("heights").disabled = !sand.hasHeights;
         button("picture").disabled = this.view === undefined;
         button("link").disabled = address === "";
     }

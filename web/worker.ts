@@ -93,9 +93,9 @@ async function dig(message: DigMessage): Promise<void> {
     }
     it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
     keyframes = new Keyframes();  // digging needs no memory for states
-    const begun = it.ground();
+    const begun = it.session();
+    tell({ kind: "dig", ...begun, words: it.words });
     begin(new HandSource(it, begun.stepsPerSecond, { tell, show }));
-    tell({ kind: "dig", ...begun });
 }
 
 /** Begins anew. If that is refused, the session before goes on. */

@@ -78,7 +78,7 @@ function passWithKeyframes(file, pause, afterKeyframe = () => {}) {
 }
 /** Goes to random moments, and prints how long that takes. */
 function moments(name, keyframes) {
-    const last = wasm._sw_last_step(), took = [];
+    const last = JSON.parse(wasm.UTF8ToString(wasm._sw_session())).lastStep, took = [];
     let seed = 12345;
     for (let i = 0; i < kMoments; ++i) {
         seed = (Math.imul(seed, 1103515245) + 12345) >>> 0;
