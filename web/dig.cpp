@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions with which web/hand_source.ts digs. They fail as those of replica.cpp do.
+// The functions with which web/hand/hand_source.ts digs. They fail as those of replica.cpp do.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 #include "base/input_error.hpp"
 #include "web/exported.hpp"
-#include "web/grid_scene.hpp"
-#include "web/opening.hpp"
+#include "web/hand/grid_scene.hpp"
+#include "web/replica/opening.hpp"
 #include "web/words.hpp"
 
 #define API SANDWALL_PAGE_API

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// State that the functions for web/worker.ts share: the sand that is shown, and the sentence about the last failure.
+// State that the functions for web/page/worker.ts share: the sand that is shown, and the sentence about the last
+// failure.
 #pragma once
 
 #include <algorithm>
@@ -13,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "web/drawing.hpp"
-#include "web/dug_session.hpp"
-#include "web/page_session.hpp"
+#include "web/drawing/drawing.hpp"
+#include "web/hand/dug_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #if defined(__EMSCRIPTEN__)
 #include <emscripten.h>

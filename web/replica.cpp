@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that web/worker.ts calls: one session at a time. Functions that can fail return -1, or nullptr
+// The functions that web/page/worker.ts calls: one session at a time. Functions that can fail return -1, or nullptr
 // for an address, and sw_problem() then has the sentence for the user. Pointers stay valid until the next call that
 // changes what they name.
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "web/exported.hpp"
-#include "web/json_text.hpp"
+#include "web/replica/json_text.hpp"
 
 #define API SANDWALL_PAGE_API
 
@@ -26,7 +26,7 @@ int guarded(Work&& work) {
     return page.guarded(std::forward<Work>(work));
 }
 
-/// The sand that is shown, for web/replica.ts.
+/// The sand that is shown, for web/replica/replica.ts.
 struct ShownSand {
     template <class Self, class Visit>
     static void fields(Self& /*it*/, Visit& visit) {

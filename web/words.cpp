@@ -7,7 +7,7 @@
 
 #include "base/input_error.hpp"
 #include "base/number.hpp"
-#include "web/json_text.hpp"
+#include "web/replica/json_text.hpp"
 
 namespace web {
 namespace {

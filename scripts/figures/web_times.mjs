@@ -15,7 +15,7 @@ const root = fileURLToPath(new URL("../../", import.meta.url)), programs = path.
 const what = process.argv[2], kRounds = 5, kMoments = 100;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "web_times-"));
 process.on("exit", () => fs.rmSync(folder, { recursive: true }));
-const { Keyframes, copyState } = await builtModule("keyframes.ts");
+const { Keyframes, copyState } = await builtModule("replica/keyframes.ts");
 const loaded = await loadReplica(built), wasm = loaded.wasm;
 const state = () => loaded.state();
 

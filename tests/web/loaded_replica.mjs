@@ -65,7 +65,7 @@ class LoadedReplica {
         this.good(this.wasm._sw_restore());
     }
 
-    /** Returns the pieces of a drawing, as Replica.draw() of web/replica.ts does. */
+    /** Returns the pieces of a drawing, as Replica.draw() of web/replica/replica.ts does. */
     draw() {
         const w = this.wasm, pieces = [], arrays = [Float32Array, Int32Array, Uint32Array, Int16Array, Uint16Array, Uint8Array];
         this.good(w._sw_draw());

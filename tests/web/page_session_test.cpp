@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/page_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,7 @@ class Control {
     before(control) { elements.set(control.id, control); }
     get selectedIndex() { return this.options.findIndex(({ value }) => value === this.value); }
 }
-const html = fs.readFileSync(new URL("../../web/index.html", import.meta.url), "utf8");
+const html = fs.readFileSync(new URL("../../web/page/index.html", import.meta.url), "utf8");
 for (const [, id] of html.matchAll(/ id="(\w+)"/g)) {
     elements.set(id, new Control());
 }
@@ -33,7 +33,7 @@ Object.assign(globalThis, {
     Option: class { constructor(name) { this.value = name; } },
     document: { body: new Control(), createElement: () => new Control(), getElementById: (id) => elements.get(id) ?? null },
 });
-const { DigPanel } = await builtModule("dig_panel.ts");
+const { DigPanel } = await builtModule("page/dig_panel.ts");
 const of = (id) => elements.get(id), offered = (id) => of(id).options.map(({ value }) => value);
 
 /** Returns a panel that has begun with these words, and what it tells. */

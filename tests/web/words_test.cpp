@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/input_error.hpp"
-#include "web/json_text.hpp"
+#include "web/replica/json_text.hpp"
 
 namespace {
 

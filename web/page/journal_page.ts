@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the page that shows a journal: the timeline, and whether the hashes are those of the session.
-import type { FrameMessage, ProgressMessage, SessionMessage, ToWorker } from "./messages";
+import type { FrameMessage, ProgressMessage, SessionMessage, ToWorker } from "../replica/messages";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const say = element("say"), numbers = element("numbers"), slider = element<HTMLInputElement>("step"), speed = element<HTMLSelectElement>("speed");

@@ -10,7 +10,7 @@
 
 #include "journal/reader.hpp"
 #include "journal/verification.hpp"
-#include "web/step_source.hpp"
+#include "web/replica/step_source.hpp"
 
 namespace web {
 

@@ -108,7 +108,7 @@ export interface NoteMessage {
 export type Numbers = Float32Array | Int32Array | Uint32Array | Int16Array | Uint16Array | Uint8Array;
 
 /**
- * Arrays of a drawing by name (web/drawing.cpp): what differs from the frame before.
+ * Arrays of a drawing by name (web/drawing/drawing.cpp): what differs from the frame before.
  *
  * `uNAME`: a uniform of the wall's shaders. `vertices`: the number of all vertices of new sand. `first`: the number of the
  * first vertex in `aHeight`, `aGrid`, `aNormal` and `aShade`. `triangles`: numbers of vertices, of new sand. `sides`,

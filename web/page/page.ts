@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: passes what the worker computes to its parts, and draws it.
+import { View } from "../drawing/view";
+import type { FrameMessage, FromWorker, SandMessage, SessionMessage, ToWorker } from "../replica/messages";
 import { DigPage } from "./dig_page";
 import { JournalPage } from "./journal_page";
-import type { FrameMessage, FromWorker, SandMessage, SessionMessage, ToWorker } from "./messages";
 import { showOthers } from "./others";
 import { Results, save, textOfEye } from "./results";
 import { fetchJournal, openDroppedFiles } from "./session_files";
-import { View } from "./view";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const canvas = element<HTMLCanvasElement>("sand"), say = element("say"), cutButton = element<HTMLButtonElement>("cut");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's hand as the source of steps. A step is due whenever the time of one has passed, as in a session. Its sweeps
 // are spread, so the worker answers between two steps.
-import type { ToWorker } from "./messages";
-import type { Replica } from "./replica";
-import { kSliceMs, type Stage, type StepSource } from "./step_source";
+import type { ToWorker } from "../replica/messages";
+import type { Replica } from "../replica/replica";
+import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
 
 const kMostDue = 4;        // steps. A slow browser leaves out the rest, and so does a slow wall
 const kProgressMs = 100;

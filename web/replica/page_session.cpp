@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/page_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "web/opening.hpp"
+#include "web/replica/opening.hpp"
 
 namespace web {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls for digging: the scene, the tool, the material, edits, and saving.
-import type { DigBegunMessage, DugMessage, MaterialMessage, ToHand, Tool, Words } from "./messages";
+import type { DigBegunMessage, DugMessage, MaterialMessage, ToHand, Tool, Words } from "../replica/messages";
 import { showOthers } from "./others";
 
 declare const SCENES: string[];  // names of the encoded scenes, which web/build.mjs lists
