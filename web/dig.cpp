@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions with which web/hand_source.ts digs. They fail as those of replica.cpp do.
+// The functions with which web/hand/hand_source.ts digs. They fail as those of replica.cpp do.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string_view>
@@ -10,8 +9,9 @@
 
 #include "base/input_error.hpp"
 #include "web/exported.hpp"
-#include "web/grid_scene.hpp"
-#include "web/opening.hpp"
+#include "web/hand/grid_scene.hpp"
+#include "web/replica/opening.hpp"
+#include "web/words.hpp"
 
 #define API SANDWALL_PAGE_API
 
@@ -92,13 +92,10 @@ API int sw_dig_on() {
 /// Returns 1 if the next step is a settle that blocks this thread.
 API int sw_settles_next() { return digs.dug->settlesNext() ? 1 : 0; }
 
-/// Asks for a sand::Edit::Kind: 1 settle, 2 reset, 3 undo.
-API int sw_ask(int kind) {
+/// Asks for an edit by its name.
+API int sw_ask(const char* edit) {
     return digs.guarded([=] {
-        if (kind < static_cast<int>(sand::Edit::settle) || kind > static_cast<int>(sand::Edit::undo)) {
-            throw base::InputError("there is no such edit");
-        }
-        digs.dug->ask(static_cast<sand::Edit::Kind>(kind));
+        digs.dug->ask(web::editNamed(edit));
         return 0;
     });
 }
@@ -109,44 +106,19 @@ API int sw_set_material(const char* word, double value) {
         return 0;
     });
 }
-/// Changes the tool. A negative kind or foot, and a number that is NaN, leave their part as it is.
-API int sw_set_tool(int kind, double radius, double width, double heading, int leftFoot) {
+/// Changes a part of the tool, as web::toolChange() says.
+API int sw_set_tool(const char* part, const char* value) {
     return digs.guarded([=] {
-        const auto given = [](double number) { return std::isnan(number) ? std::nullopt : std::optional(number); };
-        scene::ToolChange change{.radius = given(radius), .width = given(width), .heading = given(heading)};
-        if (kind >= static_cast<int>(valuesOf(sand::ToolKind{}).size())) {
-            throw base::InputError("there is no such tool");
-        }
-        if (kind >= 0) {
-            change.kind = static_cast<sand::ToolKind>(kind);
-        }
-        if (leftFoot >= 0) {
-            change.leftFoot = leftFoot != 0;
-        }
-        digs.dug->setTool(change);
+        digs.dug->setTool(web::toolChange(part, value));
         return 0;
     });
 }
-/// Twelve numbers: talus, wet talus, humidity, cohesion, band and settling time of the material; kind, radius, width,
-/// heading and foot of the tool; and 1 if an undo is possible.
-API const double* sw_material() {
-    static double numbers[12];
-    const scene::Material& now = digs.dug->material();
-    const double values[12]{now.dryTalus,
-                            now.wetTalusNow(),
-                            now.humidity,
-                            now.cohesionLength,
-                            now.band,
-                            now.settlingSeconds,
-                            static_cast<double>(now.toolKind),
-                            now.toolRadius,
-                            sand::isRound(now.toolKind) ? 1 : now.toolWidth.value_or(sand::usualWidth(now.toolKind)),
-                            now.toolHeading,
-                            now.leftFoot ? 1.0 : 0.0,
-                            digs.dug->replica().surface().hasKept() ? 1.0 : 0.0};
-    std::copy(values, values + 12, numbers);
-    return numbers;
-}
+/// Returns what a hand can choose, as JSON (web::wordsOfPage()).
+API const char* sw_words() { return digs.say(web::wordsOfPage()); }
+/// Returns the material with all changes that were asked for, as JSON (web::materialText()).
+API const char* sw_material() { return digs.say(web::materialText(digs.dug->material())); }
+/// Returns 1 if the last stroke can be undone.
+API int sw_can_undo() { return digs.dug->replica().surface().hasKept() ? 1 : 0; }
 
 /// Encodes the journal of all steps. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_journal() {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// State that the functions for web/worker.ts share: the sand that is shown, and the sentence about the last failure.
+// State that the functions for web/page/worker.ts share: the sand that is shown, and the sentence about the last
+// failure.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +11,12 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "web/drawing.hpp"
-#include "web/dug_session.hpp"
-#include "web/page_session.hpp"
+#include "web/drawing/drawing.hpp"
+#include "web/hand/dug_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #if defined(__EMSCRIPTEN__)
 #include <emscripten.h>
@@ -35,6 +37,7 @@ struct Exported {
     DugSession* dug = nullptr;            // the session, if its steps are those of a hand
     base::Bytes bytes;                    // a state or a journal
     std::string problem;                  // sentence for the user
+    std::string said;                     // text that the page reads next
 
     static constexpr const char* kNoMemory = "This page has no more memory";
     // A 32-bit heap that may grow to 2 GiB, less what journal and states take.
@@ -54,6 +57,11 @@ struct Exported {
         drawing.reset();
         session = std::move(shown);
         drawing.emplace(*session);
+    }
+    /// Returns the address of a text, which stays until the next one.
+    const char* say(std::string text) {
+        said = std::move(text);
+        return said.c_str();
     }
     /// Returns what `work` returns, or -1 if it throws; `problem` then has the sentence.
     template <class Work>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The functions that web/worker.ts calls: one session at a time. Functions that can fail return -1, or nullptr
+// The functions that web/page/worker.ts calls: one session at a time. Functions that can fail return -1, or nullptr
 // for an address, and sw_problem() then has the sentence for the user. Pointers stay valid until the next call that
 // changes what they name.
 #include <fmt/format.h>
@@ -12,13 +12,11 @@
 #include <vector>
 
 #include "web/exported.hpp"
+#include "web/replica/json_text.hpp"
 
 #define API SANDWALL_PAGE_API
 
 namespace {
-
-std::vector<std::int32_t> marks;
-std::string text;
 
 auto& page = web::exported;
 const std::unique_ptr<web::StepSource>& session = web::exported.session;
@@ -27,6 +25,28 @@ template <class Work>
 int guarded(Work&& work) {
     return page.guarded(std::forward<Work>(work));
 }
+
+/// The sand that is shown, for web/replica/replica.ts.
+struct ShownSand {
+    template <class Self, class Visit>
+    static void fields(Self& /*it*/, Visit& visit) {
+        const scene::Scene& scene = session->scene();
+        visit("name", scene.name);
+        visit("shortcoming", session->shortcoming());
+        visit("hasHeights", page.drawing->hasHeights());
+        visit("columns", scene.rules.columns);
+        visit("rows", scene.rules.rows);
+        visit("cell", session->replica().cellSize());  // [scene unit]
+        visit("stepsPerSecond", scene.rules.stepsPerSecond);
+        visit("middle",
+              scene.referenceHeight() / double{sand::kUnitsPerCell});  // height in the middle of the room [cell]
+        if (page.recorded != nullptr) {
+            visit("lastStep", page.recorded->lastStep());
+            visit("hashes", page.recorded->hashes());
+            visit("marks", page.recorded->marks());
+        }
+    }
+};
 
 }  // namespace
 
@@ -51,33 +71,14 @@ API std::uint8_t* sw_add_part(std::uint32_t size) {
 /// Opens the journal of all parts. If it fails, the session before stays open.
 API int sw_open(const char* name) {
     return guarded([name] {
-        auto opened = std::make_unique<web::PageSession>(name, std::exchange(page.parts, {}), SANDWALL_RELEASE_NAME,
-                                                         web::Exported::kMemory);
-        marks.clear();
-        for (const web::Mark& mark : opened->marks()) {
-            marks.push_back(static_cast<std::int32_t>(mark.step));
-            marks.push_back(static_cast<std::int32_t>(mark.kind));
-        }
-        page.show(std::move(opened));
+        page.show(std::make_unique<web::PageSession>(name, std::exchange(page.parts, {}), SANDWALL_RELEASE_NAME,
+                                                     web::Exported::kMemory));
         return 0;
     });
 }
 
-API const char* sw_name() { return session->scene().name.c_str(); }
-API const char* sw_shortcoming() { return session->shortcoming().c_str(); }
-API int sw_columns() { return session->scene().rules.columns; }
-API int sw_rows() { return session->scene().rules.rows; }
-API double sw_cell_size() { return session->replica().cellSize(); }  // [scene unit]
-API int sw_steps_per_second() { return session->scene().rules.stepsPerSecond; }
-API int sw_last_step() { return static_cast<int>(page.recorded->lastStep()); }
-API int sw_hashes() { return static_cast<int>(page.recorded->hashes()); }
-/// Pairs of a step and a web::Mark::Kind.
-API const std::int32_t* sw_marks() { return marks.data(); }
-API int sw_mark_count() { return static_cast<int>(marks.size() / 2); }
-/// The height that lies in the middle of the room [cell].
-API double sw_middle() { return session->scene().referenceHeight() / double{sand::kUnitsPerCell}; }
-/// 1 if the sand has a height for each cell.
-API int sw_has_heights() { return page.drawing->hasHeights() ? 1 : 0; }
+/// Returns what is shown, as JSON (ShownSand).
+API const char* sw_session() { return page.say(web::jsonOf(ShownSand())); }
 
 /// Takes the next record of the first pass. Returns 1, or 0 behind the last one.
 API int sw_advance() {
@@ -90,10 +91,7 @@ API int sw_step_on() {
 API int sw_step() { return static_cast<int>(session->replica().stepNumber()); }
 API int sw_matches() { return static_cast<int>(page.recorded->matches()); }
 API int sw_mismatches() { return static_cast<int>(page.recorded->mismatches()); }
-API const char* sw_hash() {
-    text = fmt::format("{:016x}", session->replica().stateHash());
-    return text.c_str();
-}
+API const char* sw_hash() { return page.say(fmt::format("{:016x}", session->replica().stateHash())); }
 
 /// Encodes the whole state. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_state() {

@@ -10,6 +10,7 @@
 #include "base/input_error.hpp"
 #include "host/clock.hpp"
 #include "host/event.hpp"
+#include "host/json_fields.hpp"
 #include "host/print_line.hpp"
 #include "master/operator/verbs.hpp"
 #include "walls/stereo_change.hpp"
@@ -26,13 +27,6 @@ std::string line(const Json& json) {
 }
 
 Json orNull(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
-
-/// Returns the material in the units in which an operator types it.
-Json materialNow(const scene::Material& material) {
-    return {{"talus", material.dryTalus},    {"wet-talus", material.wetTalusNow()},
-            {"humidity", material.humidity}, {"cohesion", material.cohesionLength},
-            {"band", material.band},         {"settling-time", material.settlingSeconds}};
-}
 
 }  // namespace
 
@@ -306,7 +300,7 @@ void OperatorDesk::reportStatus(const Asker& asker) {
     status["stereo"] = std::string(walls::stereoName(shown_.stereo));
     status["swap_eyes"] = shown_.swapEyes;
     status["eye_separation"] = views_.eyeSeparation();
-    status["material"] = materialNow(material_);
+    status["material"] = host::jsonOf<Json>(scene::MaterialNumbers{material_});
     status["force_share"] = orNull(force_);
     status["force_ceiling"] = orNull(session_.force->forceCeiling());
     status["edits_waiting"] = session_.edits.waiting().size();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "base/input_error.hpp"
@@ -16,13 +17,22 @@ namespace {
 
 constexpr double kLargestTool = double{sand::kLargestToolRadius} / sand::kProbePerCell;  // [cell]
 
+/// Returns the key of a number. `kGet` is its member, or a function that returns it.
+template <auto kMember, auto kGet = kMember>
+constexpr MaterialKey keyOf(std::string_view key, std::string_view word, double lowest, double highest,
+                            bool highestIsOut = false) {
+    const auto set = [](Material& m, double value) { m.*kMember = value; };
+    const auto get = [](const Material& m) -> double { return std::invoke(kGet, m); };
+    return {key, word, lowest, highest, highestIsOut, set, get};
+}
+
 constexpr auto kMaterialKeys = std::to_array<MaterialKey>({
-    {"talus_deg", "talus", 0, 90, true, [](Material& m, double value) { m.dryTalus = value; }},
-    {"wet_talus_deg", "wet-talus", 0, 90, true, [](Material& m, double value) { m.wetTalus = value; }},
-    {"humidity", "humidity", 0, 1, false, [](Material& m, double value) { m.humidity = value; }},
-    {"cohesion_length", "cohesion", 0, 1e9, false, [](Material& m, double value) { m.cohesionLength = value; }},
-    {"band", "band", 0, 1, false, [](Material& m, double value) { m.band = value; }},
-    {"settling_time", "settling-time", 0.001, 1e6, false, [](Material& m, double value) { m.settlingSeconds = value; }},
+    keyOf<&Material::dryTalus>("talus_deg", "talus", 0, 90, true),
+    keyOf<&Material::wetTalus, &Material::wetTalusNow>("wet_talus_deg", "wet-talus", 0, 90, true),
+    keyOf<&Material::humidity>("humidity", "humidity", 0, 1),
+    keyOf<&Material::cohesionLength>("cohesion_length", "cohesion", 0, 1e9),
+    keyOf<&Material::band>("band", "band", 0, 1),
+    keyOf<&Material::settlingSeconds>("settling_time", "settling-time", 0.001, 1e6),
 });
 
 double thresholdOf(const Material& material) {

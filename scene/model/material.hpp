@@ -59,8 +59,20 @@ struct MaterialKey {
     double lowest, highest;
     bool highestIsOut;  // whether `highest` itself is out of range
     void (*set)(Material&, double);
+    double (*get)(const Material&);
 };
+/// Returns all numbers. An operator's status and the controls of a page list them from here.
 [[nodiscard]] std::span<const MaterialKey> materialKeys();
+/// The numbers of a material by the words of an operator's command, in the units in which an operator types them.
+struct MaterialNumbers {
+    const Material& of;
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        for (const MaterialKey& key : materialKeys()) {
+            visit(key.word, key.get(it.of));
+        }
+    }
+};
 
 /// Numbers of a scene with which a material is used.
 struct MaterialGrid {

@@ -15,7 +15,7 @@ const root = fileURLToPath(new URL("../../", import.meta.url)), programs = path.
 const what = process.argv[2], kRounds = 5, kMoments = 100;
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), "web_times-"));
 process.on("exit", () => fs.rmSync(folder, { recursive: true }));
-const { Keyframes, copyState } = await builtModule("keyframes.ts");
+const { Keyframes, copyState } = await builtModule("replica/keyframes.ts");
 const loaded = await loadReplica(built), wasm = loaded.wasm;
 const state = () => loaded.state();
 
@@ -78,7 +78,7 @@ function passWithKeyframes(file, pause, afterKeyframe = () => {}) {
 }
 /** Goes to random moments, and prints how long that takes. */
 function moments(name, keyframes) {
-    const last = wasm._sw_last_step(), took = [];
+    const last = JSON.parse(wasm.UTF8ToString(wasm._sw_session())).lastStep, took = [];
     let seed = 12345;
     for (let i = 0; i < kMoments; ++i) {
         seed = (Math.imul(seed, 1103515245) + 12345) >>> 0;

@@ -120,4 +120,10 @@ TEST_F(MemoryJournal, ADevelopmentBuildOfTheSameReleaseIsNotNamedAsTheRemedy) {
     EXPECT_NE(read("9.9.9").find("use sandwall 1.2.3"), std::string::npos) << read("9.9.9");
 }
 
+TEST(JournalVersion, BelongsToTheBytesOfAMaterial) {
+    EXPECT_EQ(std::pair(journal::kJournalVersion, base::encoded(scene::Material()).size()),
+              std::pair(10U, std::size_t{76}))
+        << "raise the version, and write the bytes of record 5 into docs/journal.md";
+}
+
 }  // namespace

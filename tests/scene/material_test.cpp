@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
+#include <set>
+#include <string_view>
 
 #include "base/input_error.hpp"
 #include "sand/replica.hpp"
@@ -66,6 +69,28 @@ TEST_F(SceneFile, AnOperatorsNumbersAreRefusedWhereAFileWouldBe) {
     EXPECT_EQ(changed({.kind = sand::ToolKind::ellipse, .width = 0.01}),
               "a tool's width over its length must be within [0.05, 1], got 0.01");
     EXPECT_EQ(changed({.heading = std::nan("")}), "a tool's heading must be a number of degrees");
+}
+
+TEST(Material, EachNumberIsSetAndReadByItsKeyAndIsInItsBytes) {
+    for (const scene::MaterialKey& key : scene::materialKeys()) {
+        const double other = std::midpoint(key.get({}), key.highest);
+        scene::Material material;
+        key.set(material, other);
+        EXPECT_EQ(key.get(material), other) << key.key;
+        EXPECT_EQ(key.get(base::decoded<scene::Material>(base::encoded(material))), other) << key.key;
+    }
+}
+
+TEST(Material, HasAKeyForEachMemberThatIsNoPartOfTheTool) {
+    std::set<std::string_view> members;
+    const auto collect = [&members](std::string_view name, const auto& /*member*/) { members.insert(name); };
+    const scene::Material material;
+    scene::Material::fields(material, collect);
+    std::set<std::string_view> known{"kind", "radius", "width", "heading_deg", "left_foot"};
+    for (const scene::MaterialKey& key : scene::materialKeys()) {
+        known.insert(key.key);
+    }
+    EXPECT_EQ(members, known);
 }
 
 /// A pile at rest whose talus an operator halves.

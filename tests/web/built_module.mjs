@@ -5,7 +5,7 @@ import { fileURLToPath } from "node:url";
 
 const root = new URL("../../", import.meta.url);
 
-/** Compiles a source of web/, such as "keyframes.ts", and loads it. */
+/** Compiles a source of web/, such as "replica/keyframes.ts", and loads it. */
 export async function builtModule(source) {
     const { buildSync } = createRequire(new URL("web/package.json", root))("esbuild");
     const built = buildSync({ entryPoints: [fileURLToPath(new URL(`web/${source}`, root))], bundle: true, format: "esm", write: false });

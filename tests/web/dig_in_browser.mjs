@@ -59,7 +59,9 @@ try {
     await until("document.body.dataset.problem || (document.body.dataset.digging && document.body.dataset.shown)");
     assert.equal((await data()).problem, undefined);
     assert.equal(await page.$eval("#undo", (button) => button.disabled), true, "there is no stroke yet");
-    for (const [i, tool] of ["sphere", "circle", "rectangle", "ellipse", "ellipsoid", "footprint"].entries()) {
+    const tools = await page.$$eval("#tool option", (options) => options.map(({ value }) => value));
+    assert.ok(tools.length >= 6 && tools.at(-1) === "footprint", tools.join());
+    for (const [i, tool] of tools.entries()) {
         await page.select("#tool", tool);
         await page.click("#larger");
         await steps(1);  // the worker has answered

@@ -9,7 +9,7 @@ import { loadReplica } from "./loaded_replica.mjs";
 
 const [build, folder, ...scenes] = process.argv.slice(2);
 const loaded = await loadReplica(build), replica = loaded.wasm;
-const kSettle = 1, kReset = 2, kUndo = 3, kTools = 6, kSame = Number.NaN;
+let field;  // of the sand
 const good = (result) => loaded.good(result);
 /** Calls a function that must refuse, and returns its sentence. */
 function refusal(call) {
@@ -19,10 +19,12 @@ function refusal(call) {
 const beginScene = (name, bytes) => { loaded.add([bytes]); return loaded.withText(name, (at) => replica._sw_dig_scene(at, 7, 9)); };
 const beginGrid = (name, text) => { loaded.add([Buffer.from(text)]); return loaded.withText(name, (at) => replica._sw_dig_grid(at, 7, 9)); };
 const setMaterial = (word, value) => loaded.withText(word, (at) => replica._sw_set_material(at, value));
+const setTool = (part, value) => loaded.withText(String(value), (to) => loaded.withText(part, (at) => replica._sw_set_tool(at, to)));
+const ask = (edit) => loaded.withText(edit, (at) => replica._sw_ask(at));
 
 /** Looks straight down at the place (x, y), which counts in shares of the field. */
 function point(ms, x, y, pressed) {
-    good(replica._sw_point(ms, x * replica._sw_columns(), y * replica._sw_rows(), 20000, 0, 0, -1, pressed ? 1 : 0));
+    good(replica._sw_point(ms, x * field.columns, y * field.rows, 20000, 0, 0, -1, pressed ? 1 : 0));
 }
 
 /** Draws loops for `count` steps, and lifts the tool at their end. */
@@ -47,36 +49,38 @@ function heights() {
     const pieces = loaded.draw(), of = (name) => pieces.find((piece) => piece[name])?.[name];
     return of("heights") ?? [...new Set(of("triangles"))].map((vertex) => [of("aHeight")[vertex], of("aGrid")[2 * vertex], of("aGrid")[2 * vertex + 1]].join(" ")).sort();
 }
-const material = () => replica.HEAPF64.slice(replica._sw_material() >> 3, (replica._sw_material() >> 3) + 12);
 
 /** Digs with every tool, edit and some numbers of the material. */
 function digWithAll() {
-    const radius = material()[7];
-    assert.match(refusal(() => replica._sw_ask(kUndo)), /nothing to undo/);
+    field = loaded.session;
+    const { radius } = loaded.material.tool;
+    assert.match(refusal(() => ask("undo")), /nothing to undo/);
     const start = heights();
     let last;
-    for (let kind = 0; kind < kTools; ++kind) {
+    for (const [i, name] of loaded.words.tools.entries()) {
         last = heights();
-        good(replica._sw_set_tool(kind, radius * (1 + kind / 4), kSame, 30 * kind, -1));
-        good(replica._sw_set_depth(0.3 + kind / 10));
+        good(setTool("kind", name));
+        good(setTool("radius", radius * (1 + i / 4)));
+        good(setTool("heading", 30 * i));
+        good(replica._sw_set_depth(0.3 + i / 10));
         draw(25);
         rest(4);
-        assert.notDeepEqual(heights(), last, `the tool ${kind} has dug nothing`);
+        assert.notDeepEqual(heights(), last, `the tool ${name} has dug nothing`);
+        assert.equal(loaded.material.tool.kind, name);
     }
-    assert.equal(material()[6], kTools - 1);
-    good(replica._sw_ask(kUndo));
+    good(ask("undo"));
     rest(1);
     assert.deepEqual(heights(), last, "an undo restores the sand from before the stroke");
-    assert.match(refusal(() => replica._sw_ask(kUndo)), /nothing to undo/);
+    assert.match(refusal(() => ask("undo")), /nothing to undo/);
     good(setMaterial("humidity", 0.4));
     good(setMaterial("talus", 25));
     good(setMaterial("cohesion", radius / 2));
     draw(20);
-    good(replica._sw_ask(kSettle));
+    good(ask("settle"));
     rest(3);
-    good(replica._sw_set_tool(0, kSame, kSame, kSame, -1));
+    good(setTool("kind", "sphere"));
     draw(20);
-    good(replica._sw_ask(kReset));
+    good(ask("reset"));
     rest(1);
     assert.deepEqual(heights(), start, "a reset restores the start");
     rest(1);
@@ -116,10 +120,10 @@ digWithAll();
 const before = loaded.hash;
 assert.match(refusal(() => setMaterial("talus", 90)), /^talus must be within \[0, 90\), got 90/);
 assert.match(refusal(() => setMaterial("stone", 1)), /^a material has no 'stone'/);
-assert.match(refusal(() => replica._sw_set_tool(-1, 1e9, kSame, kSame, -1)), /radius/);
-assert.match(refusal(() => replica._sw_set_tool(99, kSame, kSame, kSame, -1)), /no such tool/);
+assert.match(refusal(() => setTool("radius", 1e9)), /radius/);
+assert.match(refusal(() => setTool("kind", "spoon")), /^a tool's kind cannot be 'spoon'/);
 assert.match(refusal(() => replica._sw_set_depth(3)), /^the depth must be within/);
-assert.match(refusal(() => replica._sw_ask(5)), /no such edit/);
+assert.match(refusal(() => ask("load")), /^there is no edit 'load'/);
 assert.match(refusal(() => beginGrid("x.asc", "no grid")), /^x\.asc:1: /);
 assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\n4 five 6\n"))), /^x\.asc:5: a height must be a finite number, got 'five'/);
 assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\n4 5"))), /^x\.asc:5: the file ends/);
@@ -131,8 +135,8 @@ assert.match(refusal(() => beginGrid("x.asc", headerOf(3, 2, "cellsize 1\n1 2 3\
 assert.match(refusal(() => beginScene("x.scene", Buffer.from("no scene"))), /^x\.scene: not a Sandwall journal file/);
 assert.equal(loaded.hash, before);
 for (let i = 0; i < 16; ++i) {
-    good(replica._sw_ask(kReset));
+    good(ask("reset"));
 }
-assert.match(refusal(() => replica._sw_ask(kReset)), /^16 edits wait for their steps already/);
+assert.match(refusal(() => ask("reset")), /^16 edits wait for their steps already/);
 rest(17);
 save("hill");

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/dug_session.hpp"
+#include "web/hand/dug_session.hpp"
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 
@@ -181,16 +178,6 @@ TEST_F(Dug, RefusesAnUndoWithoutAStroke) {
     EXPECT_THROW(session_->ask(sand::Edit::undo), base::InputError);
     stroke(3);
     session_->ask(sand::Edit::undo);
-}
-
-TEST(Page, OffersEveryKindOfToolInTheOrderOfItsNumber) {
-    std::ifstream file(std::filesystem::path(SANDWALL_SOURCE_DIR) / "web/index.html");
-    const std::string page{std::istreambuf_iterator<char>(file), {}};
-    std::string options;
-    for (const auto& known : valuesOf(sand::ToolKind{})) {
-        options += "<option>" + std::string(known.name) + "</option>";
-    }
-    EXPECT_NE(page.find("<select id=\"tool\">" + options + "</select>"), std::string::npos) << options;
 }
 
 }  // namespace

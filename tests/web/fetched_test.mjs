@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import http from "node:http";
 import { builtModule } from "./built_module.mjs";
 
-const { fetchJournal } = await builtModule("session_files.ts");
+const { fetchJournal } = await builtModule("page/session_files.ts");
 const kPage = "\ufeff<!DOCTYPE html>\n<title>Sandwall</title>";
 
 /** Fetches /s.journal from a server with these files. Returns how many parts the page got or what it says, and the paths that it asked for. */

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { builtModule } from "./built_module.mjs";
 
-const { copyState, Keyframes } = await builtModule("keyframes.ts");
+const { copyState, Keyframes } = await builtModule("replica/keyframes.ts");
 const kMost = 8 << 20, kSteps = 400;
 
 /** Returns the state of a step: its length and its bytes depend on the step alone. */

@@ -17,6 +17,10 @@ class LoadedReplica {
 
     text(address) { return this.wasm.UTF8ToString(address); }
     get hash() { return this.text(this.wasm._sw_hash()); }
+    /** The described values whose JSON these functions return. */
+    get session() { return JSON.parse(this.text(this.wasm._sw_session())); }
+    get words() { return JSON.parse(this.text(this.wasm._sw_words())); }
+    get material() { return JSON.parse(this.text(this.wasm._sw_material())); }
     get problem() { return this.text(this.wasm._sw_problem()); }
     /** Fails with the replica's sentence if the result of a function says so. Returns the result. */
     good(result) {
@@ -61,7 +65,7 @@ class LoadedReplica {
         this.good(this.wasm._sw_restore());
     }
 
-    /** Returns the pieces of a drawing, as Replica.draw() of web/replica.ts does. */
+    /** Returns the pieces of a drawing, as Replica.draw() of web/replica/replica.ts does. */
     draw() {
         const w = this.wasm, pieces = [], arrays = [Float32Array, Int32Array, Uint32Array, Int16Array, Uint16Array, Uint8Array];
         this.good(w._sw_draw());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/page_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #include <gtest/gtest.h>
 
@@ -131,14 +131,13 @@ TEST_F(OpenedSession, CountsSandThatDiffersInALaterPassOnce) {
 
 TEST_F(OpenedSession, MarksStrokesAndEdits) {
     write();
-    std::vector<std::pair<std::uint64_t, web::Mark::Kind>> marks;
+    std::vector<std::pair<std::uint64_t, std::string_view>> marks;
     const web::PageSession session = open();
     for (const web::Mark& mark : session.marks()) {
-        marks.emplace_back(mark.step, mark.kind);
+        marks.emplace_back(mark.step, mark.what);
     }
-    using enum web::Mark::Kind;
-    const std::vector<std::pair<std::uint64_t, web::Mark::Kind>> expected{
-        {1, stroke}, {10, stroke}, {12, settle}, {20, stroke}, {30, stroke}};
+    const std::vector<std::pair<std::uint64_t, std::string_view>> expected{
+        {1, "stroke"}, {10, "stroke"}, {12, "settle"}, {20, "stroke"}, {30, "stroke"}};
     EXPECT_EQ(marks, expected);
 }
 

@@ -8,7 +8,7 @@ import { loadReplica } from "./loaded_replica.mjs";
 
 const [build, folder, list] = process.argv.slice(2);
 const loaded = await loadReplica(build), replica = loaded.wasm;
-const textAt = (address) => loaded.text(address), open = (name, parts) => loaded.open(name, parts);
+const open = (name, parts) => loaded.open(name, parts);
 
 function partsOf(file, count) {
     const names = [file, ...Array.from({ length: count - 1 }, (_, i) => `${file}.${i + 2}`)];
@@ -17,9 +17,9 @@ function partsOf(file, count) {
 
 function replay(file, count, steps, hashes, hash) {
     assert.equal(open(file, partsOf(file, count)), "");
-    assert.equal(textAt(replica._sw_shortcoming()), "");
-    assert.equal(replica._sw_last_step(), steps, file);
-    assert.equal(replica._sw_hashes(), hashes, file);
+    assert.equal(loaded.session.shortcoming, "");
+    assert.equal(loaded.session.lastStep, steps, file);
+    assert.equal(loaded.session.hashes, hashes, file);
     const started = process.cpuUsage();
     let middle = null;
     while (replica._sw_advance() === 1) {
@@ -49,7 +49,7 @@ for (const [file, count, steps, hashes, hash] of sessions) {
     replay(file, Number(count), Number(steps), Number(hashes), hash);
     pieces[file] = loaded.draw();
     const again = loaded.draw().some((piece) => piece.aHeight);
-    assert.equal(again, replica._sw_has_heights() === 0, `${file}: of a grid, only what has changed is drawn again`);
+    assert.equal(again, !loaded.session.hasHeights, `${file}: of a grid, only what has changed is drawn again`);
 }
 const numbersOf = (file, name) => pieces[file].flatMap((piece) => [...(piece[name] ?? [])]);
 // What pages draw: all vertices have their triangles, and beside cells without ground there are more.
@@ -78,11 +78,11 @@ assert.match(open("x", changed(60, good[0][60] ^ 1)), /^x: its header is cut off
 assert.equal(loaded.hash, last);
 // A torn tail and damage in the middle open up to there.
 assert.equal(open(file, [good[0].subarray(0, good[0].length - 3)]), "");
-assert.match(textAt(replica._sw_shortcoming()), /bytes are an incomplete write/);
+assert.match(loaded.session.shortcoming, /bytes are an incomplete write/);
 const middle = Math.floor(good[0].length * 0.98);
 assert.equal(open(file, changed(middle, good[0][middle] ^ 1)), "");
-assert.match(textAt(replica._sw_shortcoming()), /damaged at byte [0-9]+ of/);
-assert.ok(replica._sw_last_step() > 0 && replica._sw_last_step() < Number(steps), "some steps are intact");
+assert.match(loaded.session.shortcoming, /damaged at byte [0-9]+ of/);
+assert.ok(loaded.session.lastStep > 0 && loaded.session.lastStep < Number(steps), "some steps are intact");
 while (replica._sw_advance() === 1) {}
 assert.equal(replica._sw_mismatches(), 0);
 // A part or a state that is too large is a sentence, and the session goes on.

@@ -17,6 +17,7 @@ node tests/web/fetched_test.mjs
 node tests/web/replica_test.mjs build/web/bin "$folder" "$folder/list"
 
 "$2" "$folder" scenes/stroke.toml scenes/gis_tin.toml
+node tests/web/panel_test.mjs build/web/bin "$folder/stroke.scene"
 node tests/web/dig_test.mjs build/web/bin "$folder" "$folder"/{stroke,gis_tin}.scene >"$folder/dug"
 count=0
 while read -r file steps hash; do

@@ -12,6 +12,7 @@
 #include "master/measure/failure_report.hpp"
 #include "master/measure/recovery.hpp"
 #include "master/measure/summary.hpp"
+#include "scene/model/material.hpp"
 #include "tests/support/files/folder_test.hpp"
 
 namespace {
@@ -125,6 +126,13 @@ TEST_F(SchemaFiles, OfStatusAndSummaryHaveEveryCounterOfIncidents) {
     for (const std::string& key : counters.keys) {
         EXPECT_TRUE(schemaOf("summary")["properties"].contains(key)) << key;
     }
+}
+
+TEST_F(SchemaFiles, OfStatusHasEveryNumberOfTheMaterial) {
+    const Json numbers = host::jsonOf<Json>(scene::MaterialNumbers{scene::Material()});
+    const Json material = schemaOf("status")["properties"]["material"];
+    EXPECT_EQ(keysOf(numbers), keysOf(material["properties"]));
+    EXPECT_EQ(keysOf(numbers), material["required"].get<Keys>());
 }
 
 TEST_F(SchemaFiles, OfAFailureHasTheKeysOfItsReport) {

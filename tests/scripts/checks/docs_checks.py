@@ -163,7 +163,7 @@ def stale_recipes(repository):
 
 # Keys that code reads from a scene file, with the call that reads them or the list that declares them.
 SCENE_KEY = (r'(?:\.|->)(?:number|numbers|text|texts|integer|flag|value|choice|table)(?:Or)?\(\s*"(\w+)"|\w+Or\(\*?\w+, "(\w+)"'
-             r'|^    (?:ForceKey)?\{"(\w+)", ["&]')
+             r'|^    ForceKey\{"(\w+)", &|^    keyOf<[^>]*>\("(\w+)"')
 NAMED_VALUE = r'base::Named\{\w+, "([\w-]+)"\}'
 # Names that a user may write, by what declares them, and the pages that must list all of them.
 LISTS = (
@@ -178,6 +178,7 @@ LISTS = (
     ("scene/load/terrain_source.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/load/tin_table.cpp", SCENE_KEY, ("docs/scenes.md",)),
     ("scene/model/material.cpp", SCENE_KEY, ("docs/scenes.md",)),
+    ("scene/model/material.cpp", r'^    keyOf<[^>]*>\("\w+", "([\w-]+)"', ("docs/operator.md",)),
     ("sand/force/force_constants.cpp", SCENE_KEY, ("docs/scenes.md", "docs/forces.md")),
 )
 

@@ -27,7 +27,7 @@ PLACES = {
     "render_node/surface_factory.cpp": "makes the object that draws it",
     "sand/force/surface_patch.cpp": "takes the part that a hand feels",
     "scene/export/results.cpp": "takes rasters and triangles from it",
-    "web/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
+    "web/drawing/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
 }
 # Code of one kind of sand. It may use its own alternative, and throws if it gets the other one.
 KINDS = {
@@ -67,7 +67,7 @@ KNOWING = {
     "scene/relax/steepness.cpp": "slopes by the flux limits of a height field",
     "scene/relax/tin_sand.cpp": "makes a TIN of a file",
     "scene/relax/tin_sand.hpp": "declares this",
-    "web/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
+    "web/drawing/drawing.cpp": "makes the object that draws it for a page, and takes its heights",
 }
 MOST_KNOWING = 23
 

@@ -154,7 +154,7 @@ class WebPage(unittest.TestCase):
             self.assertEqual(self.answer(path)[0], 404, path)
 
     def test_every_file_has_the_policy_of_the_page(self):
-        html = (ROOT / "web" / "index.html").read_text(encoding="utf-8")
+        html = (ROOT / "web" / "page" / "index.html").read_text(encoding="utf-8")
         policy = re.search(r'http-equiv="Content-Security-Policy" content="([^"]+)"', html).group(1)
         for path in ("/", "/replica.wasm", "/session/session.journal.2", "/nothing"):
             self.assertEqual(self.header(path, "Content-Security-Policy"), policy + "; frame-ancestors 'none'", path)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the page that shows a journal: the timeline, and whether the hashes are those of the session.
-import type { FrameMessage, ProgressMessage, SessionMessage, ToWorker } from "./messages";
+import type { FrameMessage, ProgressMessage, SessionMessage, ToWorker } from "../replica/messages";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const say = element("say"), numbers = element("numbers"), slider = element<HTMLInputElement>("step"), speed = element<HTMLSelectElement>("speed");
 const playButton = element<HTMLButtonElement>("play");
+
+const kMostMarks = 2000;
 
 export class JournalPage {
     private session?: SessionMessage;   // none while the page digs
@@ -86,10 +88,10 @@ export class JournalPage {
     private showMarks({ marks, lastStep }: SessionMessage): void {
         const timeline = element("marks");
         timeline.replaceChildren();
-        for (let i = 0; i < marks.length && i < 4000; i += 2) {
+        for (const { step, what } of marks.slice(0, kMostMarks)) {
             const mark = document.createElement("i");
-            mark.style.left = `${100 * marks[i] / Math.max(lastStep, 1)}%`;
-            mark.className = marks[i + 1] === 0 ? "stroke" : "edit";
+            mark.style.left = `${100 * step / Math.max(lastStep, 1)}%`;
+            mark.className = what === "stroke" ? "stroke" : "edit";
             timeline.append(mark);
         }
     }

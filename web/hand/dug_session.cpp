@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/dug_session.hpp"
+#include "web/hand/dug_session.hpp"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/drawing.hpp"
+#include "web/drawing/drawing.hpp"
 
 #include <algorithm>
 #include <variant>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The replica's C functions (replica.cpp) as a class.
 
-import { kReadingNumbers, type Piece, type ToolChange } from "./messages";
+import { kReadingNumbers, type Piece, type Words } from "./messages";
 
 type Module = Record<string, any>;
 
@@ -31,15 +31,18 @@ export class Replica {
     }
     /** Returns an address, unless there is no memory. */
     private room(address: number): number { return this.require(address > 0 ? address : -1); }
-    private ints(at: number, count: number): Int32Array { return this.wasm.HEAP32.slice(at >> 2, (at >> 2) + count); }
+    /** Returns the described value whose JSON is at an address. */
+    private json(address: number) { return JSON.parse(this.text(address)); }
 
     private withText(text: string, call: (address: number) => number): number {
         const bytes = new TextEncoder().encode(text + "\0");
         const at = this.wasm._malloc(bytes.length);
         this.wasm.HEAPU8.set(bytes, at);
-        const result = call(at);
-        this.wasm._free(at);
-        return this.require(result);
+        try {
+            return this.require(call(at));
+        } finally {
+            this.wasm._free(at);
+        }
     }
     private add(parts: ArrayBuffer[]): void {
         this.wasm._sw_begin();
@@ -54,17 +57,8 @@ export class Replica {
         this.add(parts);
         this.withText(name, (at) => this.wasm._sw_open(at));
     }
-    ground() {
-        const w = this.wasm;
-        return {
-            name: this.text(w._sw_name()), shortcoming: this.text(w._sw_shortcoming()), columns: w._sw_columns(), rows: w._sw_rows(),
-            cell: w._sw_cell_size(), stepsPerSecond: w._sw_steps_per_second(), middle: w._sw_middle(), tin: w._sw_has_heights() === 0,
-        };
-    }
-    session() {
-        const w = this.wasm;
-        return { ...this.ground(), lastStep: w._sw_last_step(), hashes: w._sw_hashes(), marks: this.ints(w._sw_marks(), 2 * w._sw_mark_count()) };
-    }
+    /** Returns what a page must know of the sand that is shown. */
+    session() { return this.json(this.wasm._sw_session()); }
     advance(): boolean { return this.require(this.wasm._sw_advance()) === 1; }
     stepOn(): boolean { return this.require(this.wasm._sw_step_on()) === 1; }
     get step(): number { return this.wasm._sw_step(); }
@@ -118,16 +112,14 @@ export class Replica {
     }
     digOn(): boolean { return this.require(this.wasm._sw_dig_on()) === 1; }
     get settlesNext(): boolean { return this.wasm._sw_settles_next() === 1; }
-    ask(edit: number): void { this.require(this.wasm._sw_ask(edit)); }
+    get words(): Words { return this.json(this.wasm._sw_words()); }
+    get material() { return this.json(this.wasm._sw_material()); }
+    get canUndo(): boolean { return this.wasm._sw_can_undo() === 1; }
+    ask(edit: string): void { this.withText(edit, (at) => this.wasm._sw_ask(at)); }
     setDepth(depth: number): void { this.require(this.wasm._sw_set_depth(depth)); }
     setMaterial(word: string, value: number): void { this.withText(word, (at) => this.wasm._sw_set_material(at, value)); }
-    setTool({ kind = -1, radius = NaN, width = NaN, heading = NaN, leftFoot }: ToolChange): void {
-        this.require(this.wasm._sw_set_tool(kind, radius, width, heading, leftFoot === undefined ? -1 : Number(leftFoot)));
-    }
-    /** Returns the twelve numbers of sw_material(). */
-    material(): number[] {
-        const at = this.wasm._sw_material() >> 3;
-        return [...this.wasm.HEAPF64.slice(at, at + 12)];
+    setTool(part: string, value: string): void {
+        this.withText(value, (to) => this.withText(part, (at) => this.wasm._sw_set_tool(at, to)));
     }
     journal(): ArrayBuffer {
         const length = this.require(this.wasm._sw_journal());

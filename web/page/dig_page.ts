@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of the page that digs.
+import type { View } from "../drawing/view";
+import { DigPointer } from "../hand/dig_pointer";
+import type { DigBegunMessage, DugMessage, FromHand, SandMessage, ToWorker } from "../replica/messages";
 import { DigPanel } from "./dig_panel";
-import { DigPointer } from "./dig_pointer";
 import { fetchSandwallFile } from "./fetched";
-import type { DigBegunMessage, DugMessage, FromHand, SandMessage, ToWorker } from "./messages";
-import type { View } from "./view";
 
 /** What digging uses of the page. */
 export interface Page {

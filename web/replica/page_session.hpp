@@ -10,15 +10,19 @@
 
 #include "journal/reader.hpp"
 #include "journal/verification.hpp"
-#include "web/step_source.hpp"
+#include "web/replica/step_source.hpp"
 
 namespace web {
 
 /// Something in a session that a timeline marks.
 struct Mark {
-    enum class Kind : std::uint8_t { stroke, settle, reset, undo, tune, load, resumed };
     std::uint64_t step = 0;  // at which it begins
-    Kind kind = Kind::stroke;
+    std::string_view what;   // "stroke", "resumed", or the name of an edit
+    template <class Self, class Visit>
+    static void fields(Self& it, Visit& visit) {
+        visit("step", it.step);
+        visit("what", it.what);
+    }
 };
 
 /// A recorded session and its sand, as a page computes it. Used by one thread.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the sand. It works in slices, so that it answers the page between them.
-import { HandSource } from "./hand_source";
-import { JournalSource } from "./journal_source";
-import { Keyframes } from "./keyframes";
-import type { DigMessage, FromWorker, OpenMessage, ToWorker } from "./messages";
-import { Replica } from "./replica";
-import type { StepSource } from "./step_source";
+import { HandSource } from "../hand/hand_source";
+import { JournalSource } from "../replica/journal_source";
+import { Keyframes } from "../replica/keyframes";
+import type { DigMessage, FromWorker, OpenMessage, ToWorker } from "../replica/messages";
+import { Replica } from "../replica/replica";
+import type { StepSource } from "../replica/step_source";
 
 // A module with one vector instruction. A browser without vectors refuses it.
 const kVectors = new Uint8Array([0, 97, 115, 109, 1, 0, 0, 0, 1, 5, 1, 96, 0, 1, 123, 3, 2, 1, 0, 10, 10, 1, 8, 0, 65, 0, 253, 15, 253, 98, 11]);
@@ -93,9 +93,9 @@ async function dig(message: DigMessage): Promise<void> {
     }
     it.dig(message.name, message.scene ?? await text!.arrayBuffer(), text === undefined);
     keyframes = new Keyframes();  // digging needs no memory for states
-    const begun = it.ground();
+    const begun = it.session();
+    tell({ kind: "dig", ...begun, words: it.words });
     begin(new HandSource(it, begun.stepsPerSecond, { tell, show }));
-    tell({ kind: "dig", ...begun });
 }
 
 /** Begins anew. If that is refused, the session before goes on. */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/grid_scene.hpp"
+#include "web/hand/grid_scene.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "scene/import/degrees.hpp"
 #include "scene/import/esri_grid.hpp"
 #include "scene/import/grid_terrain.hpp"
-#include "web/opening.hpp"
+#include "web/replica/opening.hpp"
 
 namespace web {
 namespace {

@@ -16,16 +16,20 @@ export interface DigMessage {
     file?: Blob;
 }
 
-export const kEdits = { settle: 1, reset: 2, undo: 3 };  // sand::Edit::Kind
-export type EditName = keyof typeof kEdits;
+/** What a hand can choose (web/words.cpp). */
+export interface Words {
+    tools: string[];
+    material: { word: string; lowest: number; highest: number }[];
+    edits: string[];
+}
 
-/** A part that is missing does not change. */
-export interface ToolChange {
-    kind?: number;             // sand::ToolKind
-    radius?: number;           // scene unit
+/** The parts of a tool by their names. It has no others. */
+export interface Tool {
+    kind: string;
+    radius: number;            // scene unit
     width?: number;            // over the length
     heading?: number;          // degrees
-    leftFoot?: boolean;
+    foot?: string;
 }
 
 /** For each reading of the pointer: time in ms, eye, direction of the sight in cells, and 1 if it is pressed. */
@@ -33,8 +37,8 @@ export const kReadingNumbers = 8;
 
 export type ToHand =
     | { hand: Float64Array }
-    | { edit: EditName }
-    | { tool: ToolChange }
+    | { edit: string }
+    | { tool: string; value: string }       // a part of the tool
     | { material: string; value: number }   // an operator's word, such as "talus"
     | { depth: number }                     // of the tool, in radii
     | { save: true };
@@ -51,7 +55,7 @@ export type ToWorker =
 export interface SandMessage {
     name: string;
     shortcoming: string;
-    tin: boolean;
+    hasHeights: boolean;       // for each cell, which a TIN has not
     columns: number;
     rows: number;
     cell: number;              // scene unit
@@ -64,19 +68,20 @@ export interface SessionMessage extends SandMessage {
     address: string;           // of the OpenMessage
     lastStep: number;
     hashes: number;
-    marks: Int32Array;         // pairs of a step and its kind: 0 is a stroke, 1 to 5 are edits, 6 is a resume
+    marks: { step: number; what: string }[];  // strokes, resumes, and edits by their names
 }
 
 /** The page can dig now. */
 export interface DigBegunMessage extends SandMessage {
     kind: "dig";
+    words: Words;
 }
 
 /** The material that was asked for, in the units of a scene file. */
 export interface MaterialMessage {
     kind: "material";
-    numbers: Record<string, number>;  // by an operator's word
-    tool: Required<ToolChange>;
+    material: Record<string, number>;  // by an operator's word
+    tool: Tool;
 }
 
 /** How far the hand's steps are. `busy` says what keeps the worker from answering; empty if nothing does. */
@@ -103,7 +108,7 @@ export interface NoteMessage {
 export type Numbers = Float32Array | Int32Array | Uint32Array | Int16Array | Uint16Array | Uint8Array;
 
 /**
- * Arrays of a drawing by name (web/drawing.cpp): what differs from the frame before.
+ * Arrays of a drawing by name (web/drawing/drawing.cpp): what differs from the frame before.
  *
  * `uNAME`: a uniform of the wall's shaders. `vertices`: the number of all vertices of new sand. `first`: the number of the
  * first vertex in `aHeight`, `aGrid`, `aNormal` and `aShade`. `triangles`: numbers of vertices, of new sand. `sides`,

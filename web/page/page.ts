@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: passes what the worker computes to its parts, and draws it.
+import { View } from "../drawing/view";
+import type { FrameMessage, FromWorker, SandMessage, SessionMessage, ToWorker } from "../replica/messages";
 import { DigPage } from "./dig_page";
 import { JournalPage } from "./journal_page";
-import type { FrameMessage, FromWorker, SandMessage, SessionMessage, ToWorker } from "./messages";
+import { showOthers } from "./others";
 import { Results, save, textOfEye } from "./results";
 import { fetchJournal, openDroppedFiles } from "./session_files";
-import { View } from "./view";
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const canvas = element<HTMLCanvasElement>("sand"), say = element("say"), cutButton = element<HTMLButtonElement>("cut");
+// What the parts of the page take from the sand that begins.
+const kKnown = ["kind", "name", "shortcoming", "hasHeights", "columns", "rows", "cell", "stepsPerSecond", "middle", "address", "lastStep", "hashes", "marks", "words"];
 const query = new URLSearchParams(location.search);
 
 const worker = new Worker("worker.js", { type: "module" });
@@ -54,9 +57,10 @@ function beginSand(opened: SandMessage, address = ""): void {
     begun = false;
     document.title = `${opened.name} – Sandwall`;
     delete document.body.dataset.problem;
-    cutButton.disabled = opened.tin;
+    cutButton.disabled = !opened.hasHeights;
     cutButton.setAttribute("aria-pressed", "false");
     results.begin(opened, address);
+    showOthers("sand", opened, kKnown);
 }
 function beginJournal(opened: SessionMessage): void {
     beginSand(opened, opened.address);

@@ -13,7 +13,7 @@
 #include "haptic_bridge/hand/sweep_budget.hpp"
 #include "haptic_bridge/hand/touched_sand.hpp"
 #include "journal/memory_writer.hpp"
-#include "web/step_source.hpp"
+#include "web/replica/step_source.hpp"
 
 namespace web {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the sand with the wall's own shaders.
 import { Color, LinearSRGBColorSpace, Matrix4, Scene, Vector2, Vector3, WebGLRenderer } from "three";
+import type { FrameMessage, SandMessage } from "../replica/messages";
 import { Eye } from "./eye";
-import type { FrameMessage, SandMessage } from "./messages";
 import { SandMeshes } from "./sand_meshes";
 
 export class View {

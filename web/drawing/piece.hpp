@@ -10,9 +10,9 @@
 
 namespace web {
 
-/// Arrays of numbers for the page, by name. web/messages.ts describes them.
+/// Arrays of numbers for the page, by name. web/replica/messages.ts describes them.
 struct Piece {
-    /// In the order of kArrays in web/replica.ts.
+    /// In the order of kArrays in web/replica/replica.ts.
     using Numbers = std::variant<std::vector<float>, std::vector<std::int32_t>, std::vector<std::uint32_t>,
                                  std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<std::uint8_t>>;
     struct Array {

@@ -9,8 +9,8 @@
 #include "shapes/model/surface_parts.hpp"
 #include "shapes/sand_box.hpp"
 #include "shapes/tool/mesh.hpp"
-#include "web/piece.hpp"
-#include "web/step_source.hpp"
+#include "web/drawing/piece.hpp"
+#include "web/replica/step_source.hpp"
 
 namespace web {
 

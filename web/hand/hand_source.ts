@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page's hand as the source of steps. A step is due whenever the time of one has passed, as in a session. Its sweeps
 // are spread, so the worker answers between two steps.
-import { kEdits, type MaterialMessage, type ToWorker } from "./messages";
-import type { Replica } from "./replica";
-import { kSliceMs, type Stage, type StepSource } from "./step_source";
+import type { ToWorker } from "../replica/messages";
+import type { Replica } from "../replica/replica";
+import { kSliceMs, type Stage, type StepSource } from "../replica/step_source";
 
 const kMostDue = 4;        // steps. A slow browser leaves out the rest, and so does a slow wall
 const kProgressMs = 100;
 const kLongMs = 100;       // a step that takes longer is felt
-
-/** Returns what an operator's `status` has, from the numbers of sw_material(). */
-function materialOf(numbers: number[]): MaterialMessage {
-    const [talus, wetTalus, humidity, cohesion, band, settling, kind, radius, width, heading, foot] = numbers;
-    return {
-        kind: "material", numbers: { talus, "wet-talus": wetTalus, humidity, cohesion, band, "settling-time": settling },
-        tool: { kind, radius, width, heading, leftFoot: foot === 1 },
-    };
-}
 
 export class HandSource implements StepSource {
     private due = 0;               // steps
@@ -27,7 +18,7 @@ export class HandSource implements StepSource {
     private longest = 0;           // ms, of a step since the message before
 
     constructor(private readonly replica: Replica, private readonly stepsPerSecond: number, private readonly stage: Stage) {
-        stage.tell(materialOf(replica.material()));
+        this.tellMaterial();
     }
 
     take(message: ToWorker): void {
@@ -35,9 +26,9 @@ export class HandSource implements StepSource {
             if ("hand" in message) {
                 this.replica.point(message.hand);
             } else if ("edit" in message) {
-                this.replica.ask(kEdits[message.edit]);
+                this.replica.ask(message.edit);
             } else if ("tool" in message) {
-                this.replica.setTool(message.tool);
+                this.replica.setTool(message.tool, message.value);
             } else if ("material" in message) {
                 this.replica.setMaterial(message.material, message.value);
             } else if ("depth" in message) {
@@ -50,7 +41,7 @@ export class HandSource implements StepSource {
             this.stage.tell({ kind: "note", text: (error as Error).message });
         }
         if ("tool" in message || "material" in message) {
-            this.stage.tell(materialOf(this.replica.material()));
+            this.tellMaterial();
         }
     }
 
@@ -82,9 +73,10 @@ export class HandSource implements StepSource {
         this.longest = Math.max(this.longest, performance.now() - before);
     }
 
+    private tellMaterial(): void { this.stage.tell({ kind: "material", ...this.replica.material }); }
     private tellStep(busy: string): void {
         this.told = performance.now();
         this.toldStep = this.replica.step;
-        this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.material()[11] === 1, busy });
+        this.stage.tell({ kind: "dug", step: this.toldStep, hash: this.replica.hash, undo: this.replica.canUndo, busy });
     }
 }

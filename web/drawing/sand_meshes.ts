@@ -4,7 +4,7 @@ import {
     BufferAttribute, BufferGeometry, DataTexture, InterleavedBuffer, InterleavedBufferAttribute, LinearFilter, LinearMipmapNearestFilter, Matrix4,
     type Mesh, RepeatWrapping, RGBAFormat, type Scene, Vector4,
 } from "three";
-import type { Piece, SandMessage } from "./messages";
+import type { Piece, SandMessage } from "../replica/messages";
 import { SandPrograms } from "./sand_programs";
 
 const kTray = 0.46;  // [m], longer side of the field, as on the desktop wall

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opens files: those that a person drops or chooses, and a journal of the page's own server.
+import type { ToWorker } from "../replica/messages";
 import { fetchSandwallFile } from "./fetched";
-import type { ToWorker } from "./messages";
 
 /** What opening uses of the page. */
 export interface Opener {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/opening.hpp"
+#include "web/replica/opening.hpp"
 
 #include <fmt/format.h>
 

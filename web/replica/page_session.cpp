@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "web/page_session.hpp"
+#include "web/replica/page_session.hpp"
 
 #include <fmt/format.h>
 
@@ -8,22 +8,9 @@
 #include <utility>
 
 #include "base/input_error.hpp"
-#include "web/opening.hpp"
+#include "web/replica/opening.hpp"
 
 namespace web {
-namespace {
-
-/// Returns the mark of an edit.
-Mark::Kind markOf(sand::Edit::Kind edit) {
-    static_assert(static_cast<int>(Mark::Kind::settle) == static_cast<int>(sand::Edit::settle));
-    static_assert(static_cast<int>(Mark::Kind::reset) == static_cast<int>(sand::Edit::reset));
-    static_assert(static_cast<int>(Mark::Kind::undo) == static_cast<int>(sand::Edit::undo));
-    static_assert(static_cast<int>(Mark::Kind::tune) == static_cast<int>(sand::Edit::tune));
-    static_assert(static_cast<int>(Mark::Kind::load) == static_cast<int>(sand::Edit::load));
-    return static_cast<Mark::Kind>(edit);
-}
-
-}  // namespace
 
 PageSession::PageSession(std::string name, std::vector<base::Bytes> parts, std::string_view release,
                          std::int64_t memory)
@@ -65,7 +52,7 @@ void PageSession::note(journal::JournalRecord& record) {
         humidity_.insert_or_assign(lastStep_ + 1, material->humidity);
     } else if (std::holds_alternative<journal::JournalResumed>(kept)) {
         ++hashes_;
-        marks_.push_back({lastStep_, Mark::Kind::resumed});
+        marks_.push_back({lastStep_, "resumed"});
     } else if (std::holds_alternative<journal::JournalEnd>(kept) ||
                std::holds_alternative<journal::JournalChecked>(kept)) {
         ++hashes_;
@@ -80,11 +67,11 @@ void PageSession::noteSteps(const journal::JournalFrame& frame) {
     frames_.push_back({frame.steps.front().number, records_.size() - 1});
     for (const sand::Step& step : frame.steps) {
         if (step.engaged && !engaged_) {
-            marks_.push_back({step.number, Mark::Kind::stroke});
+            marks_.push_back({step.number, "stroke"});
         }
         engaged_ = step.engaged;
         if (step.edit.kind != sand::Edit::none) {
-            marks_.push_back({step.number, markOf(step.edit.kind)});
+            marks_.push_back({step.number, base::nameOf(step.edit.kind)});
         }
         lastStep_ = step.number;
     }

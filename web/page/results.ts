@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person takes away from the page: a picture, heights, a link to a moment, and the journal of what was dug.
-import { type FrameMessage, kUnitsPerCell, type SandMessage } from "./messages";
-import type { View } from "./view";
+import type { View } from "../drawing/view";
+import { type FrameMessage, kUnitsPerCell, type SandMessage } from "../replica/messages";
 
 const button = (id: string) => document.getElementById(id) as HTMLButtonElement;
 const say = document.getElementById("say")!;
@@ -52,7 +52,7 @@ export class Results {
         this.sand = sand;
         this.frame = undefined;
         this.address = address;
-        button("heights").disabled = sand.tin;
+        button("heights").disabled = !sand.hasHeights;
         button("picture").disabled = this.view === undefined;
         button("link").disabled = address === "";
     }

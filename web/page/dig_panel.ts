@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // The controls for digging: the scene, the tool, the material, edits, and saving.
-import type { DugMessage, EditName, MaterialMessage, SandMessage, ToHand } from "./messages";
+import type { DigBegunMessage, DugMessage, MaterialMessage, ToHand, Tool, Words } from "../replica/messages";
+import { showOthers } from "./others";
 
 declare const SCENES: string[];  // names of the encoded scenes, which web/build.mjs lists
 
 const kWider = 1.25;         // ratio of the tool's sizes, as for a wall's keys
 const kShortest = 2, kLongest = 0.25;  // length of the tool: cells, and share of the field's shorter side
-const kRoundKinds = 2;       // sphere and circle have neither width nor heading
-const kFootprint = 5;
 
 const element = <T extends HTMLElement>(id: string) => document.getElementById(id) as T;
 const input = (id: string) => element<HTMLInputElement>(id), choice = (id: string) => element<HTMLSelectElement>(id);
 
 export class DigPanel {
+    private words?: Words;
     private material?: MaterialMessage;
     private limits = { least: 0, most: Infinity };  // radius, scene unit
 
@@ -21,27 +21,25 @@ export class DigPanel {
         choice("scene").append(...SCENES.map((name) => new Option(name)));
         choice("scene").value = "writing";
         element("dig").onclick = () => open(choice("scene").value);
-        choice("tool").onchange = () => tell({ tool: { kind: choice("tool").selectedIndex } });
+        choice("tool").onchange = () => this.change("kind", choice("tool").value);
         element("larger").onclick = () => this.resize(kWider);
         element("smaller").onclick = () => this.resize(1 / kWider);
         input("depth").oninput = () => {
             element("depth").setAttribute("aria-valuetext", `${Math.round(100 * input("depth").valueAsNumber)} % of the radius`);
             tell({ depth: input("depth").valueAsNumber });
         };
-        input("width").onchange = () => this.whenNumber("width", (width) => tell({ tool: { width } }));
-        input("heading").onchange = () => this.whenNumber("heading", (heading) => tell({ tool: { heading } }));
-        choice("foot").onchange = () => tell({ tool: { leftFoot: choice("foot").value === "left" } });
-        for (const edit of ["undo", "settle", "reset"] as EditName[]) {
-            element(edit).onclick = () => tell({ edit });
-        }
+        input("width").onchange = () => this.whenNumber("width", (width) => this.change("width", width));
+        input("heading").onchange = () => this.whenNumber("heading", (heading) => this.change("heading", heading));
+        choice("foot").onchange = () => this.change("foot", choice("foot").value);
         choice("word").onchange = () => this.showNumber();
         input("number").onchange = () => this.whenNumber("number", (value) => tell({ material: choice("word").value, value }));
         element("save").onclick = () => tell({ save: true });
     }
 
+    private change(part: keyof Tool, value: string | number): void { this.tell({ tool: part, value: String(value) }); }
     private resize(factor: number): void {
         const radius = this.material!.tool.radius, { least, most } = this.limits;
-        this.tell({ tool: { radius: Math.min(Math.max(radius * factor, Math.min(least, radius)), Math.max(most, radius)) } });
+        this.change("radius", Math.min(Math.max(radius * factor, Math.min(least, radius)), Math.max(most, radius)));
     }
     private whenNumber(id: string, use: (number: number) => void): void {
         if (Number.isFinite(input(id).valueAsNumber)) {
@@ -49,13 +47,33 @@ export class DigPanel {
         }
     }
     private showNumber(): void {
-        input("number").value = String(+this.material!.numbers[choice("word").value].toPrecision(6));
+        const { word, lowest, highest } = this.words!.material[choice("word").selectedIndex];
+        Object.assign(input("number"), { min: lowest, max: highest, value: +this.material!.material[word].toPrecision(6) });
+    }
+
+    /** Fills the controls with what a hand can choose. An edit without a button gets one. */
+    private offer(words: Words): void {
+        this.words = words;
+        choice("tool").replaceChildren(...words.tools.map((name) => new Option(name)));
+        choice("word").replaceChildren(...words.material.map(({ word }) => new Option(word)));
+        for (const edit of words.edits) {
+            (document.getElementById(edit) ?? this.added(edit)).onclick = () => this.tell({ edit });
+        }
+        showOthers("words", words, ["tools", "material", "edits"]);
+    }
+    private added(edit: string): HTMLElement {
+        const button = Object.assign(document.createElement("button"), { id: edit, textContent: edit });
+        element("save").before(button);
+        return button;
     }
 
     /** Shows or hides the controls of a hand. */
-    begin(sand: SandMessage | undefined): void {
+    begin(sand: DigBegunMessage | undefined): void {
         document.body.classList.toggle("digging", sand !== undefined);
         if (sand) {
+            if (!this.words) {
+                this.offer(sand.words);
+            }
             this.limits = { least: kShortest * sand.cell / 2, most: kLongest * Math.min(sand.columns, sand.rows) * sand.cell / 2 };
             input("depth").value = "0.5";
             element<HTMLButtonElement>("undo").disabled = true;
@@ -63,15 +81,18 @@ export class DigPanel {
     }
     showMaterial(message: MaterialMessage): void {
         this.material = message;
-        const { kind, radius, width, heading, leftFoot } = message.tool;
-        choice("tool").selectedIndex = kind;
+        const { kind, radius, width = 1, heading = 0, foot = "right" } = message.tool;
+        choice("tool").value = kind;
         element("size").textContent = `radius ${radius.toPrecision(3)}`;
         input("heading").value = String(+heading.toFixed(1));
         input("width").value = String(+width.toPrecision(3));
-        input("width").disabled = input("heading").disabled = kind < kRoundKinds;
-        choice("foot").value = leftFoot ? "left" : "right";
-        choice("foot").disabled = kind !== kFootprint;
+        choice("foot").value = foot;
+        for (const part of ["width", "heading", "foot"]) {
+            input(part).disabled = !(part in message.tool);
+        }
         this.showNumber();
+        showOthers("hand", message, ["kind", "material", "tool"]);
+        showOthers("tool", message.tool, ["kind", "radius", "width", "heading", "foot"]);
     }
     showStep({ undo }: DugMessage): void { element<HTMLButtonElement>("undo").disabled = !undo; }
 }

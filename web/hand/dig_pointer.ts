@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the pointer over the sand: mouse, pen or first finger. The worker finds the place of the sand under it.
-import { kReadingNumbers } from "./messages";
-import type { View } from "./view";
+import type { View } from "../drawing/view";
+import { kReadingNumbers } from "../replica/messages";
 
 const kMostPlaces = 6;      // between two readings of a stroke, as in the report of a wall's pointer
 const kNear = 4;            // CSS pixels

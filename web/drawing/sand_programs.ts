@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wall's shaders, put together as programs for the page's meshes, and the numbers that all of them share.
 import { BufferGeometry, GLSL3, type IUniform, Matrix4, Mesh, RawShaderMaterial, type Scene, Vector2, Vector3 } from "three";
-import ball from "../shapes/shaders/ball.glsl";
-import light from "../shapes/shaders/light.glsl";
-import near from "../shapes/shaders/near.frag.glsl";
-import sand from "../shapes/shaders/sand.vert.glsl";
-import sheen from "../shapes/shaders/sheen.glsl";
-import side from "../shapes/shaders/side.vert.glsl";
-import solid from "../shapes/shaders/solid.vert.glsl";
-import stamp from "../shapes/shaders/stamp.glsl";
-import sunlit from "../shapes/shaders/sunlit.glsl";
-import toolFragment from "../shapes/shaders/tool.frag.glsl";
-import wood from "../shapes/shaders/wood.frag.glsl";
+import ball from "../../shapes/shaders/ball.glsl";
+import light from "../../shapes/shaders/light.glsl";
+import near from "../../shapes/shaders/near.frag.glsl";
+import sand from "../../shapes/shaders/sand.vert.glsl";
+import sheen from "../../shapes/shaders/sheen.glsl";
+import side from "../../shapes/shaders/side.vert.glsl";
+import solid from "../../shapes/shaders/solid.vert.glsl";
+import stamp from "../../shapes/shaders/stamp.glsl";
+import sunlit from "../../shapes/shaders/sunlit.glsl";
+import toolFragment from "../../shapes/shaders/tool.frag.glsl";
+import wood from "../../shapes/shaders/wood.frag.glsl";
+import type { Piece } from "../replica/messages";
 import cutAndFill from "./cut_and_fill.vert.glsl";
-import type { Piece } from "./messages";
 
 export type Uniforms = Record<string, IUniform>;
 
