@@ -21,7 +21,7 @@ Frames::Frames(std::uint32_t seed, Identity identity) : random_(seed), identity_
                               Proof{{3}},
                               Welcome{identity_, 60},
                               Refusal{RefusalCode::scene, "no"},
-                              Start{1, 0, 3},
+                              StartMessage{1, 0, 3},
                               Ready{},
                               NeedState{},
                               State{base::Bytes(200, 4)},

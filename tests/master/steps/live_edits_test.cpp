@@ -45,7 +45,7 @@ TEST_F(LiveStepsTest, AnEditThatALostServerTookAlongIsDoneByTheNextWhoNumbers) {
         }
         connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        const auto start = connection.await<haptic_bridge::Start>();
+        const auto start = connection.await<haptic_bridge::StartMessage>();
         if (!start) {
             return;
         }
@@ -114,7 +114,7 @@ TEST_F(LiveStepsTest, TicksThatNoHandCanMakeAreLeftOut) {
         }
         connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (connection.await<haptic_bridge::Start>()) {
+        if (connection.await<haptic_bridge::StartMessage>()) {
             connection.send(haptic_bridge::Ready{});
             const base::Bytes piece = haptic_bridge::encode(haptic_bridge::TickPiece{base::Bytes(kPiece, 1)});
             for (int i = 0; i < kPieces; ++i) {

@@ -197,7 +197,7 @@ TEST_F(LiveStepsTest, AServerThatIsStoppedLosesItsLinkAfterTenSeconds) {
         }
         connection.send(haptic_bridge::Welcome{
             {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-        if (!connection.await<haptic_bridge::Start>()) {
+        if (!connection.await<haptic_bridge::StartMessage>()) {
             return;
         }
         connection.send(haptic_bridge::Ready{});
@@ -251,7 +251,7 @@ TEST_F(LiveStepsTest, AServerThatFailsRightAfterEachLinkIsAskedMoreRarelyEachTim
         if (connection.await<haptic_bridge::Hello>()) {
             connection.send(haptic_bridge::Welcome{
                 {haptic_bridge::kProtocolVersion, sand::kAlgorithmVersion, scene_.rules.digest(), scene_.name}, 60});
-            if (connection.await<haptic_bridge::Start>()) {
+            if (connection.await<haptic_bridge::StartMessage>()) {
                 connection.send(haptic_bridge::Ready{});
             }
         }
