@@ -114,9 +114,9 @@ API int sw_set_tool(const char* part, const char* value) {
     });
 }
 /// Returns what a hand can choose, as JSON (web::wordsOfPage()).
-API const char* sw_words() { return digs.say(web::wordsOfPage()); }
+API const char* sw_words() { return digs.textAt(web::wordsOfPage()); }
 /// Returns the material with all changes that were asked for, as JSON (web::materialText()).
-API const char* sw_material() { return digs.say(web::materialText(digs.dug->material())); }
+API const char* sw_material() { return digs.textAt(web::materialText(digs.dug->material())); }
 /// Returns 1 if the last stroke can be undone.
 API int sw_can_undo() { return digs.dug->replica().surface().hasKept() ? 1 : 0; }
 

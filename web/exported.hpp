@@ -37,7 +37,7 @@ struct Exported {
     DugSession* dug = nullptr;            // the session, if its steps are those of a hand
     base::Bytes bytes;                    // a state or a journal
     std::string problem;                  // sentence for the user
-    std::string said;                     // text that the page reads next
+    std::string text;                     // text that the page reads next
 
     static constexpr const char* kNoMemory = "This page has no more memory";
     // A 32-bit heap that may grow to 2 GiB, less what journal and states take.
@@ -59,9 +59,9 @@ struct Exported {
         drawing.emplace(*session);
     }
     /// Returns the address of a text, which stays until the next one.
-    const char* say(std::string text) {
-        said = std::move(text);
-        return said.c_str();
+    const char* textAt(std::string next) {
+        text = std::move(next);
+        return text.c_str();
     }
     /// Returns what `work` returns, or -1 if it throws; `problem` then has the sentence.
     template <class Work>

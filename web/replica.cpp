@@ -78,7 +78,7 @@ API int sw_open(const char* name) {
 }
 
 /// Returns what is shown, as JSON (ShownSand).
-API const char* sw_session() { return page.say(web::jsonOf(ShownSand())); }
+API const char* sw_session() { return page.textAt(web::jsonOf(ShownSand())); }
 
 /// Takes the next record of the first pass. Returns 1, or 0 behind the last one.
 API int sw_advance() {
@@ -91,7 +91,7 @@ API int sw_step_on() {
 API int sw_step() { return static_cast<int>(session->replica().stepNumber()); }
 API int sw_matches() { return static_cast<int>(page.recorded->matches()); }
 API int sw_mismatches() { return static_cast<int>(page.recorded->mismatches()); }
-API const char* sw_hash() { return page.say(fmt::format("{:016x}", session->replica().stateHash())); }
+API const char* sw_hash() { return page.textAt(fmt::format("{:016x}", session->replica().stateHash())); }
 
 /// Encodes the whole state. Returns its length [byte]; the bytes are at sw_state_bytes().
 API int sw_state() {
