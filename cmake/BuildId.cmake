@@ -92,7 +92,7 @@ function(sandwall_write_manifest file)
         list(JOIN line " " line)
         list(APPEND flags "flags ${line}")
     endforeach()
-    file(GLOB embedded CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*
+    file(GLOB embedded LIST_DIRECTORIES false CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/render_node/shaders/*
         ${PROJECT_SOURCE_DIR}/shapes/shaders/*
         ${PROJECT_SOURCE_DIR}/haptic_bridge/devices/*.strokes)
     list(APPEND files ${embedded})
