@@ -30,12 +30,25 @@ class Closed(Exception):
     """The run ends, and starts nothing more."""
 
 
+def environment_of(process):
+    """Returns the environment of a process, given by its folder in /proc. Throws OSError if it has ended.
+
+    While a process begins another program, its environment seems empty for an instant. So an empty one is read again.
+    """
+    for _ in range(20):
+        if text := (process / "environ").read_bytes():
+            return text
+        (process / "exe").readlink()  # throws for threads of the kernel and for processes that have ended
+        time.sleep(0.001)
+    return b""
+
+
 def marked(mark):
     """Returns the processes of this user that have `mark`, a whole entry NAME=VALUE, in their environment."""
     found = []
     for entry in pathlib.Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):  # it has ended, or belongs to another user
-            if mark in (entry / "environ").read_bytes().split(b"\0"):
+            if mark in environment_of(entry).split(b"\0"):
                 found.append(int(entry.name))
     return found
 
