@@ -31,9 +31,9 @@ public:
     void changeMaterial(const master::MaterialChange& change, const Asker& /* asker */) {
         take(scene::withNumber(material_, change.word, change.number, grid_));
     }
-    void showStereo(walls::Stereo stereo) {
+    void showStereo(walls::Stereo mode) {
         static const walls::Wall kOpened = passiveWall();
-        (void)walls::shownOnItsOutputs(kOpened, stereo);
+        (void)walls::shownOnItsOutputs(kOpened, mode);
     }
     void save(const std::string& name, const Asker& /* asker */) {
         fuzz::require(master::saveFile("out", name).lexically_normal().parent_path() == "out/saves",
