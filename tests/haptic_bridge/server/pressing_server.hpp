@@ -22,11 +22,13 @@ protected:
         all[3] = "driver:" SANDWALL_BIN_DIR "/logging-driver.so:" + fault + ":" + folder_.file("forces");
         return all;
     }
-    /// Links a master, and waits until the arm is pushed.
+    /// Links a master, and follows until the arm is pushed. Without a master that follows, the force would fade.
     void press(const haptic_bridge::Address& server) {
         client_ = std::make_unique<haptic_bridge::Client>(server, offerOf(scene_));
-        ASSERT_TRUE(Wall(scene_).follow(*client_, 5)) << client_->link().message << "\n" << folder_.read("err");
-        ASSERT_TRUE(eventually([this] { return presses(); })) << folder_.read("forces");
+        Wall wall(scene_);
+        ASSERT_TRUE(wall.follow(*client_, 5)) << client_->link().message << "\n" << folder_.read("err");
+        ASSERT_TRUE(eventually([&] { return wall.follow(*client_, wall.replica.stepNumber() + 1) && presses(); }))
+            << folder_.read("forces");
     }
     void breakDown() { (void)folder_.write("forces.now", ""); }
 
