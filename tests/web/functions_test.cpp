@@ -10,7 +10,7 @@ extern "C" {
 std::uint8_t* sw_add_part(std::uint32_t size);
 int sw_dig_grid(const char* name, std::uint32_t high, std::uint32_t low);
 int sw_set_material(const char* word, double value);
-const double* sw_material();
+const char* sw_material();
 }
 
 namespace {
@@ -20,8 +20,7 @@ TEST(PageFunctions, TellTheMaterialThatThePageHasSet) {
     std::copy(kGrid.begin(), kGrid.end(), sw_add_part(kGrid.size()));
     ASSERT_EQ(sw_dig_grid("t.asc", 0, 7), 0);
     ASSERT_EQ(sw_set_material("talus", 31), 0);
-    EXPECT_DOUBLE_EQ(sw_material()[0], 31);
-    EXPECT_DOUBLE_EQ(sw_material()[11], 0) << "nothing can be undone";
+    EXPECT_NE(std::string_view(sw_material()).find(R"("talus":31,)"), std::string_view::npos) << sw_material();
 }
 
 }  // namespace

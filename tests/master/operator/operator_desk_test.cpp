@@ -141,7 +141,7 @@ TEST_F(Desk, ChangesTheViewAndTheForce) {
     EXPECT_EQ(ask("stereo anaglyph")["ok"], true);
     EXPECT_EQ(desk_->shownWall().stereo, walls::Stereo::anaglyphColour);
     EXPECT_EQ(ask("eye-separation 0.07")["ok"], true);
-    EXPECT_EQ(desk_->views().eyeSeparation(), 0.07);
+    EXPECT_EQ(desk_->views().at(0).eyeSeparation, 0.07);
     EXPECT_TRUE(ask("status")["force_share"].is_null()) << "no operator has set it";
     EXPECT_EQ(ask("force scale 0.25")["ok"], true);
     EXPECT_EQ(force_.shares, std::vector<double>{0.25});
