@@ -8,8 +8,8 @@
 
 namespace master {
 
-/// The origin of a command, which gets the answer: a client of the control socket, a window in which a key was pressed,
-/// or standard input, which has neither.
+/// The origin of a command gets the answer. It is a client of the control socket, or a window in which a key was
+/// pressed. Standard input has neither.
 struct Asker {
     std::optional<ControlSocket::Client> client{};
     std::optional<int> window{};  // rank of the window
@@ -17,6 +17,6 @@ struct Asker {
     [[nodiscard]] static Asker at(int rank) { return {{}, rank}; }
     friend bool operator==(const Asker&, const Asker&) = default;
 };
-using Askers = std::vector<Asker>;  // those that wait for one answer
+using Askers = std::vector<Asker>;  // all of them wait for one answer
 
 }  // namespace master

@@ -81,8 +81,8 @@ public:
     /// Waits for the background jobs, answers their askers, and removes the control socket.
     void close();
 
-    // What the verbs do (verbs.hpp). Each throws base::InputError if it refuses. A function with an `asker` answers it,
-    // at once or later.
+    // The rows of verbs.hpp call these functions. Each throws base::InputError if it refuses. A function with an
+    // `asker` answers it, at once or later.
     void reportStatus(const Asker& asker);
     void pause(bool paused);
     /// Asks for an edit, after which the session has `material`.

@@ -14,7 +14,7 @@
 
 namespace master {
 
-/// Who answers a client: it gets `ok` as soon as its command is carried out, or the desk answers it itself.
+/// A client gets `ok` as soon as its command is carried out, or the desk answers it itself.
 enum class Answered : std::uint8_t { atOnce, byDesk };
 
 /// A command that `desk` carries out for `asker`.

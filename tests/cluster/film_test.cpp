@@ -144,8 +144,8 @@ TEST_F(Film, ATruncatedJournalIsShownToItsLastWholeRecord) {
     EXPECT_EQ(frames(), (steps + 9) / 10);
 }
 
-// One journal that cannot be filmed. tests/master/pictures/film_test.cpp and tests/scripts/launcher/film_test.py test the other
-// refusals.
+// One journal that cannot be filmed. tests/master/pictures/film_test.cpp and tests/scripts/launcher/film_test.py test
+// the other refusals.
 TEST_F(Film, RefusesADamagedJournalInOneLine) {
     const std::filesystem::path journal = journalCopy();
     const auto middle = static_cast<std::streamoff>(std::filesystem::file_size(journal) * 3 / 4);

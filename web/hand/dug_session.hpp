@@ -17,7 +17,7 @@
 
 namespace web {
 
-/// Sand in which the hand of a page digs. The steps are those of a session whose hand is a pointer, at the fast pace: a
+/// Sand in which the hand of a page digs. The steps are those of a session whose hand is a pointer, at the fast pace. A
 /// step runs at most 64 sweeps, and the steps after it pay the rest. Each step is written to a journal before it is
 /// applied. Used by one thread.
 class DugSession : public StepSource {

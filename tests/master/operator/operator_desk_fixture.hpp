@@ -44,14 +44,14 @@ protected:
         desk_.reset();
         desk_.emplace(scene_, scene_.material, wall_, folder_, options,
                       master::OperatorDesk::SessionParts{sand_, edits_, force,
-                                                    [this](std::int64_t bytes) {
-                                                        bytes_ = bytes;
-                                                        return room_ && bytes <= most_;
-                                                    },
-                                                    [this](double share) { kept_.push_back(share); },
-                                                    [] {
-                                                        return json{{"frame", 42}};
-                                                    }});
+                                                         [this](std::int64_t bytes) {
+                                                             bytes_ = bytes;
+                                                             return room_ && bytes <= most_;
+                                                         },
+                                                         [this](double share) { kept_.push_back(share); },
+                                                         [] {
+                                                             return json{{"frame", 42}};
+                                                         }});
     }
     /// Sends a line from another thread. The future has the answer.
     std::future<json> send(const std::string& line) {
