@@ -70,10 +70,8 @@ struct Words {
 }  // namespace
 
 std::string wordsOfPage() {
-    Words words;
-    for (const auto& known : valuesOf(ToolKind{})) {
-        words.tools.push_back(known.name);
-    }
+    const auto tools = base::namesOf<ToolKind>();
+    Words words{.tools = {tools.begin(), tools.end()}};
     for (const scene::MaterialKey& key : scene::materialKeys()) {
         words.material.push_back({key});
     }
