@@ -55,7 +55,9 @@ class DesktopWindow(window_fixture.WindowOfTry):
         turned, = self.dig(here)
         self.assertGreater(max(abs(a - b) for a, b in zip(turned, before)), 4, "the right button has turned the sand")
         # The same sand in the same view has the same place under the pointer.
-        self.session.act("key", "shift+r", "key", "Home")
+        self.desktop.do("key", "shift+r", "key", "Home")
+        self.session.until(lambda: any(step["edit"] == "reset" for step in self.session.steps()), "the sand is not reset")
+        self.session.frames_pass()
         self.expect_near(self.dig(here)[0], before, 0.1)
         self.expect_whole()
 
